@@ -1,0 +1,59 @@
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/floating_point.h"
+
+namespace beltrami {
+
+void parallel_for(int threads, std::int64_t count, std::int64_t grain,
+                  const std::function<void(std::int64_t, std::int64_t)>& body) {
+  const std::int64_t chunks = (count + grain - 1) / grain;
+  const int workers = static_cast<int>(std::min<std::int64_t>(threads, chunks));
+  if (workers <= 1) {
+    for (std::int64_t begin = 0; begin < count; begin += grain) {
+      body(begin, std::min(begin + grain, count));
+    }
+    return;
+  }
+  std::atomic<std::int64_t> next{0};
+  std::exception_ptr failure;
+  std::mutex failure_guard;
+  const auto work = [&] {
+    const StandardFloatingPoint standard_mode;
+    try {
+      for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
+        body(chunk * grain, std::min((chunk + 1) * grain, count));
+      }
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(failure_guard);
+      if (!failure) failure = std::current_exception();
+      next.store(chunks);
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    pool.reserve(static_cast<std::size_t>(workers - 1));
+    for (int i = 1; i < workers; ++i) pool.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+double parallel_sum(int threads, std::int64_t count, std::int64_t grain,
+                    const std::function<double(std::int64_t, std::int64_t)>& term) {
+  std::vector<double> partial(static_cast<std::size_t>((count + grain - 1) / grain));
+  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+    partial[static_cast<std::size_t>(begin / grain)] = term(begin, end);
+  });
+  double sum = 0;
+  for (const double value : partial) sum += value;
+  return sum;
+}
+
+}  // namespace beltrami

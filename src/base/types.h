@@ -1,0 +1,32 @@
+// The plain types that every stage shares.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+namespace beltrami {
+
+/// Vertex, face and half-edge index. 32 bits hold meshes of up to 700 million faces.
+using Index = std::int32_t;
+inline constexpr Index kNone = -1;
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Complex = std::complex<double>;
+
+/// Corner vertices of a face, counter-clockwise.
+using Triangle = std::array<Index, 3>;
+
+/// The corner after / before corner `k` of a triangle.
+constexpr int next_corner(int k) { return k == 2 ? 0 : k + 1; }
+constexpr int previous_corner(int k) { return k == 0 ? 2 : k - 1; }
+
+template <class T>
+Index size_of(const std::vector<T>& items) {
+  return static_cast<Index>(items.size());
+}
+
+}  // namespace beltrami
