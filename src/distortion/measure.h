@@ -1,0 +1,28 @@
+// Distortion of a given map, as delivered to the user.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/types.h"
+
+namespace beltrami {
+
+/// Means over the faces weighted by 3D area. A face is left out if it has no 3D area, or if its
+/// energy is not finite (flipped or degenerate in the plane).
+struct Distortion {
+  double symmetric_dirichlet = 0;  ///< 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2
+  double symmetric_arap = 0;       ///< (s1 - 1)^2 + (1/s2 - 1)^2, >= 0
+  double max = 0;                  ///< greatest symmetric Dirichlet energy of a face
+  Index worst_face = kNone;        ///< where
+  std::int64_t left_out = 0;       ///< faces left out
+};
+
+/// Measures `uvs` (one per vertex) against `positions`, at the scale of both as given.
+/// `face_energies`: null, or one double per face for its symmetric Dirichlet energy (infinity where
+/// the face is left out).
+Distortion measure_distortion(const std::vector<Vec3>& positions,
+                              const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                              int threads, double* face_energies);
+
+}  // namespace beltrami

@@ -1,0 +1,57 @@
+// The order of the stages, their progress, cancellation and statistics. The only place that knows
+// how the stages fit together.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "base/types.h"
+#include "distortion/measure.h"
+#include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+
+/// Values of the BELTRAMI_OPTION_ keys; the ABI's option table holds their ranges and words.
+struct Options {
+  std::int32_t method = BELTRAMI_METHOD_BELTRAMI;
+  std::int32_t energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  std::int64_t coarse_faces = 0;  ///< 0: max(1% of the faces, 10,000)
+  double tolerance = 1e-4;
+  int max_iterations = 500;
+  int threads = 1;
+  bool unit_square = false;
+};
+
+struct StageStatistics {
+  const char* name;
+  int iterations = 0;  ///< 0 where a stage does not iterate
+  double seconds = 0, cpu_seconds = 0;
+};
+
+/// What a run leaves behind.
+struct Flattening {
+  beltrami_status status = BELTRAMI_OK;  ///< OK, NOT_CONVERGED or NOT_INJECTIVE
+  std::vector<Vec2> uvs;                 ///< one per vertex of the disk, as delivered
+  Certificate certificate;               ///< of `uvs`
+  Distortion distortion;                 ///< of `uvs` against the input in its own unit
+  std::vector<double> face_energies;     ///< symmetric Dirichlet, one per face
+  std::vector<StageStatistics> stages;   ///< in the order in which they ran
+  std::int64_t coarse_faces = 0;         ///< of the mesh that CM ran on
+  std::int64_t flips_before_repair = 0;
+  double seconds = 0, cpu_seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;   ///< of the process so far
+};
+
+/// Called on the calling thread; `fraction` never decreases. Returns true to cancel.
+using Progress = std::function<bool(double fraction, const char* stage)>;
+
+/// Flattens a disk that `normalise` has brought to about unit area; `frame` is what it returned.
+/// `cancelled` may be set from another thread. Throws Error (CANCELLED, SOLVER) or std::bad_alloc.
+Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Options& options,
+                   const Progress& progress, const std::atomic<bool>& cancelled);
+
+}  // namespace beltrami

@@ -1,0 +1,26 @@
+// Fine disk -> coarse disk by quadric edge collapse (Garland & Heckbert 1997; paper section 3.1).
+#pragma once
+
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+
+/// A coarse disk whose vertices are a subset of the fine ones, the boundary loop in the same order.
+struct CoarseDisk {
+  DiskMesh mesh;
+  std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
+};
+
+/// Collapses half-edges in passes until at most `target_faces` faces are left or no collapse is
+/// allowed; with `target_faces` >= the face count it returns the mesh itself. The result is a disk
+/// (proved by build_disk). Kept whatever the target: at least 8 boundary vertices (or all), the tips
+/// of ears, both ends of every bridge and one boundary vertex between successive bridge ends, since
+/// what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces,
+                    const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami
