@@ -1,0 +1,52 @@
+// Closest points on a triangle mesh: a bounding volume hierarchy in flat arrays.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "base/types.h"
+
+namespace beltrami {
+
+/// A point of a face, by barycentric coordinates that are non-negative and sum to 1.
+struct SurfacePoint {
+  Index face = kNone;
+  std::array<double, 3> barycentric = {1, 0, 0};
+  double distance_sq = 0;
+};
+
+/// Answers closest-point queries on a mesh that it keeps references to. Queries are const and may
+/// come from several threads.
+class ClosestPoint {
+ public:
+  ClosestPoint(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces);
+
+  /// The closest point on faces whose normal has a positive product with `normal`, so that the far
+  /// side of a thin sheet is not taken; on all faces if there is none. Equal distances go to the
+  /// smaller face. `seed` (a face, or kNone) bounds the search and does not change its result.
+  SurfacePoint find(const Vec3& point, const Vec3& normal, Index seed) const;
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    Index first = 0;  ///< first face in order_ of a leaf; left child of an inner node
+    Index count = 0;  ///< faces of a leaf; 0 for an inner node, whose right child is first + 1
+  };
+
+  void build(Index node, Index begin, Index end, std::vector<Vec3>& centroids);
+  SurfacePoint search(const Vec3& point, const Vec3* normal, Index seed) const;
+  void consider(const Vec3& point, const Vec3* normal, Index face, SurfacePoint& best) const;
+
+  const std::vector<Vec3>& positions_;
+  const std::vector<Triangle>& faces_;
+  std::vector<Vec3> normals_;  // not normalised: only signs are asked for
+  std::vector<Index> order_;
+  std::vector<Node> nodes_;
+};
+
+/// The point of triangle (a, b, c) that is closest to p (Ericson, Real-Time Collision Detection,
+/// 5.1.5), as barycentric coordinates. Degenerate triangles are fine.
+std::array<double, 3> closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
+                                          const Vec3& c);
+
+}  // namespace beltrami

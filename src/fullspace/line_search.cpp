@@ -1,0 +1,44 @@
+#include "fullspace/line_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Smallest positive root of c0 + c1 t + c2 t^2 for c0 > 0.
+double smallest_positive_root(double c0, double c1, double c2) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double discriminant = c1 * c1 - 4 * c0 * c2;
+  if (discriminant < 0) return kNever;
+  const double root = std::sqrt(discriminant);
+  if (c1 < 0) return 2 * c0 / (root - c1);
+  return c2 < 0 ? (c1 + root) / (-2 * c2) : kNever;
+}
+
+}  // namespace
+
+double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                           const std::vector<Vec2>& direction, int threads) {
+  std::vector<double> smallest(faces.size() / kGrain + 1, std::numeric_limits<double>::infinity());
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double& least = smallest[begin / kGrain];
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = faces[f];
+      const Vec2 e1 = uvs[t[1]] - uvs[t[0]], e2 = uvs[t[2]] - uvs[t[0]];
+      const Vec2 p1 = direction[t[1]] - direction[t[0]], p2 = direction[t[2]] - direction[t[0]];
+      least = std::min(least, smallest_positive_root(
+                                  cross(e1, e2), cross(e1, p2) + cross(p1, e2), cross(p1, p2)));
+    }
+  });
+  return *std::min_element(smallest.begin(), smallest.end());
+}
+
+}  // namespace beltrami

@@ -1,0 +1,17 @@
+// How far a map can go along a direction before a face becomes singular.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+
+namespace beltrami {
+
+/// The smallest t > 0 at which a face of uvs + t * direction has no area; infinity if none has.
+/// Precondition: all faces are positively oriented in `uvs`. (Smith & Schaefer 2015, section 3.3;
+/// the roots are taken without cancellation and without an absolute threshold, which would fail on
+/// meshes of millions of faces.)
+double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                           const std::vector<Vec2>& direction, int threads);
+
+}  // namespace beltrami

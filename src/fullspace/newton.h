@@ -1,0 +1,38 @@
+// Projected Newton in the space of all piecewise linear maps: composite majorization for the
+// symmetric Dirichlet energy (Shtengel et al. 2017; paper section 3.2).
+#pragma once
+
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+struct NewtonOptions {
+  double tolerance = 1e-4;   ///< relative energy decrease of a step of at least 1/2 that ends it
+  int max_iterations = 500;
+  int threads = 1;
+};
+
+struct NewtonResult {
+  std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
+  bool converged = false;
+
+  int iterations() const { return static_cast<int>(energies.size()) - 1; }
+};
+
+/// Minimises the mean symmetric Dirichlet energy (weighted by rest area) over the vertices that are
+/// not `fixed`, from `uvs`, in place. No face ever flips: the step is bounded by the first
+/// singular face, then halved until the energy falls sufficiently (Armijo).
+/// Preconditions: every face is positively oriented in `uvs`; at least one vertex is fixed if the
+/// faces are connected (a free map drifts otherwise).
+/// Throws Error SOLVER if no shift makes a system definite.
+NewtonResult minimise_energy(const std::vector<Triangle>& faces,
+                             const std::vector<RestTriangle>& rest,
+                             const std::vector<bool>& fixed, std::vector<Vec2>& uvs,
+                             const NewtonOptions& options,
+                             const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami

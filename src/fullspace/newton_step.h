@@ -1,0 +1,140 @@
+// One step of projected Newton over a set of faces, for any density.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fullspace/assembly.h"
+#include "fullspace/line_search.h"
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+
+/// What a step did.
+struct NewtonStep {
+  double length = 0;     ///< share of the Newton step taken; 0: no representable decrease
+  double energy = 0;     ///< mean energy after it
+  double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model
+};
+
+/// Newton's method on the mean of a density over `faces`, weighted by rest area. A Density has
+/// value(s1, s2), model(s1, s2) and `kBarrier`: whether it is infinite at s2 = 0, so that steps must
+/// stop short of singular faces. Keeps references to `faces` and `rest`.
+template <class Density>
+class NewtonStepper {
+ public:
+  NewtonStepper(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                const std::vector<bool>& fixed, int threads, Density density = {})
+      : faces_(faces),
+        rest_(rest),
+        threads_(threads),
+        density_(density),
+        hessian_(static_cast<Index>(fixed.size()), faces, fixed, 2),
+        solver_(make_spd_solver()) {
+    for (const RestTriangle& r : rest) total_area_ += r.area();
+    if (free_count() > 0) solver_->analyze(hessian_.matrix());
+  }
+
+  Index free_count() const { return hessian_.free_count(); }
+  void set_density(const Density& density) { density_ = density; }
+
+  /// Infinite if a face is not positive under a barrier density.
+  double mean_energy(const std::vector<Vec2>& uvs) const;
+
+  /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
+  /// Throws Error SOLVER if no shift makes the system definite.
+  NewtonStep step(std::vector<Vec2>& uvs, double energy);
+
+ private:
+  static constexpr std::int64_t kGrain = 8192;
+  static constexpr double kSingularShare = 0.8;  // of the way to the first singular face
+  static constexpr double kArmijo = 1e-4;        // sufficient share of the predicted decrease
+  static constexpr double kNoGain = 1e-14;       // relative predicted decrease within the roundoff
+  static constexpr double kShift = 1e-13;        // of the diagonal: see factorize
+  static constexpr double kLargestShift = 1e-3;
+  static constexpr int kMaxHalvings = 60;
+
+  void factorize();
+
+  const std::vector<Triangle>& faces_;
+  const std::vector<RestTriangle>& rest_;
+  const int threads_;
+  Density density_;
+  double total_area_ = 0;
+  MeshMatrix hessian_;
+  std::unique_ptr<SpdSolver> solver_;
+  Eigen::VectorXd gradient_;
+};
+
+template <class Density>
+double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
+  const auto part = [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = faces_[f];
+      const SingularValues s =
+          singular_values(linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      if (Density::kBarrier && !(s.s2 > 0)) return std::numeric_limits<double>::infinity();
+      sum += rest_[f].area() * density_.value(s.s1, s.s2);
+    }
+    return sum;
+  };
+  return parallel_sum(threads_, size_of(faces_), kGrain, part) / total_area_;
+}
+
+/// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
+/// motions; a shift relative to the diagonal covers the roundoff at any scale.
+template <class Density>
+void NewtonStepper<Density>::factorize() {
+  SparseMatrix& matrix = hessian_.matrix();
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
+      matrix.valuePtr()[matrix.outerIndexPtr()[c]] = diagonal[c] * (1 + shift);
+    }
+    if (solver_->factorize(matrix)) return;
+  }
+  throw Error(BELTRAMI_E_SOLVER,
+              "a Newton system could not be made definite: the mesh is numerically extreme");
+}
+
+template <class Density>
+NewtonStep NewtonStepper<Density>::step(std::vector<Vec2>& uvs, double energy) {
+  assemble(
+      faces_, rest_, uvs, density_, [&](Index f) { return rest_[f].area() / total_area_; },
+      threads_, hessian_, gradient_);
+  factorize();
+  const Eigen::VectorXd flat = solver_->solve(-gradient_);
+  NewtonStep result;
+  result.energy = energy;
+  result.predicted = -gradient_.dot(flat);
+  if (!(result.predicted > kNoGain * energy)) return result;
+
+  std::vector<Vec2> direction(uvs.size(), Vec2::Zero());
+  for (Index v = 0; v < size_of(uvs); ++v) {
+    if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
+  }
+  double length = 1;
+  if (Density::kBarrier) {
+    length = std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
+  }
+  std::vector<Vec2> trial(uvs.size());
+  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+    for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
+    const double trial_energy = mean_energy(trial);
+    if (trial_energy <= energy - kArmijo * length * result.predicted) {
+      uvs.swap(trial);
+      result.length = length;
+      result.energy = trial_energy;
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace beltrami

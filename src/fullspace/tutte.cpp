@@ -1,0 +1,91 @@
+#include "fullspace/tutte.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "sparse/mesh_matrix.h"
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+namespace {
+
+/// Boundary edges of no length get this share of the mean edge, so that no two vertices coincide.
+constexpr double kShortestArc = 1e-3;
+
+void place_boundary(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
+  const Index count = size_of(mesh.boundary);
+  std::vector<double> arc(count);
+  double length = 0;
+  for (Index i = 0; i < count; ++i) {
+    const Index a = mesh.boundary[i], b = mesh.boundary[i + 1 == count ? 0 : i + 1];
+    arc[i] = (mesh.positions[b] - mesh.positions[a]).norm();
+    length += arc[i];
+  }
+  const double shortest = length > 0 ? kShortestArc * length / count : 1.0;
+  length = 0;
+  for (double& a : arc) {
+    a = std::max(a, shortest);
+    length += a;
+  }
+  const double radius = std::sqrt(surface_area(mesh) / std::numbers::pi);
+  double along = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * along / length;
+    uvs[mesh.boundary[i]] = radius * Vec2(std::cos(angle), std::sin(angle));
+    along += arc[i];
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
+  std::vector<Vec2> uvs(mesh.vertex_count(), Vec2::Zero());
+  place_boundary(mesh, uvs);
+
+  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+  if (laplacian.free_count() == 0) return uvs;
+  DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
+  const auto one = [](int, int) { return 1.0; };
+  // Each face stands for half of the unit weight of its edges: every edge of a free vertex has two.
+  const auto minus_half = [](int, int) { return -0.5; };
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Triangle& face = mesh.faces[f];
+    for (int k = 0; k < 3; ++k) {
+      const int l = next_corner(k);
+      laplacian.add(f, face, k, k, one);
+      laplacian.add(f, face, k, l, minus_half);
+      const Index rk = laplacian.row(face[k]), rl = laplacian.row(face[l]);
+      if (rk != kNone && rl == kNone) rhs.row(rk) += 0.5 * uvs[face[l]].transpose();
+      if (rl != kNone && rk == kNone) rhs.row(rl) += 0.5 * uvs[face[k]].transpose();
+    }
+  }
+  const auto solver = make_spd_solver();
+  solver->analyze(laplacian.matrix());
+  if (!solver->factorize(laplacian.matrix())) {
+    throw Error(BELTRAMI_E_SOLVER, "the linear system of the Tutte embedding is not definite");
+  }
+  const DenseMatrix solution = solver->solve(rhs);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (laplacian.row(v) != kNone) uvs[v] = solution.row(laplacian.row(v)).transpose();
+  }
+  return uvs;
+}
+
+double best_scale(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                  const std::vector<Vec2>& uvs) {
+  double stretch = 0, shrink = 0;
+  for (Index f = 0; f < size_of(faces); ++f) {
+    const LinearMap map =
+        linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
+    const double norm_sq = 2 * (std::norm(map.fz) + std::norm(map.fzbar));
+    const double det = std::norm(map.fz) - std::norm(map.fzbar);
+    if (!(det > 0)) return 1;
+    stretch += rest[f].area() * norm_sq;
+    shrink += rest[f].area() * norm_sq / (det * det);
+  }
+  const double scale = std::sqrt(std::sqrt(shrink / stretch));
+  return std::isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,79 @@
+#include "mesh/rest_shape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+constexpr double kDegenerateHeight = 1e-9;  // of the longest edge
+constexpr double kMollifiedHeight = 1e-3;   // of the longest edge: steep, yet far from the roundoff
+
+/// A stand-in for a face without height: the longest edge kept, the apex lifted off it.
+RestTriangle mollified(const std::array<Vec3, 3>& p, double mean_edge) {
+  int k = 0;
+  for (int i = 1; i < 3; ++i) {
+    if ((p[next_corner(i)] - p[i]).squaredNorm() > (p[next_corner(k)] - p[k]).squaredNorm()) k = i;
+  }
+  const Vec3 edge = p[next_corner(k)] - p[k];
+  const double longest = std::max(edge.norm(), kMollifiedHeight * mean_edge);
+  const double along =
+      std::clamp((p[previous_corner(k)] - p[k]).dot(edge) / (longest * longest), 0.0, 1.0);
+  std::array<Complex, 3> flat;
+  flat[k] = 0;
+  flat[next_corner(k)] = longest;
+  flat[previous_corner(k)] = Complex(along * longest, kMollifiedHeight * longest);
+  const Complex e1 = flat[1] - flat[0], e2 = flat[2] - flat[0];
+  const double x1 = std::abs(e1);
+  const Complex turned = e2 * std::conj(e1) / x1;
+  return {x1, turned.real(), turned.imag()};
+}
+
+}  // namespace
+
+LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2) {
+  // f_x = (w1 - w0) / x1; f_y from the apex; fz = (f_x - i f_y) / 2, fzbar = (f_x + i f_y) / 2.
+  const double inv_x1 = 1 / rest.x1, inv_y2 = 1 / rest.y2;
+  const double ux = (w1.x() - w0.x()) * inv_x1, vx = (w1.y() - w0.y()) * inv_x1;
+  const double uy = (w2.x() - w0.x() - rest.x2 * ux) * inv_y2;
+  const double vy = (w2.y() - w0.y() - rest.x2 * vx) * inv_y2;
+  return {{0.5 * (ux + vy), 0.5 * (vx - uy)}, {0.5 * (ux - vy), 0.5 * (vx + uy)}};
+}
+
+std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
+                                         const std::vector<Triangle>& faces, int threads) {
+  const auto edge_sum = [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (int k = 0; k < 3; ++k) {
+        sum += (positions[faces[f][next_corner(k)]] - positions[faces[f][k]]).norm();
+      }
+    }
+    return sum;
+  };
+  const double mean_edge =
+      parallel_sum(threads, size_of(faces), kGrain, edge_sum) / (3.0 * size_of(faces));
+
+  std::vector<RestTriangle> rest(faces.size());
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      const std::array<Vec3, 3> p = {positions[faces[f][0]], positions[faces[f][1]],
+                                     positions[faces[f][2]]};
+      const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+      const double x1 = e1.norm();
+      const double double_area = e1.cross(e2).norm();
+      const double longest_sq =
+          std::max({e1.squaredNorm(), e2.squaredNorm(), (p[2] - p[1]).squaredNorm()});
+      rest[f] = double_area > kDegenerateHeight * longest_sq
+                    ? RestTriangle{x1, e1.dot(e2) / x1, double_area / x1}
+                    : mollified(p, mean_edge);
+    }
+  });
+  return rest;
+}
+
+}  // namespace beltrami

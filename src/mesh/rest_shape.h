@@ -1,0 +1,39 @@
+// Faces laid flat: the geometry that energies and coefficients are measured against.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+
+namespace beltrami {
+
+/// A face in its own plane: corner 0 at the origin, corner 1 at (x1, 0), corner 2 at (x2, y2).
+/// x1 > 0, y2 > 0 always, also for faces that have no area in space (see rest_triangles).
+struct RestTriangle {
+  double x1, x2, y2;
+
+  double area() const { return 0.5 * x1 * y2; }
+  Complex corner(int k) const { return k == 0 ? 0.0 : k == 1 ? Complex(x1) : Complex(x2, y2); }
+  /// Gradient of the hat function of corner k, as gx + i gy: i * opposite edge / (2 area).
+  Complex hat_gradient(int k) const {
+    const Complex edge = corner(previous_corner(k)) - corner(next_corner(k));
+    return Complex(-edge.imag(), edge.real()) / (x1 * y2);
+  }
+};
+
+/// A linear map of a face in complex notation: f(z) = fz * z + fzbar * conj(z).
+struct LinearMap {
+  Complex fz, fzbar;
+};
+
+/// The linear map that takes the rest triangle to the corners w. Its singular values are
+/// |fz| +- |fzbar|.
+LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2);
+
+/// Lays every face flat. A face whose height is below 1e-9 of its longest edge (zero area, duplicate
+/// positions) is valid topology without geometry: it is given a height of 1e-3 of its longest edge,
+/// or of the mean edge where it has no extent at all, so that every energy stays finite.
+std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
+                                         const std::vector<Triangle>& faces, int threads);
+
+}  // namespace beltrami

@@ -1,0 +1,65 @@
+// Symmetric matrices with the pattern of a mesh, assembled face by face without sorting triplets.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+
+/// A symmetric matrix of block_size x block_size blocks: one block row per free vertex, blocks where
+/// two free vertices share an edge. Only the lower triangle is stored.
+class MeshMatrix {
+ public:
+  /// `fixed`: per vertex, whether it is left out of the system.
+  MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
+             const std::vector<bool>& fixed, int block_size);
+
+  /// Block row of a vertex, or kNone if it is fixed.
+  Index row(Index vertex) const { return row_[vertex]; }
+  Index free_count() const { return free_count_; }
+  const std::vector<Index>& rows() const { return row_; }
+
+  void set_zero();
+  /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be
+  /// called once for every unordered pair of corners, the diagonal ones included. Fixed corners are
+  /// skipped.
+  template <class Block>
+  void add(Index face, const Triangle& corners, int i, int j, const Block& block);
+
+  const SparseMatrix& matrix() const { return matrix_; }
+  SparseMatrix& matrix() { return matrix_; }
+
+ private:
+  int block_size_;
+  Index free_count_ = 0;
+  std::vector<Index> row_;                    // per vertex
+  std::vector<std::array<Index, 3>> slot_;    // per face and edge k: rank of its block below the diagonal
+  SparseMatrix matrix_;
+};
+
+template <class Block>
+void MeshMatrix::add(Index face, const Triangle& corners, int i, int j, const Block& block) {
+  const Index ri = row_[corners[i]], rj = row_[corners[j]];
+  if (ri == kNone || rj == kNone) return;
+  double* values = matrix_.valuePtr();
+  const int* starts = matrix_.outerIndexPtr();
+  if (i == j) {
+    for (int c = 0; c < block_size_; ++c) {
+      double* column = values + starts[block_size_ * ri + c];
+      for (int r = c; r < block_size_; ++r) column[r - c] += block(r, c);
+    }
+    return;
+  }
+  const Index rank = slot_[face][next_corner(i) == j ? i : j];
+  const bool swap = ri < rj;  // the block below the diagonal has the larger row
+  const Index column_block = swap ? ri : rj;
+  for (int c = 0; c < block_size_; ++c) {
+    double* column =
+        values + starts[block_size_ * column_block + c] + (block_size_ - c) + rank * block_size_;
+    for (int r = 0; r < block_size_; ++r) column[r] += swap ? block(c, r) : block(r, c);
+  }
+}
+
+}  // namespace beltrami
