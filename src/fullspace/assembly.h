@@ -57,8 +57,8 @@ FaceModel face_model(const RestTriangle& rest, const LinearMap& map, const Densi
   model.gradient = m.d1 * g1 + m.d2 * g2;
   model.hessian.noalias() = (m.h11 * g1 + m.h12 * g2) * g1.transpose();
   model.hessian.noalias() += (m.h12 * g1 + m.h22 * g2) * g2.transpose();
-  model.hessian.noalias() += (m.twist * twist) * twist.transpose();
-  model.hessian.noalias() += (m.flip * flip) * flip.transpose();
+  model.hessian.noalias() += (m.twist * twist + m.coupling * flip) * twist.transpose();
+  model.hessian.noalias() += (m.coupling * twist + m.flip * flip) * flip.transpose();
   return model;
 }
 

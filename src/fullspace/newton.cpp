@@ -10,7 +10,10 @@ namespace {
 /// energy hardly falls, long before the minimum.
 constexpr double kFullStep = 0.5;
 
-/// The number of steps is not known beforehand; ordinary meshes take about twenty.
+/// Steps below this length are blocked by faces that are nearly singular.
+constexpr double kBlockedStep = 0.02;
+
+/// The number of steps is not known beforehand; ordinary meshes take about twelve.
 double guessed_progress(int iterations) { return iterations / (iterations + 12.0); }
 
 }  // namespace
@@ -23,16 +26,24 @@ NewtonResult minimise_energy(const std::vector<Triangle>& faces,
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
+  int proxy_steps = options.proxy_steps;
   while (!result.converged && result.iterations() < options.max_iterations) {
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
-    const NewtonStep step = stepper.step(uvs, before);
+    const bool proxy = proxy_steps > 0;
+    const NewtonStep step =
+        proxy ? stepper.step_with(SymmetricDirichletProxy{}, uvs, before) : stepper.step(uvs, before);
+    if (step.length > 0) result.energies.push_back(step.energy);
+    if (proxy) {
+      proxy_steps = step.length > 0 ? proxy_steps - 1 : 0;
+      continue;
+    }
     if (step.length == 0) {
       // No representable decrease: at the minimum if little was predicted, stuck otherwise.
       result.converged = step.predicted <= options.tolerance * before;
       break;
     }
-    result.energies.push_back(step.energy);
+    if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;
     result.converged = step.length >= kFullStep && before - step.energy <= options.tolerance * before;
   }
   return result;

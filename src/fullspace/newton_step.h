@@ -48,7 +48,11 @@ class NewtonStepper {
 
   /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
   /// Throws Error SOLVER if no shift makes the system definite.
-  NewtonStep step(std::vector<Vec2>& uvs, double energy);
+  NewtonStep step(std::vector<Vec2>& uvs, double energy) { return step_with(density_, uvs, energy); }
+
+  /// The same with the Hessian model of another density that has the same value and gradient.
+  template <class Model>
+  NewtonStep step_with(const Model& model, std::vector<Vec2>& uvs, double energy);
 
  private:
   static constexpr std::int64_t kGrain = 8192;
@@ -104,9 +108,11 @@ void NewtonStepper<Density>::factorize() {
 }
 
 template <class Density>
-NewtonStep NewtonStepper<Density>::step(std::vector<Vec2>& uvs, double energy) {
+template <class Model>
+NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
+                                             double energy) {
   assemble(
-      faces_, rest_, uvs, density_, [&](Index f) { return rest_[f].area() / total_area_; },
+      faces_, rest_, uvs, model, [&](Index f) { return rest_[f].area() / total_area_; },
       threads_, hessian_, gradient_);
   factorize();
   const Eigen::VectorXd flat = solver_->solve(-gradient_);
