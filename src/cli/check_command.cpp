@@ -1,0 +1,159 @@
+// beltrami check: judge the UVs that a file carries.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "atomic_file.h"
+#include "command.h"
+#include "interrupt.h"
+#include "picture.h"
+#include "progress_bar.h"
+
+namespace beltrami::cli {
+namespace {
+
+double area_of(const MeshFile& file) {
+  double area = 0;
+  for (std::size_t i = 0; i < file.faces.size(); i += 3) {
+    const double* a = &file.positions[3 * std::size_t{file.faces[i]}];
+    const double* b = &file.positions[3 * std::size_t{file.faces[i + 1]}];
+    const double* c = &file.positions[3 * std::size_t{file.faces[i + 2]}];
+    std::array<double, 3> p, q;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = b[k] - a[k];
+      q[k] = c[k] - a[k];
+    }
+    area += 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                             p[0] * q[1] - p[1] * q[0]);
+  }
+  return area;
+}
+
+std::uint64_t unreferenced_vertices(const MeshFile& file) {
+  std::vector<bool> used(file.vertex_count(), false);
+  std::uint64_t unused = file.vertex_count();
+  for (const std::uint32_t vertex : file.faces) {
+    if (!used[vertex]) --unused;
+    used[vertex] = true;
+  }
+  return unused;
+}
+
+void round_to_float32(std::vector<double>& uvs) {
+  for (double& value : uvs) value = static_cast<double>(static_cast<float>(value));
+}
+
+class Check {
+ public:
+  Check(const CheckArguments& arguments, Report& report)
+      : arguments_(arguments), report_(report), bar_(!arguments.quiet) {}
+
+  int run() {
+    require_files();
+    read();
+    judge();
+    measure();
+    write_files();
+    bar_.clear();
+    if (!arguments_.quiet) std::fputs(to_summary(report_, "").c_str(), stdout);
+    return report_.certificate->injective ? kExitInjective : kExitNotInjective;
+  }
+
+ private:
+  void require_files() const {
+    format_of(arguments_.input);
+    require_distinct({arguments_.input, arguments_.report, arguments_.picture});
+    for (const std::string& path : {arguments_.report, arguments_.picture}) {
+      if (!path.empty()) require_writable(path);
+    }
+  }
+
+  void read() {
+    bar_.show(0, "read");
+    StageClock clock(report_, "read");
+    file_ = read_mesh(arguments_.input, Content::kUvs);
+    report_.vertices = file_.vertex_count();
+    report_.faces = file_.face_count();
+    report_.welded_vertices = file_.welded_vertices;
+    report_.unreferenced_vertices = unreferenced_vertices(file_);
+    report_.area = area_of(file_);
+    if (arguments_.float32) round_to_float32(file_.uvs);
+    clock.finish();
+  }
+
+  void judge() {
+    throw_if_interrupted();
+    bar_.show(0.2, "check");
+    StageClock clock(report_, "check");
+    const beltrami_mesh mesh = view_of(file_);
+    const beltrami_buffer uvs = uv_view(file_.uvs);
+    beltrami_certificate certificate{};
+    certificate.struct_size = sizeof certificate;
+    const beltrami_status status = beltrami_check_injective(&mesh, &uvs, &certificate);
+    require_ok(status, arguments_.input, "", certificate.error_element_kind,
+               certificate.error_element);
+    report_.certificate = certificate;
+    report_.status = beltrami_status_name(status);
+    // Euler's formula on what has just been verified to be a disk.
+    const std::uint64_t used = *report_.vertices - *report_.unreferenced_vertices;
+    report_.boundary_edges = 2 * used - 2 - *report_.faces;
+    report_.float32_injective =
+        arguments_.float32 ? certificate.injective != 0 : injective_in_float32(file_, file_.uvs);
+    clock.finish();
+  }
+
+  void measure() {
+    throw_if_interrupted();
+    bar_.show(0.6, "measure");
+    StageClock clock(report_, "measure");
+    const beltrami_mesh mesh = view_of(file_);
+    const beltrami_buffer uvs = uv_view(file_.uvs);
+    beltrami_energy energy{};
+    energy.struct_size = sizeof energy;
+    if (!arguments_.picture.empty()) face_energies_.resize(file_.face_count());
+    const beltrami_status status = beltrami_measure(
+        &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
+    require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+    report_.energy = energy;
+    clock.finish();
+  }
+
+  void write_files() {
+    throw_if_interrupted();
+    std::optional<AtomicFile> picture, report;
+    if (!arguments_.picture.empty()) {
+      bar_.show(0.8, "picture");
+      StageClock clock(report_, "picture");
+      picture.emplace(arguments_.picture).write(encode_png(render_picture(file_, face_energies_)));
+      picture->close();
+      clock.finish();
+    }
+    report_.seconds = seconds_so_far();
+    if (!arguments_.report.empty()) {
+      report.emplace(arguments_.report).write(to_json(report_));
+      report->close();
+    }
+    throw_if_interrupted();
+    if (picture) picture->commit();
+    if (report) report->commit();
+  }
+
+  const CheckArguments& arguments_;
+  Report& report_;
+  ProgressBar bar_;
+  MeshFile file_;
+  std::vector<double> face_energies_;
+};
+
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  Report report;
+  report.command = "check";
+  report.input_path = arguments.input;
+  report.options = {{"float32", arguments.float32}};
+  return run_guarded(report, arguments.report, [&] { return Check(arguments, report).run(); });
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,54 @@
+// What the commands share: a mesh for the library, failures, and reports.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh_file.h"
+#include "options.h"
+#include "report.h"
+
+namespace beltrami::cli {
+
+struct FlattenArguments {
+  std::string input, output;
+  std::string report, picture;  ///< paths, or "" for none
+  bool quiet = false;
+};
+
+struct CheckArguments {
+  std::string input;
+  std::string report, picture;  ///< paths, or "" for none
+  bool float32 = false;         ///< judge the UVs rounded to single precision
+  bool quiet = false;
+};
+
+/// The commands: the exit code. They print the summary, or one line on stderr.
+int flatten_command(const FlattenArguments& arguments, const Options& options);
+int check_command(const CheckArguments& arguments);
+
+/// The file's arrays as the library takes them; `file` must outlive it.
+beltrami_mesh view_of(const MeshFile& file);
+beltrami_buffer uv_view(const std::vector<double>& uvs);
+
+/// Whether `uvs` rounded to single precision are still injective on `file`.
+bool injective_in_float32(const MeshFile& file, const std::vector<double>& uvs);
+
+/// Throws for a status below 0: "path: message (face 3, counted from 0)".
+void require_ok(beltrami_status status, const std::string& path, const char* message,
+                std::int32_t element_kind, std::uint64_t element);
+
+/// Throws Failure if two of the paths (the first may be an input) are the same file.
+void require_distinct(const std::vector<std::string>& paths);
+
+/// Runs `body`, which returns the exit code. Its failures become one line on stderr, an exit code,
+/// and a report at `report_path` (unless that is "").
+int run_guarded(Report& report, const std::string& report_path, const std::function<int()>& body);
+
+/// Seconds since the program started.
+double seconds_so_far();
+
+}  // namespace beltrami::cli

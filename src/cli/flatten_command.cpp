@@ -1,0 +1,179 @@
+// beltrami flatten: read, flatten, write, report.
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "atomic_file.h"
+#include "command.h"
+#include "interrupt.h"
+#include "picture.h"
+#include "progress_bar.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Context = std::unique_ptr<beltrami_context, void (*)(beltrami_context*)>;
+
+Context make_context() {
+  beltrami_context* raw = nullptr;
+  const beltrami_status status = beltrami_create(&raw);
+  if (status < 0) throw Failure(status, beltrami_status_advice(status));
+  return {raw, &beltrami_destroy};
+}
+
+class Flattening {
+ public:
+  Flattening(const FlattenArguments& arguments, const Options& options, Report& report)
+      : arguments_(arguments),
+        options_(options),
+        report_(report),
+        bar_(!arguments.quiet),
+        context_(make_context()) {}
+
+  int run() {
+    require_files();
+    options_.apply_to(context_.get());
+    read();
+    const CancelOnInterrupt guard(context_.get());
+    flatten();
+    fetch_results();
+    write_files();
+    bar_.clear();
+    if (!arguments_.quiet) {
+      std::fputs(to_summary(report_, arguments_.output).c_str(), stdout);
+    }
+    return report_.certificate->injective ? kExitInjective : kExitNotInjective;
+  }
+
+ private:
+  /// Everything about files that can be told before the work.
+  void require_files() const {
+    format_of(arguments_.input);
+    require_writable_format(arguments_.output);
+    require_distinct({arguments_.input, arguments_.report, arguments_.picture});
+    require_distinct({arguments_.output, arguments_.report, arguments_.picture});
+    for (const std::string& path : {arguments_.output, arguments_.report, arguments_.picture}) {
+      if (!path.empty()) require_writable(path);
+    }
+  }
+
+  void read() {
+    bar_.show(0, "read");
+    StageClock clock(report_, "read");
+    file_ = read_mesh(arguments_.input, Content::kSurface);
+    report_.vertices = file_.vertex_count();
+    report_.faces = file_.face_count();
+    report_.welded_vertices = file_.welded_vertices;
+    const beltrami_mesh mesh = view_of(file_);
+    require(beltrami_set_mesh(context_.get(), &mesh));
+    clock.finish();
+  }
+
+  void flatten() {
+    // A signal from before the guard has cancelled nothing yet.
+    throw_if_interrupted();
+    const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
+      static_cast<ProgressBar*>(bar)->show(fraction, stage);
+      return interrupted();
+    };
+    const beltrami_status status = beltrami_run(context_.get(), progress, &bar_);
+    require(status);
+    report_.status = beltrami_status_name(status);
+  }
+
+  void fetch_results() {
+    beltrami_context* context = context_.get();
+    beltrami_result result{};
+    result.struct_size = sizeof result;
+    require(beltrami_get_result(context, &result));
+    report_.boundary_edges = result.boundary_edges;
+    report_.unreferenced_vertices = result.unreferenced_vertices;
+    report_.area = result.area;
+    report_.coarse_faces = result.coarse_faces;
+    report_.flips_before_repair = result.flips_before_repair;
+
+    file_.uvs.resize(2 * file_.vertex_count());
+    require(beltrami_get_uvs(context, file_.uvs.data(), BELTRAMI_F64, 0));
+    // What is written reads back to these very doubles, so this is the verdict on the file.
+    beltrami_certificate certificate{};
+    certificate.struct_size = sizeof certificate;
+    require(beltrami_get_certificate(context, &certificate));
+    report_.certificate = certificate;
+    beltrami_energy energy{};
+    energy.struct_size = sizeof energy;
+    require(beltrami_get_energy(context, &energy));
+    report_.energy = energy;
+
+    const std::int32_t stages = beltrami_stage_count(context);
+    for (std::int32_t i = 0; i < stages; ++i) {
+      beltrami_stage stage{};
+      stage.struct_size = sizeof stage;
+      require(beltrami_get_stage(context, i, &stage));
+      report_.stages.push_back({stage.name, stage.seconds, stage.cpu_seconds, stage.iterations});
+    }
+    StageClock clock(report_, "float32");
+    report_.float32_injective = injective_in_float32(file_, file_.uvs);
+    clock.finish();
+  }
+
+  /// All files are complete on the disk before the first of them replaces anything.
+  void write_files() {
+    bar_.show(1, "write");
+    StageClock clock(report_, "write");
+    AtomicFile output(arguments_.output);
+    write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
+      throw_if_interrupted();
+      output.write(bytes);
+    });
+    output.close();
+    clock.finish();
+
+    std::optional<AtomicFile> picture, report;
+    if (!arguments_.picture.empty()) write_picture(picture.emplace(arguments_.picture));
+    report_.seconds = seconds_so_far();
+    if (!arguments_.report.empty()) {
+      report.emplace(arguments_.report).write(to_json(report_));
+      report->close();
+    }
+    throw_if_interrupted();
+    output.commit();
+    if (picture) picture->commit();
+    if (report) report->commit();
+  }
+
+  void write_picture(AtomicFile& file) {
+    bar_.show(1, "picture");
+    StageClock clock(report_, "picture");
+    std::vector<double> energies(file_.face_count());
+    require(beltrami_get_face_energies(context_.get(), energies.data(), 0));
+    file.write(encode_png(render_picture(file_, energies)));
+    file.close();
+    clock.finish();
+  }
+
+  void require(beltrami_status status) const {
+    require_ok(status, arguments_.input, beltrami_error_message(context_.get()),
+               beltrami_error_element_kind(context_.get()), beltrami_error_element(context_.get()));
+  }
+
+  const FlattenArguments& arguments_;
+  const Options& options_;
+  Report& report_;
+  ProgressBar bar_;
+  Context context_;
+  MeshFile file_;
+};
+
+}  // namespace
+
+int flatten_command(const FlattenArguments& arguments, const Options& options) {
+  Report report;
+  report.command = "flatten";
+  report.input_path = arguments.input;
+  report.options = options.to_json();
+  report.threads = options.integer(BELTRAMI_OPTION_THREADS);
+  return run_guarded(report, arguments.report,
+                     [&] { return Flattening(arguments, options, report).run(); });
+}
+
+}  // namespace beltrami::cli

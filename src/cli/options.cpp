@@ -1,0 +1,148 @@
+#include "options.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "failure.h"
+
+namespace beltrami::cli {
+namespace {
+
+std::string plain_number(double value) {
+  char digits[64];
+  if (std::abs(value) < 1e15 && value == std::floor(value)) {
+    std::snprintf(digits, sizeof digits, "%.0f", value);
+  } else {
+    std::snprintf(digits, sizeof digits, "%g", value);
+  }
+  return digits;
+}
+
+std::string default_word(const Option& option) {
+  if (option.info.type != BELTRAMI_TYPE_CHOICE) return plain_number(option.info.default_value);
+  const auto value = static_cast<std::size_t>(option.info.default_value);
+  return value < option.choices.size() ? option.choices[value] : plain_number(double(value));
+}
+
+std::string joined_choices(const Option& option, const char* separator) {
+  std::string all;
+  for (const std::string& choice : option.choices) all += (all.empty() ? "" : separator) + choice;
+  return all;
+}
+
+std::string range_of(const Option& option) {
+  return plain_number(option.info.minimum) + " to " + plain_number(option.info.maximum);
+}
+
+std::string help_text(const Option& option) {
+  std::string text = option.info.summary;
+  if (option.is_flag()) return text;
+  text += " [";
+  if (option.info.type != BELTRAMI_TYPE_CHOICE) text += range_of(option) + "; ";
+  return text + "default " + default_word(option) + "]";
+}
+
+template <class Number>
+std::string parse_number(const std::string& text, const Option& option, Number& value) {
+  Number parsed = 0;
+  const char* end = text.data() + text.size();
+  const auto [past, error] = std::from_chars(text.data(), end, parsed);
+  // Negated so that NaN fails too.
+  if (error == std::errc() && past == end && double(parsed) >= option.info.minimum &&
+      double(parsed) <= option.info.maximum) {
+    value = parsed;
+    return "";
+  }
+  const char* kind = option.info.type == BELTRAMI_TYPE_INT ? "a whole number" : "a number";
+  return "'" + text + "' is not " + kind + " from " + range_of(option);
+}
+
+}  // namespace
+
+std::string parse_option(const std::string& text, Option& option) {
+  if (option.info.type == BELTRAMI_TYPE_INT) return parse_number(text, option, option.integer);
+  if (option.info.type == BELTRAMI_TYPE_FLOAT) return parse_number(text, option, option.real);
+  for (std::size_t i = 0; i < option.choices.size(); ++i) {
+    if (option.choices[i] != text) continue;
+    option.integer = static_cast<std::int64_t>(i);
+    return "";
+  }
+  return "'" + text + "' is not one of " + joined_choices(option, ", ");
+}
+
+Options::Options() {
+  for (std::int32_t key = 0;; ++key) {
+    Option option;
+    option.info.struct_size = sizeof option.info;
+    if (beltrami_option_describe(key, &option.info) != BELTRAMI_OK) break;
+    option.integer = static_cast<std::int64_t>(option.info.default_value);
+    option.real = option.info.default_value;
+    if (option.info.type == BELTRAMI_TYPE_CHOICE) {
+      for (std::int32_t value = 0; const char* name = beltrami_option_choice(key, value); ++value) {
+        option.choices.emplace_back(name);
+      }
+    }
+    options_.push_back(std::move(option));
+  }
+}
+
+void Options::add_to(CLI::App& command) {
+  for (Option& option : options_) {
+    const std::string flag = std::string("--") + option.info.name;
+    if (option.is_flag()) {
+      command.add_flag_callback(
+          flag, [&option] { option.integer = 1; }, help_text(option));
+      continue;
+    }
+    const auto parse = [&option, flag](const std::string& text) {
+      const std::string error = parse_option(text, option);
+      if (!error.empty()) throw CLI::ValidationError(flag, error);
+    };
+    command.add_option_function<std::string>(flag, parse, help_text(option))
+        ->type_name(option.info.type == BELTRAMI_TYPE_CHOICE  ? joined_choices(option, "|")
+                    : option.info.type == BELTRAMI_TYPE_FLOAT ? "X"
+                                                              : "N");
+  }
+}
+
+void Options::apply_to(beltrami_context* context) const {
+  for (const Option& option : options_) {
+    const beltrami_status status = option.info.type == BELTRAMI_TYPE_FLOAT
+                                       ? beltrami_set_float(context, option.info.key, option.real)
+                                       : beltrami_set_int(context, option.info.key, option.integer);
+    if (status < 0) {
+      throw Failure(status,
+                    std::string("--") + option.info.name + ": " + beltrami_error_message(context));
+    }
+  }
+}
+
+nlohmann::ordered_json Options::to_json() const {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const Option& option : options_) {
+    nlohmann::ordered_json& value = json[option.info.name];
+    if (option.is_flag()) {
+      value = option.integer != 0;
+    } else if (option.info.type == BELTRAMI_TYPE_FLOAT) {
+      value = option.real;
+    } else if (option.info.type == BELTRAMI_TYPE_CHOICE) {
+      value = option.choices.at(static_cast<std::size_t>(option.integer));
+    } else {
+      value = option.integer;
+    }
+  }
+  return json;
+}
+
+std::int64_t Options::integer(std::int32_t key) const {
+  for (const Option& option : options_) {
+    if (option.info.key == key) return option.integer;
+  }
+  return 0;
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,52 @@
+// The options of a run, as the library describes them: this program knows none by itself.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace beltrami::cli {
+
+struct Option {
+  beltrami_option_info info{};
+  std::vector<std::string> choices;  ///< of a choice: names by value
+  std::int64_t integer = 0;          ///< value of an integer or a choice
+  double real = 0;                   ///< value of a float
+
+  /// Integers from 0 to 1 are flags without a value.
+  bool is_flag() const {
+    return info.type == BELTRAMI_TYPE_INT && info.minimum == 0 && info.maximum == 1;
+  }
+};
+
+class Options {
+ public:
+  /// Every option of the library at its default.
+  Options();
+  /// The command line refers to the options.
+  Options(const Options&) = delete;
+  Options& operator=(const Options&) = delete;
+
+  void add_to(CLI::App& command);
+  /// Throws Failure with the library's words if it refuses a value.
+  void apply_to(beltrami_context* context) const;
+  /// Values by name, e.g. {"method": "cm", "unit-square": false}.
+  nlohmann::ordered_json to_json() const;
+  /// Value of the integer option `key`.
+  std::int64_t integer(std::int32_t key) const;
+
+ private:
+  std::vector<Option> options_;
+};
+
+/// Sets `option` from the text of the command line. Returns "" or what is wrong with the text.
+std::string parse_option(const std::string& text, Option& option);
+
+}  // namespace beltrami::cli

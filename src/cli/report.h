@@ -1,0 +1,73 @@
+// What a command found, as JSON for other programs (docs/report.md) and as a summary for people.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "failure.h"
+
+namespace beltrami::cli {
+
+/// Raised when a key changes its meaning or goes away; new keys alone do not raise it.
+inline constexpr int kReportSchema = 1;
+
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+  double cpu_seconds = 0;
+  int iterations = 0;
+};
+
+/// Everything that a command has not come to know is empty, and null in JSON.
+struct Report {
+  std::string command;
+  std::string status = "BELTRAMI_OK";
+  std::string message;  ///< of a failure
+  std::int32_t element_kind = BELTRAMI_ELEMENT_NONE;
+  std::uint64_t element = BELTRAMI_NO_ELEMENT;
+
+  std::string input_path;
+  std::optional<std::uint64_t> vertices, faces, boundary_edges, unreferenced_vertices,
+      welded_vertices;
+  std::optional<double> area;
+
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();
+  std::optional<beltrami_certificate> certificate;
+  std::optional<bool> float32_injective;
+  std::optional<beltrami_energy> energy;
+  std::optional<std::uint64_t> coarse_faces, flips_before_repair;
+  std::vector<StageTime> stages;
+  std::optional<std::int64_t> threads;
+  double seconds = 0;
+
+  void set_failure(const Failure& failure);
+};
+
+/// The JSON text, with a final line end.
+std::string to_json(const Report& report);
+
+/// The lines for people. `written`: the output path, or "".
+std::string to_summary(const Report& report, const std::string& written);
+
+/// Times a stage from its construction and adds it to a report in finish(); a stage that fails is
+/// not listed.
+class StageClock {
+ public:
+  StageClock(Report& report, const char* name) : report_(report), name_(name) {}
+  void finish();
+
+ private:
+  Report& report_;
+  const char* name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_start_ = std::clock();
+};
+
+}  // namespace beltrami::cli
