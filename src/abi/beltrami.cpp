@@ -1,0 +1,271 @@
+// The entry points that need a context, and those that describe the library.
+#include <beltrami/beltrami.h>
+
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "abi/buffers.h"
+#include "abi/context.h"
+#include "abi/failure.h"
+#include "abi/option_table.h"
+#include "abi/reports.h"
+#include "abi/status.h"
+#include "sparse/spd_solver.h"
+
+#define BELTRAMI_TEXT_(x) #x
+#define BELTRAMI_TEXT(x) BELTRAMI_TEXT_(x)
+#define BELTRAMI_VERSION_TEXT           \
+  BELTRAMI_TEXT(BELTRAMI_VERSION_MAJOR) \
+  "." BELTRAMI_TEXT(BELTRAMI_VERSION_MINOR) "." BELTRAMI_TEXT(BELTRAMI_VERSION_PATCH)
+
+#define BELTRAMI_BUILD_TEXT "beltrami " BELTRAMI_VERSION_TEXT ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI)
+
+namespace beltrami {
+namespace {
+
+/// Whether what this build links is under the GPL: CHOLMOD's Supernodal module is.
+bool has_gpl() {
+  return std::string_view(spd_solver_name()) == "cholmod";
+}
+
+/// The wrapper of every entry point with a context: refuses NULL, and calls during a run.
+template <class Body>
+beltrami_status enter(beltrami_context* context, Body&& body) noexcept {
+  if (context == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
+  return guarded(context->failure, [&]() -> beltrami_status {
+    if (context->running) {
+      throw Error(BELTRAMI_E_INVALID_STATE,
+                  "a run is under way on this context: only beltrami_cancel is possible");
+    }
+    return body(*context);
+  });
+}
+
+beltrami_option_info describe(const OptionEntry& option) {
+  beltrami_option_info info{};
+  info.key = option.key;
+  info.type = option.type;
+  info.minimum = option.minimum;
+  info.maximum = option.maximum;
+  info.default_value = option.get(Options{});
+  info.name = option.name;
+  info.summary = option.summary;
+  return info;
+}
+
+beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
+  beltrami_result result{};
+  result.status = flattening.status;
+  result.vertices = mesh.vertex_count;
+  result.faces = mesh.input.disk.faces.size();
+  result.boundary_edges = mesh.input.disk.boundary.size();
+  result.unreferenced_vertices = mesh.vertex_count - mesh.input.original.size();
+  result.coarse_faces = static_cast<std::uint64_t>(flattening.coarse_faces);
+  result.flips_before_repair = static_cast<std::uint64_t>(flattening.flips_before_repair);
+  result.area = mesh.area;
+  result.seconds = flattening.seconds;
+  result.cpu_seconds = flattening.cpu_seconds;
+  result.peak_memory_bytes = flattening.peak_memory_bytes;
+  return result;
+}
+
+void write_uvs(const LoadedMesh& mesh, const std::vector<Vec2>& uvs, Writer& writer) {
+  const std::vector<Index>& original = mesh.input.original;
+  constexpr double origin[2] = {0, 0};
+  std::size_t next = 0;  // `original` increases: the vertices between its members are unused
+  for (std::size_t i = 0; i < original.size(); ++i) {
+    const auto vertex = static_cast<std::size_t>(original[i]);
+    while (next < vertex) writer.write(next++, origin);
+    writer.write(next++, uvs[i].data());
+  }
+  while (next < mesh.vertex_count) writer.write(next++, origin);
+}
+
+}  // namespace
+}  // namespace beltrami
+
+using beltrami::enter;
+using beltrami::Error;
+using beltrami::guarded;
+
+uint32_t beltrami_version(void) {
+  return BELTRAMI_VERSION_MAJOR * 1000000 + BELTRAMI_VERSION_MINOR * 1000 + BELTRAMI_VERSION_PATCH;
+}
+
+const char* beltrami_build_info(void) {
+  return beltrami::has_gpl() ? BELTRAMI_BUILD_TEXT
+             ", solver cholmod, links GPL code: distribute under the GPL only"
+                             : BELTRAMI_BUILD_TEXT ", solver eigen, links no GPL code";
+}
+
+int32_t beltrami_has(const char* feature) {
+  if (feature == nullptr) return 0;
+  const std::string_view name(feature);
+  if (name == "gpl") return beltrami::has_gpl() ? 1 : 0;
+  constexpr std::string_view prefix = "solver:";
+  return name.starts_with(prefix) && name.substr(prefix.size()) == beltrami::spd_solver_name();
+}
+
+const char* beltrami_status_name(beltrami_status status) {
+  return beltrami::status_name(status);
+}
+
+const char* beltrami_status_advice(beltrami_status status) {
+  return beltrami::status_advice(status);
+}
+
+beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out) {
+  if (out == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
+  *out = nullptr;
+  if (abi != BELTRAMI_ABI) return BELTRAMI_E_ABI_MISMATCH;
+  *out = new (std::nothrow) beltrami_context;
+  return *out != nullptr ? BELTRAMI_OK : BELTRAMI_E_OUT_OF_MEMORY;
+}
+
+void beltrami_destroy(beltrami_context* context) {
+  // During a run this is the caller's defect; a leak is the milder outcome.
+  if (context != nullptr && !context->running) delete context;
+}
+
+const char* beltrami_error_message(const beltrami_context* context) {
+  return context != nullptr ? context->failure.message() : "";
+}
+
+uint64_t beltrami_error_element(const beltrami_context* context) {
+  return context != nullptr ? context->failure.element().index : BELTRAMI_NO_ELEMENT;
+}
+
+int32_t beltrami_error_element_kind(const beltrami_context* context) {
+  return context != nullptr ? context->failure.element().kind : BELTRAMI_ELEMENT_NONE;
+}
+
+int32_t beltrami_option_find(const char* name) {
+  if (name == nullptr) return -1;
+  for (const beltrami::OptionEntry& option : beltrami::option_table()) {
+    if (std::string_view(name) == option.name) return option.key;
+  }
+  return -1;
+}
+
+beltrami_status beltrami_option_describe(int32_t key, beltrami_option_info* out) {
+  beltrami::Failure unused;
+  return guarded(unused, [&] {
+    beltrami::require_sized(out, "out");
+    const beltrami::OptionEntry* option = beltrami::find_option(key);
+    if (option == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
+    beltrami::write_sized(out, beltrami::describe(*option));
+    return BELTRAMI_OK;
+  });
+}
+
+const char* beltrami_option_choice(int32_t key, int32_t value) {
+  const beltrami::OptionEntry* option = beltrami::find_option(key);
+  if (option == nullptr || value < 0) return nullptr;
+  const auto index = static_cast<std::size_t>(value);
+  return index < option->choices.size() ? option->choices[index] : nullptr;
+}
+
+beltrami_status beltrami_set_int(beltrami_context* context, int32_t key, int64_t value) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::set_int_option(self.options, key, value);
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_set_float(beltrami_context* context, int32_t key, double value) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::set_float_option(self.options, key, value);
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh* mesh) {
+  return enter(context, [&](beltrami_context& self) {
+    self.cancelled.store(false);
+    self.mesh = beltrami::load_mesh(mesh);
+    self.flattening.reset();
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress, void* user) {
+  return enter(context, [&](beltrami_context& self) { return self.run(progress, user); });
+}
+
+void beltrami_cancel(beltrami_context* context) {
+  if (context != nullptr) context->cancelled.store(true);
+}
+
+beltrami_status beltrami_get_result(beltrami_context* context, beltrami_result* out) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::require_sized(out, "out");
+    beltrami::write_sized(out, beltrami::describe(*self.mesh, self.results()));
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
+                                 uint64_t stride) {
+  return enter(context, [&](beltrami_context& self) {
+    const beltrami::Flattening& results = self.results();
+    beltrami::Writer writer(out, type, stride, self.mesh->vertex_count, 2);
+    beltrami::write_uvs(*self.mesh, results.uvs, writer);
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_certificate(beltrami_context* context, beltrami_certificate* out) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::require_sized(out, "out");
+    const beltrami::Certificate& certificate = self.results().certificate;
+    beltrami_certificate report = beltrami::empty_certificate();
+    beltrami::describe_orientations(report, certificate.orientations);
+    beltrami::describe_crossings(report, certificate.crossings, self.mesh->input.original);
+    report.injective = certificate.injective() ? 1 : 0;
+    beltrami::write_sized(out, report);
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_energy(beltrami_context* context, beltrami_energy* out) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::require_sized(out, "out");
+    beltrami::write_sized(out, beltrami::describe_distortion(self.results().distortion));
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_face_energies(beltrami_context* context, void* out, uint64_t stride) {
+  return enter(context, [&](beltrami_context& self) {
+    const std::vector<double>& energies = self.results().face_energies;
+    beltrami::Writer writer(out, BELTRAMI_F64, stride, energies.size(), 1);
+    for (std::size_t f = 0; f < energies.size(); ++f) writer.write(f, &energies[f]);
+    return BELTRAMI_OK;
+  });
+}
+
+int32_t beltrami_stage_count(const beltrami_context* context) {
+  if (context == nullptr || !context->flattening) return 0;
+  return static_cast<int32_t>(context->flattening->stages.size());
+}
+
+beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index, beltrami_stage* out) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::require_sized(out, "out");
+    const std::vector<beltrami::StageStatistics>& stages = self.results().stages;
+    if (index < 0 || static_cast<std::size_t>(index) >= stages.size()) {
+      throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+                  "there is no stage " + std::to_string(index) + ": the last run had " +
+                      std::to_string(stages.size()) + " stages, counted from 0");
+    }
+    const beltrami::StageStatistics& statistics = stages[static_cast<std::size_t>(index)];
+    beltrami_stage stage{};
+    stage.iterations = statistics.iterations;
+    stage.seconds = statistics.seconds;
+    stage.cpu_seconds = statistics.cpu_seconds;
+    stage.name = statistics.name;
+    beltrami::write_sized(out, stage);
+    return BELTRAMI_OK;
+  });
+}

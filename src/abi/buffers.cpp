@@ -1,0 +1,176 @@
+#include "abi/buffers.h"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace beltrami {
+namespace {
+
+constexpr std::uint64_t kMaxVertices = std::numeric_limits<Index>::max();
+constexpr std::uint64_t kMaxFaces = 700'000'000;  // 3 half-edges each fit an Index
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
+}
+
+std::size_t element_size(std::int32_t type) {
+  return type == BELTRAMI_F32 || type == BELTRAMI_U32 ? 4 : 8;
+}
+
+/// The stride in bytes, 0 resolved. Throws if items overlap or leave the address space.
+std::size_t checked_stride(std::uint64_t stride, std::int32_t type, int components,
+                           std::uint64_t count, const char* what) {
+  const std::size_t item = element_size(type) * static_cast<std::size_t>(components);
+  if (stride == 0) stride = item;
+  if (stride < item) {
+    refuse("the stride of the " + std::string(what) + ", " + std::to_string(stride) +
+           " bytes, is less than an item's " + std::to_string(item));
+  }
+  if (count > 0 && stride > static_cast<std::uint64_t>(PTRDIFF_MAX) / count) {
+    refuse("the stride of the " + std::string(what) + ", " + std::to_string(stride) +
+           " bytes, is more than memory can hold: is it in bytes, and not negative?");
+  }
+  return static_cast<std::size_t>(stride);
+}
+
+/// Items of `components` elements, checked once and then read without checks.
+class Reader {
+ public:
+  Reader(const beltrami_buffer& buffer, std::uint64_t count, int components, const char* what)
+      : data_(static_cast<const unsigned char*>(buffer.data)) {
+    if (data_ == nullptr) refuse("the data of the " + std::string(what) + " is NULL");
+    if (buffer.reserved != 0) {
+      refuse("the field `reserved` of the " + std::string(what) + " is not 0");
+    }
+    stride_ = checked_stride(buffer.stride, buffer.type, components, count, what);
+  }
+
+  /// memcpy, since the caller's memory need not be aligned.
+  template <class Scalar>
+  Scalar read(std::size_t item, int component) const {
+    Scalar value;
+    std::memcpy(&value, data_ + item * stride_ + static_cast<std::size_t>(component) * sizeof value,
+                sizeof value);
+    return value;
+  }
+
+ private:
+  const unsigned char* data_;
+  std::size_t stride_;
+};
+
+void require_type(std::int32_t type, std::int32_t narrow, std::int32_t wide, const char* what) {
+  if (type != narrow && type != wide) {
+    refuse(
+        "the type of the " + std::string(what) + " is " + std::to_string(type) + ": give " +
+        (narrow == BELTRAMI_F32 ? "BELTRAMI_F32 or BELTRAMI_F64" : "BELTRAMI_U32 or BELTRAMI_U64"));
+  }
+}
+
+template <class Integer>
+std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
+                                    std::uint64_t vertex_count) {
+  std::vector<Triangle> faces(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto index = reader.read<Integer>(f, k);
+      if (index >= vertex_count) {
+        throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                    "face " + std::to_string(f) + " names vertex " + std::to_string(index) +
+                        ", but there are " + std::to_string(vertex_count) +
+                        " vertices: indices count from 0",
+                    Element::face(f));
+      }
+      faces[f][static_cast<std::size_t>(k)] = static_cast<Index>(index);
+    }
+  }
+  return faces;
+}
+
+template <class Scalar, class Vector>
+std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& original) {
+  std::vector<Vector> points(original.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (int k = 0; k < Vector::RowsAtCompileTime; ++k) {
+      points[i][k] = reader.read<Scalar>(static_cast<std::size_t>(original[i]), k);
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
+  const beltrami_mesh mesh = read_sized(theirs, "the mesh");
+  if (mesh.flags != 0) refuse("the field `flags` of the mesh is not 0");
+  if (mesh.vertex_count == 0 || mesh.face_count == 0) {
+    throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");
+  }
+  if (mesh.vertex_count > kMaxVertices || mesh.face_count > kMaxFaces) {
+    refuse("the mesh has " + std::to_string(mesh.vertex_count) + " vertices and " +
+           std::to_string(mesh.face_count) + " faces: at most " + std::to_string(kMaxVertices) +
+           " and " + std::to_string(kMaxFaces) + " are possible");
+  }
+  return mesh;
+}
+
+std::vector<Triangle> read_faces(const beltrami_mesh& mesh) {
+  require_type(mesh.indices.type, BELTRAMI_U32, BELTRAMI_U64, "indices");
+  const Reader reader(mesh.indices, mesh.face_count, 3, "indices");
+  return mesh.indices.type == BELTRAMI_U32
+             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count)
+             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count);
+}
+
+std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original) {
+  require_type(mesh.positions.type, BELTRAMI_F32, BELTRAMI_F64, "positions");
+  const Reader reader(mesh.positions, mesh.vertex_count, 3, "positions");
+  return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original)
+                                             : read_points<double, Vec3>(reader, original);
+}
+
+std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
+                           const std::vector<Index>& original) {
+  if (uvs == nullptr) refuse("uvs is NULL");
+  require_type(uvs->type, BELTRAMI_F32, BELTRAMI_F64, "UVs");
+  const Reader reader(*uvs, vertex_count, 2, "UVs");
+  std::vector<Vec2> points = uvs->type == BELTRAMI_F32
+                                 ? read_points<float, Vec2>(reader, original)
+                                 : read_points<double, Vec2>(reader, original);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) {
+      const auto vertex = static_cast<std::uint64_t>(original[i]);
+      throw Error(BELTRAMI_E_NON_FINITE,
+                  "the UV of vertex " + std::to_string(vertex) + " is infinite or not a number",
+                  Element::vertex(vertex));
+    }
+  }
+  return points;
+}
+
+Writer::Writer(void* out, std::int32_t type, std::uint64_t stride, std::uint64_t count,
+               int components)
+    : out_(static_cast<unsigned char*>(out)),
+      components_(components),
+      single_(type == BELTRAMI_F32) {
+  if (out == nullptr) refuse("the memory to write to is NULL");
+  require_type(type, BELTRAMI_F32, BELTRAMI_F64, "output");
+  stride_ = checked_stride(stride, type, components, count, "output");
+}
+
+void Writer::write(std::size_t index, const double* components) {
+  unsigned char* item = out_ + index * stride_;
+  for (int k = 0; k < components_; ++k) {
+    if (single_) {
+      const auto value = static_cast<float>(components[k]);
+      std::memcpy(item, &value, sizeof value);
+      item += sizeof value;
+    } else {
+      std::memcpy(item, &components[k], sizeof(double));
+      item += sizeof(double);
+    }
+  }
+}
+
+}  // namespace beltrami

@@ -1,0 +1,97 @@
+// The checks of the caller's own arrays: no context, nothing kept.
+#include <beltrami/beltrami.h>
+
+#include "abi/buffers.h"
+#include "abi/failure.h"
+#include "abi/input_mesh.h"
+#include "abi/reports.h"
+#include "distortion/measure.h"
+#include "exact/certificate.h"
+
+namespace beltrami {
+namespace {
+
+constexpr int kThreads = 1;  // a check takes no options, and threads must be asked for
+
+enum class Scope { kTriangles, kBoundary, kInjective };
+
+/// Fills `report` and returns OK or NOT_INJECTIVE; throws Error.
+beltrami_status judge(Scope scope, const beltrami_mesh* theirs, const beltrami_buffer* uvs,
+                      beltrami_certificate& report) {
+  const beltrami_mesh mesh = read_mesh_header(theirs);
+  if (scope == Scope::kTriangles) {
+    const InputTriangles triangles = read_triangles(mesh);
+    const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, triangles.original);
+    const Orientations found = count_orientations(triangles.faces, points, kThreads);
+    describe_orientations(report, found);
+    return found.negative + found.degenerate == 0 ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
+  }
+  const InputDisk input = read_disk(mesh, Positions::kZeros);
+  const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, input.original);
+  if (scope == Scope::kBoundary) {
+    const Crossings found = count_crossings(input.disk.boundary, points);
+    describe_crossings(report, found, input.original);
+    return found.count == 0 ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
+  }
+  const Certificate found = certify(input.disk.faces, input.disk.boundary, points, kThreads);
+  describe_orientations(report, found.orientations);
+  describe_crossings(report, found.crossings, input.original);
+  report.injective = found.injective() ? 1 : 0;
+  return found.injective() ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
+}
+
+beltrami_status check(Scope scope, const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                      beltrami_certificate* out) noexcept {
+  Failure failure;
+  beltrami_status status = guarded(failure, [&] {
+    require_sized(out, "out");
+    return BELTRAMI_OK;
+  });
+  if (status != BELTRAMI_OK) return status;
+  beltrami_certificate report = empty_certificate();
+  status = guarded(failure, [&] { return judge(scope, mesh, uvs, report); });
+  if (status < 0) {
+    report = empty_certificate();
+    report.error_element = failure.element().index;
+    report.error_element_kind = failure.element().kind;
+  }
+  write_sized(out, report);
+  return status;
+}
+
+}  // namespace
+}  // namespace beltrami
+
+beltrami_status beltrami_check_triangles(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                         beltrami_certificate* out) {
+  return beltrami::check(beltrami::Scope::kTriangles, mesh, uvs, out);
+}
+
+beltrami_status beltrami_check_boundary(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                        beltrami_certificate* out) {
+  return beltrami::check(beltrami::Scope::kBoundary, mesh, uvs, out);
+}
+
+beltrami_status beltrami_check_injective(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                         beltrami_certificate* out) {
+  return beltrami::check(beltrami::Scope::kInjective, mesh, uvs, out);
+}
+
+beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                 beltrami_energy* out, double* face_energies) {
+  beltrami::Failure unused;
+  return beltrami::guarded(unused, [&] {
+    beltrami::require_sized(out, "out");
+    const beltrami_mesh header = beltrami::read_mesh_header(mesh);
+    const beltrami::InputTriangles triangles = beltrami::read_triangles(header);
+    const std::vector<beltrami::Vec3> positions =
+        beltrami::read_positions(header, triangles.original);
+    beltrami::validate_positions(positions);
+    const std::vector<beltrami::Vec2> points =
+        beltrami::read_uvs(uvs, header.vertex_count, triangles.original);
+    beltrami::write_sized(
+        out, beltrami::describe_distortion(beltrami::measure_distortion(
+                 positions, triangles.faces, points, beltrami::kThreads, face_energies)));
+    return BELTRAMI_OK;
+  });
+}

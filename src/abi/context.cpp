@@ -1,0 +1,99 @@
+#include "abi/context.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "abi/buffers.h"
+#include "base/error.h"
+
+static_assert(std::atomic<bool>::is_always_lock_free,
+              "beltrami_cancel may be called from a signal handler");
+
+namespace beltrami {
+namespace {
+
+/// Passes progress on to the host: in [0, 1], never decreasing, in a floating-point mode that the
+/// host may change at will. Returns true to cancel.
+class HostProgress {
+ public:
+  HostProgress(beltrami_progress callback, void* user) : callback_(callback), user_(user) {}
+
+  bool operator()(double fraction, const char* stage) {
+    // Not std::clamp: NaN must not pass.
+    if (fraction > reached_) reached_ = std::min(fraction, 1.0);
+    const StandardFloatingPoint mode_of_the_run;
+    if (callback_(user_, reached_, stage) != 0) cancelled_ = true;
+    return cancelled_;
+  }
+
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  beltrami_progress callback_;
+  void* user_;
+  double reached_ = 0;
+  bool cancelled_ = false;
+};
+
+/// Marks a run for as long as it lasts, and uses up a request to cancel it, whichever way it ends.
+class RunMark {
+ public:
+  explicit RunMark(beltrami_context& context) : context_(context) { context_.running = true; }
+  ~RunMark() {
+    context_.running = false;
+    if (!used_) context_.cancelled.store(false);
+  }
+  RunMark(const RunMark&) = delete;
+  RunMark& operator=(const RunMark&) = delete;
+
+  /// Whether a request came in time. Later ones are for the next run.
+  bool take_request() {
+    used_ = true;
+    return context_.cancelled.exchange(false);
+  }
+
+ private:
+  beltrami_context& context_;
+  bool used_ = false;
+};
+
+}  // namespace
+
+LoadedMesh load_mesh(const beltrami_mesh* theirs) {
+  const beltrami_mesh mesh = read_mesh_header(theirs);
+  LoadedMesh loaded;
+  loaded.vertex_count = mesh.vertex_count;
+  loaded.input = read_disk(mesh, Positions::kRead);
+  DiskMesh& disk = loaded.input.disk;
+  loaded.frame = normalise(disk.positions, disk.faces);
+  loaded.area = surface_area(disk) / loaded.frame.scale / loaded.frame.scale;
+  return loaded;
+}
+
+}  // namespace beltrami
+
+beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
+  using beltrami::Error;
+  if (!mesh) throw Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
+  beltrami::RunMark mark(*this);
+  beltrami::HostProgress host(progress, user);
+  beltrami::Progress report = [](double, const char*) { return false; };
+  if (progress != nullptr) {
+    report = [&host](double fraction, const char* stage) { return host(fraction, stage); };
+  }
+  beltrami::Flattening result =
+      beltrami::flatten(mesh->input.disk, mesh->frame, options, report, cancelled);
+  // A request that came after the last look at it still counts, since the run was under way.
+  if (mark.take_request() || host.cancelled()) {
+    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled on request");
+  }
+  flattening = std::move(result);
+  return flattening->status;
+}
+
+const beltrami::Flattening& beltrami_context::results() const {
+  if (!flattening) {
+    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no result yet: call beltrami_run");
+  }
+  return *flattening;
+}

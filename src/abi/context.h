@@ -1,0 +1,41 @@
+// The context behind the C interface: options, one mesh, the results of its last run.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <atomic>
+#include <optional>
+
+#include "abi/failure.h"
+#include "abi/input_mesh.h"
+#include "pipeline/pipeline.h"
+
+namespace beltrami {
+
+/// A validated copy of the caller's mesh, normalised.
+struct LoadedMesh {
+  InputDisk input;
+  Normalisation frame;
+  std::uint64_t vertex_count = 0;  ///< of the input, unused vertices included
+  double area = 0;                 ///< in the input's unit squared
+};
+
+/// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.
+LoadedMesh load_mesh(const beltrami_mesh* mesh);
+
+}  // namespace beltrami
+
+struct beltrami_context {
+  beltrami::Options options;
+  std::optional<beltrami::LoadedMesh> mesh;
+  std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
+  beltrami::Failure failure;
+  std::atomic<bool> cancelled{false};
+  bool running = false;
+
+  /// Flattens the mesh. Throws Error INVALID_STATE, CANCELLED or SOLVER; keeps old results then.
+  beltrami_status run(beltrami_progress progress, void* user);
+
+  /// The results. Throws Error INVALID_STATE where there are none.
+  const beltrami::Flattening& results() const;
+};

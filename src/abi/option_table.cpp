@@ -1,0 +1,142 @@
+#include "abi/option_table.h"
+
+#include <cstdio>
+#include <string>
+
+#include "base/error.h"
+
+namespace beltrami {
+namespace {
+
+constexpr const char* kMethods[] = {"beltrami", "cm", "tutte"};
+constexpr const char* kEnergies[] = {"symmetric-dirichlet"};
+
+template <auto Member>
+double get(const Options& options) {
+  return static_cast<double>(options.*Member);
+}
+
+template <auto Member>
+void set(Options& options, double value) {
+  using Value = std::remove_reference_t<decltype(options.*Member)>;
+  options.*Member = static_cast<Value>(value);
+}
+
+const OptionEntry kOptions[] = {
+    {BELTRAMI_OPTION_METHOD, BELTRAMI_TYPE_CHOICE, "method",
+     "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization "
+     "on the full mesh, the slow reference) or tutte (into a circle, highly distorted).",
+     0, std::size(kMethods) - 1, kMethods, get<&Options::method>, set<&Options::method>},
+    {BELTRAMI_OPTION_ENERGY, BELTRAMI_TYPE_CHOICE, "energy", "The distortion that is minimised.", 0,
+     std::size(kEnergies) - 1, kEnergies, get<&Options::energy>, set<&Options::energy>},
+    {BELTRAMI_OPTION_COARSE_FACES,
+     BELTRAMI_TYPE_INT,
+     "coarse-faces",
+     "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the "
+     "faces, at least 10,000.",
+     0,
+     700e6,
+     {},
+     get<&Options::coarse_faces>,
+     set<&Options::coarse_faces>},
+    {BELTRAMI_OPTION_TOLERANCE,
+     BELTRAMI_TYPE_FLOAT,
+     "tolerance",
+     "Relative decrease of the energy in one iteration below which composite majorization stops.",
+     0,
+     1,
+     {},
+     get<&Options::tolerance>,
+     set<&Options::tolerance>},
+    {BELTRAMI_OPTION_MAX_ITERATIONS,
+     BELTRAMI_TYPE_INT,
+     "max-iterations",
+     "Iterations after which composite majorization stops even if it has not converged.",
+     1,
+     1e6,
+     {},
+     get<&Options::max_iterations>,
+     set<&Options::max_iterations>},
+    {BELTRAMI_OPTION_THREADS,
+     BELTRAMI_TYPE_INT,
+     "threads",
+     "Threads to use, the calling one included; the result does not depend on it.",
+     1,
+     1024,
+     {},
+     get<&Options::threads>,
+     set<&Options::threads>},
+    {BELTRAMI_OPTION_UNIT_SQUARE,
+     BELTRAMI_TYPE_INT,
+     "unit-square",
+     "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's unit of length.",
+     0,
+     1,
+     {},
+     get<&Options::unit_square>,
+     set<&Options::unit_square>},
+};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+const OptionEntry& require_option(std::int32_t key, bool is_float) {
+  const OptionEntry* option = find_option(key);
+  if (option == nullptr) {
+    throw Error(BELTRAMI_E_INVALID_ARGUMENT, "there is no option with key " + std::to_string(key) +
+                                                 ": keys run from 0 to " +
+                                                 std::to_string(std::size(kOptions) - 1));
+  }
+  if (is_float != (option->type == BELTRAMI_TYPE_FLOAT)) {
+    throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string("the option ") + option->name +
+                                                 " is set by beltrami_set_" +
+                                                 (is_float ? "int" : "float"));
+  }
+  return *option;
+}
+
+[[noreturn]] void refuse_value(const OptionEntry& option, const std::string& value) {
+  std::string message = value + " is out of range for the option " + option.name +
+                        ": give a number from " + number(option.minimum) + " to " +
+                        number(option.maximum);
+  const char* separator = " (";
+  for (const char* choice : option.choices) {
+    message += separator;
+    message += choice;
+    separator = ", ";
+  }
+  if (!option.choices.empty()) message += ")";
+  throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
+}
+
+}  // namespace
+
+std::span<const OptionEntry> option_table() {
+  return kOptions;
+}
+
+const OptionEntry* find_option(std::int32_t key) {
+  if (key < 0 || static_cast<std::size_t>(key) >= std::size(kOptions)) return nullptr;
+  return &kOptions[key];
+}
+
+void set_int_option(Options& options, std::int32_t key, std::int64_t value) {
+  const OptionEntry& option = require_option(key, false);
+  if (value < static_cast<std::int64_t>(option.minimum) ||
+      value > static_cast<std::int64_t>(option.maximum)) {
+    refuse_value(option, std::to_string(value));
+  }
+  option.set(options, static_cast<double>(value));
+}
+
+void set_float_option(Options& options, std::int32_t key, double value) {
+  const OptionEntry& option = require_option(key, true);
+  // Written so that NaN is refused, too.
+  if (!(value >= option.minimum && value <= option.maximum)) refuse_value(option, number(value));
+  option.set(options, value);
+}
+
+}  // namespace beltrami

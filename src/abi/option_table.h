@@ -1,0 +1,36 @@
+// The one table of options: the program's flags, Python's keywords and host panels come from it.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <cstdint>
+#include <span>
+
+#include "pipeline/pipeline.h"
+
+namespace beltrami {
+
+/// One option. Values pass as double: every range lies within its exact integers.
+struct OptionEntry {
+  std::int32_t key;
+  std::int32_t type;
+  const char* name;
+  const char* summary;
+  double minimum, maximum;               ///< inclusive
+  std::span<const char* const> choices;  ///< names of the values 0, 1, ... of a choice
+  double (*get)(const Options&);
+  void (*set)(Options&, double);
+};
+
+/// The options in the order of their keys, which count from 0 without gaps.
+std::span<const OptionEntry> option_table();
+
+/// The option with this key, or null.
+const OptionEntry* find_option(std::int32_t key);
+
+/// Sets an option. Throws Error INVALID_ARGUMENT (unknown key, wrong type, out of range) and then
+/// leaves `options` alone.
+void set_int_option(Options& options, std::int32_t key, std::int64_t value);
+void set_float_option(Options& options, std::int32_t key, double value);
+
+}  // namespace beltrami
