@@ -13,8 +13,27 @@ namespace {
 constexpr std::int64_t kGrain = 4096;
 constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
 
-/// The coefficient at each corner of a face, in the frame of the face.
-using CornerCoefficients = std::array<Complex, 3>;
+/// The metric at each corner of a face, in the frame of the face.
+using CornerMetrics = std::array<FaceMetric, 3>;
+
+/// What a metric becomes where tangent vectors are multiplied by the unit complex r.
+FaceMetric rotated(const FaceMetric& metric, Complex r) {
+  return {metric.mu * r * r, metric.log_area, metric.phase * std::conj(r)};
+}
+
+/// Adds up metrics; the phase is a direction, left unnormalised.
+void accumulate(FaceMetric& sum, const FaceMetric& metric, double weight) {
+  sum.mu += weight * metric.mu;
+  sum.log_area += weight * metric.log_area;
+  sum.phase += weight * metric.phase;
+}
+
+void normalise_phase(FaceMetric& metric) {
+  const double length = std::abs(metric.phase);
+  metric.phase = length > 0 ? metric.phase / length : Complex(1);
+}
+
+constexpr FaceMetric zero_metric() { return {0, 0, 0}; }
 
 struct FrameOfFace {
   Frame frame;
@@ -30,9 +49,9 @@ FrameOfFace frame_of(const DiskMesh& mesh, Index face) {
 }
 
 /// Face values -> vertex values in tangent frames -> corner values in face frames.
-std::vector<CornerCoefficients> average_at_vertices(const DiskMesh& mesh,
-                                                    const std::vector<FrameOfFace>& face_frames,
-                                                    const std::vector<Complex>& coefficients) {
+std::vector<CornerMetrics> average_at_vertices(const DiskMesh& mesh,
+                                               const std::vector<FrameOfFace>& face_frames,
+                                               const std::vector<FaceMetric>& metrics) {
   std::vector<double> area(mesh.face_count());
   std::vector<Vec3> normal(mesh.vertex_count(), Vec3::Zero());
   for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -46,23 +65,29 @@ std::vector<CornerCoefficients> average_at_vertices(const DiskMesh& mesh,
     const double length = normal[v].norm();
     if (length > 0) vertex_frame[v] = frame_of_normal(normal[v] / length);
   }
-  std::vector<Complex> sum(mesh.vertex_count());
+  std::vector<FaceMetric> sum(mesh.vertex_count(), zero_metric());
   std::vector<double> weight(mesh.vertex_count());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (!face_frames[f].valid) continue;
     for (const Index v : mesh.faces[f]) {
       const Complex r = transport(face_frames[f].frame, vertex_frame[v]);
-      sum[v] += area[f] * coefficients[f] * r * r;
+      accumulate(sum[v], rotated(metrics[f], r), area[f]);
       weight[v] += area[f];
     }
   }
-  std::vector<CornerCoefficients> corners(mesh.face_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (!(weight[v] > 0)) continue;
+    sum[v].mu /= weight[v];
+    sum[v].log_area /= weight[v];
+    normalise_phase(sum[v]);
+  }
+  std::vector<CornerMetrics> corners(mesh.face_count());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (!face_frames[f].valid) continue;
     for (int k = 0; k < 3; ++k) {
       const Index v = mesh.faces[f][k];
       const Complex r = transport(vertex_frame[v], face_frames[f].frame);
-      corners[f][k] = sum[v] / weight[v] * r * r;
+      corners[f][k] = rotated(sum[v], r);
     }
   }
   return corners;
@@ -70,28 +95,30 @@ std::vector<CornerCoefficients> average_at_vertices(const DiskMesh& mesh,
 
 }  // namespace
 
-std::vector<Complex> beltrami_coefficients(const std::vector<Triangle>& faces,
-                                           const std::vector<RestTriangle>& rest,
-                                           const std::vector<Vec2>& uvs) {
-  std::vector<Complex> coefficients(faces.size());
+std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
+                                     const std::vector<RestTriangle>& rest,
+                                     const std::vector<Vec2>& uvs) {
+  std::vector<FaceMetric> metrics(faces.size());
   for (Index f = 0; f < size_of(faces); ++f) {
     const LinearMap map =
         linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
-    if (std::norm(map.fz) > 0) coefficients[f] = map.fzbar / map.fz;
+    const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
+    if (!(area_factor > 0)) continue;
+    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / std::abs(map.fz)};
   }
-  return coefficients;
+  return metrics;
 }
 
-std::vector<Complex> prolong_coefficients(const DiskMesh& coarse,
-                                          const std::vector<Complex>& coefficients,
-                                          const DiskMesh& fine, int threads,
-                                          const Checkpoint& checkpoint) {
+std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
+                                       const std::vector<FaceMetric>& metrics,
+                                       const DiskMesh& fine, int threads,
+                                       const Checkpoint& checkpoint) {
   std::vector<FrameOfFace> coarse_frames(coarse.face_count());
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
-  const auto corners = average_at_vertices(coarse, coarse_frames, coefficients);
+  const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
   const ClosestPoint tree(coarse.positions, coarse.faces);
 
-  std::vector<Complex> result(fine.face_count());
+  std::vector<FaceMetric> result(fine.face_count());
   for (std::int64_t first = 0; first < fine.face_count(); first += kBatch) {
     checkpoint(static_cast<double>(first) / fine.face_count());
     const std::int64_t count = std::min(kBatch, fine.face_count() - first);
@@ -106,10 +133,12 @@ std::vector<Complex> prolong_coefficients(const DiskMesh& coarse,
             (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3;
         const SurfacePoint hit = tree.find(centroid, to.frame.n, seed);
         seed = hit.face;
-        Complex mu = 0;
-        for (int k = 0; k < 3; ++k) mu += hit.barycentric[k] * corners[hit.face][k];
-        const Complex r = transport(coarse_frames[hit.face].frame, to.frame);
-        result[f] = mu * r * r;
+        FaceMetric sum = zero_metric();
+        for (int k = 0; k < 3; ++k) {
+          accumulate(sum, corners[hit.face][k], hit.barycentric[k]);
+        }
+        normalise_phase(sum);
+        result[f] = rotated(sum, transport(coarse_frames[hit.face].frame, to.frame));
       }
     });
   }

@@ -1,6 +1,7 @@
 // Beltrami coefficients of a coarse map and their prolongation to a fine mesh (paper section 3.3).
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -10,20 +11,28 @@
 
 namespace beltrami {
 
-/// Beltrami coefficient mu = fzbar / fz of every face under `uvs`, in the frame whose real axis is
-/// the face's edge from corner 0 to corner 1. |mu| < 1 where the face keeps its orientation; 0 where
-/// the map is singular.
-std::vector<Complex> beltrami_coefficients(const std::vector<Triangle>& faces,
-                                           const std::vector<RestTriangle>& rest,
-                                           const std::vector<Vec2>& uvs);
+/// The metric that a map induces on a face, in the frame whose real axis is the face's edge from
+/// corner 0 to corner 1.
+struct FaceMetric {
+  Complex mu = 0;       ///< Beltrami coefficient fzbar / fz; |mu| < 1 where orientation is kept
+  double log_area = 0;  ///< logarithm of the area factor |fz|^2 - |fzbar|^2
+  Complex phase = 1;    ///< fz / |fz|
 
-/// Carries one coefficient per coarse face over to the fine faces: averaged by area in the tangent
+  Complex fz() const { return phase * std::exp(0.5 * log_area) / std::sqrt(1 - std::norm(mu)); }
+};
+
+/// The metric of every face under `uvs`; the identity's where a face is not positively oriented.
+std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
+                                     const std::vector<RestTriangle>& rest,
+                                     const std::vector<Vec2>& uvs);
+
+/// Carries the metric of the coarse faces over to the fine faces: averaged by area in the tangent
 /// planes of the coarse vertices, interpolated at the point that is closest to each fine centroid,
 /// and transported into the frame of the fine face. A convex combination throughout: |mu| never
-/// exceeds the greatest coarse one. Faces without a normal get 0.
-std::vector<Complex> prolong_coefficients(const DiskMesh& coarse,
-                                          const std::vector<Complex>& coefficients,
-                                          const DiskMesh& fine, int threads,
-                                          const Checkpoint& checkpoint = no_checkpoint);
+/// exceeds the greatest coarse one. Faces without a normal get mu = 0.
+std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
+                                       const std::vector<FaceMetric>& metrics,
+                                       const DiskMesh& fine, int threads,
+                                       const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -53,13 +53,13 @@ std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu) 
 }
 
 void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    const std::vector<Complex>& coefficients, std::vector<Vec2>& uvs) {
+                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs) {
   MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
   if (laplacian.free_count() == 0) return;
   DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triangle& face = mesh.faces[f];
-    const auto cotangents = modified_cotangents(rest[f], coefficients[f]);
+    const auto cotangents = modified_cotangents(rest[f], metric[f].mu);
     for (int k = 0; k < 3; ++k) {
       const int i = next_corner(k), j = previous_corner(k);
       const double weight = 0.5 * cotangents[k];

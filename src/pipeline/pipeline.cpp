@@ -110,12 +110,11 @@ std::vector<Vec2> Run::run_beltrami() {
   result_.coarse_faces = coarse.mesh.face_count();
   const std::vector<Vec2> coarse_uvs = run_cm(coarse.mesh, "coarse", 0.35);
 
-  std::vector<Complex> coefficients;
+  std::vector<FaceMetric> metric;
   stage("prolong", 0.5, [&](StageStatistics&, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(coarse.mesh.positions, coarse.mesh.faces, options_.threads);
-    coefficients =
-        prolong_coefficients(coarse.mesh, beltrami_coefficients(coarse.mesh.faces, rest, coarse_uvs),
-                             disk_, options_.threads, checkpoint);
+    metric = prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, rest, coarse_uvs), disk_,
+                            options_.threads, checkpoint);
   });
 
   std::vector<Vec2> uvs;
@@ -123,7 +122,7 @@ std::vector<Vec2> Run::run_beltrami() {
   stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
     rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
     uvs = carry_boundary(disk_, coarse, coarse_uvs);
-    solve_harmonic(disk_, rest, coefficients, uvs);
+    solve_harmonic(disk_, rest, metric, uvs);
   });
   stage("repair", 0.95, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const RepairResult repaired = repair(disk_, rest, uvs, options_.threads, checkpoint);

@@ -1,0 +1,33 @@
+// Descending from a good map to the minimum next to it, without another factorization.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/rest_shape.h"
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+
+struct PolishOptions {
+  double tolerance = 1e-5;  ///< relative energy decrease of a step that ends it
+  int max_iterations = 20;
+  int threads = 1;
+};
+
+struct PolishResult {
+  std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
+  int iterations() const { return static_cast<int>(energies.size()) - 1; }
+};
+
+/// Minimises the mean symmetric Dirichlet energy by L-BFGS (Nocedal 1980; history 6) with
+/// `precondition` for the initial inverse Hessian (one row per vertex in and out). No face ever
+/// flips. Precondition: all faces of `uvs` are positively oriented.
+PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                    const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
+                    std::vector<Vec2>& uvs, const PolishOptions& options,
+                    const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami
