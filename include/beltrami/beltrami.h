@@ -149,7 +149,8 @@ enum {
   BELTRAMI_OPTION_TOLERANCE = 3,      /* float: relative energy decrease at which CM stops */
   BELTRAMI_OPTION_MAX_ITERATIONS = 4, /* int: limit of CM iterations */
   BELTRAMI_OPTION_THREADS = 5,        /* int: threads to use; the result does not depend on it */
-  BELTRAMI_OPTION_UNIT_SQUARE = 6     /* int: 1 scales and shifts the UVs into [0,1]^2 */
+  BELTRAMI_OPTION_UNIT_SQUARE = 6,    /* int: 1 scales and shifts the UVs into [0,1]^2 */
+  BELTRAMI_OPTION_FLATTEN = 7         /* choice: BELTRAMI_FLATTEN_ */
 };
 
 enum {
@@ -160,6 +161,16 @@ enum {
   BELTRAMI_METHOD_CM = 1,
   /* Tutte's embedding into a circle: injective, fast, highly distorted. */
   BELTRAMI_METHOD_TUTTE = 2
+};
+
+/* How the method BELTRAMI flattens the fine mesh. */
+enum {
+  BELTRAMI_FLATTEN_FORCE_SIGNED_ = -1,
+  /* Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps. */
+  BELTRAMI_FLATTEN_METRIC = 0,
+  /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster, and
+   * 0.3% to 3% higher in energy. */
+  BELTRAMI_FLATTEN_DIRICHLET = 1
 };
 
 enum {

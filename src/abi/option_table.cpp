@@ -9,6 +9,7 @@ namespace beltrami {
 namespace {
 
 constexpr const char* kMethods[] = {"beltrami", "cm", "tutte"};
+constexpr const char* kFlattens[] = {"metric", "dirichlet"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet"};
 
 template <auto Member>
@@ -75,6 +76,11 @@ const OptionEntry kOptions[] = {
      {},
      get<&Options::unit_square>,
      set<&Options::unit_square>},
+    {BELTRAMI_OPTION_FLATTEN, BELTRAMI_TYPE_CHOICE, "flatten",
+     "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and "
+     "a polish) or dirichlet (harmonic, boundary from the coarse map: faster, energy a little "
+     "higher).",
+     0, std::size(kFlattens) - 1, kFlattens, get<&Options::flatten>, set<&Options::flatten>},
 };
 
 std::string number(double value) {

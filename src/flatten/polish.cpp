@@ -18,6 +18,8 @@ constexpr std::size_t kHistory = 6;
 constexpr double kSingularShare = 0.8;
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
+constexpr double kFullStep = 0.5;     // shorter steps say nothing about convergence
+constexpr double kBlockedStep = 0.1;
 
 class Polish {
  public:
@@ -157,13 +159,18 @@ PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTr
       after = problem.energy(trial);
       if (after <= before + kArmijo * length * slope) break;
     }
-    if (!(after < before)) break;
+    if (!(after < before)) {
+      result.blocked = true;
+      break;
+    }
     uvs.swap(trial);
     result.energies.push_back(after);
     DenseMatrix next = problem.gradient(uvs);
     history.add(length * flat, next - gradient);
     gradient.swap(next);
-    if (before - after <= options.tolerance * before) break;
+    result.blocked = length < kBlockedStep;
+    result.converged = length >= kFullStep && before - after <= options.tolerance * before;
+    if (result.blocked || result.converged) break;
   }
   return result;
 }

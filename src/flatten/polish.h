@@ -19,12 +19,15 @@ struct PolishOptions {
 
 struct PolishResult {
   std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
+  bool converged = false;        ///< a step of at least 1/2 decreased the energy by less than that
+  bool blocked = false;          ///< ended because nearly singular faces keep steps short
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 
 /// Minimises the mean symmetric Dirichlet energy by L-BFGS (Nocedal 1980; history 6) with
 /// `precondition` for the initial inverse Hessian (one row per vertex in and out). No face ever
-/// flips. Precondition: all faces of `uvs` are positively oriented.
+/// flips. It ends early where faces that are nearly singular block the steps: clean_outliers mends
+/// those. Precondition: all faces of `uvs` are positively oriented.
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
                     std::vector<Vec2>& uvs, const PolishOptions& options,

@@ -1,23 +1,39 @@
 #include "pipeline/pipeline.h"
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 
 #include "base/error.h"
 #include "base/resources.h"
 #include "beltrami/prolongation.h"
 #include "flatten/dirichlet.h"
+#include "flatten/metric.h"
+#include "flatten/polish.h"
 #include "fullspace/newton.h"
 #include "fullspace/tutte.h"
 #include "mesh/rest_shape.h"
+#include "repair/outliers.h"
 #include "repair/repair.h"
 #include "simplify/simplify.h"
+
 
 namespace beltrami {
 namespace {
 
-constexpr Index kLeastCoarseFaces = 10000;
+constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
+constexpr int kRotations = 2;             // ARAP rounds after the Poisson solve
+constexpr std::size_t kManyFlips = 20;    // beyond which the harmonic map is looked at too
+constexpr int kPolishIterations = 20;
+constexpr int kPolishRounds = 6;          // each ended by faces that block the steps
+
+/// What is known about the fine mesh when the coarse one is done.
+struct FineProblem {
+  CoarseDisk coarse;
+  std::vector<Vec2> coarse_uvs;
+  std::vector<RestTriangle> rest;
+  std::vector<FaceMetric> metric;
+};
 
 /// One run: times its stages, maps their progress into the whole, and cancels them.
 class Run {
@@ -36,6 +52,10 @@ class Run {
   void report(double fraction, const char* name);
 
   std::vector<Vec2> run_beltrami();
+  Index coarse_target() const;
+  std::vector<Vec2> flatten_metric(const FineProblem& fine);
+  std::vector<Vec2> flatten_dirichlet(const FineProblem& fine);
+  bool mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs);
   std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
   void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
 
@@ -94,42 +114,106 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
 }
 
 std::vector<Vec2> Run::run_beltrami() {
-  const Index target = options_.coarse_faces > 0
-                           ? static_cast<Index>(std::min<std::int64_t>(options_.coarse_faces,
-                                                                       disk_.face_count()))
-                           : std::max(kLeastCoarseFaces, static_cast<Index>(std::lround(
-                                                             kCoarseShare * disk_.face_count())));
+  const Index target = coarse_target();
   if (target >= disk_.face_count()) {
     result_.coarse_faces = disk_.face_count();
     return run_cm(disk_, "coarse", 0.9);
   }
-  CoarseDisk coarse;
-  stage("simplify", 0.15, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    coarse = simplify(disk_, target, checkpoint);
+  FineProblem fine;
+  stage("simplify", 0.12, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    fine.coarse = simplify(disk_, target, checkpoint);
   });
-  result_.coarse_faces = coarse.mesh.face_count();
-  const std::vector<Vec2> coarse_uvs = run_cm(coarse.mesh, "coarse", 0.35);
+  result_.coarse_faces = fine.coarse.mesh.face_count();
+  fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
 
-  std::vector<FaceMetric> metric;
-  stage("prolong", 0.5, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    const auto rest = rest_triangles(coarse.mesh.positions, coarse.mesh.faces, options_.threads);
-    metric = prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, rest, coarse_uvs), disk_,
-                            options_.threads, checkpoint);
+  stage("prolong", 0.37, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    const DiskMesh& mesh = fine.coarse.mesh;
+    const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
+    fine.metric = prolong_metric(mesh, face_metrics(mesh.faces, rest, fine.coarse_uvs), disk_,
+                                 options_.threads, checkpoint);
+    fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
   });
+  if (options_.flatten == BELTRAMI_FLATTEN_METRIC) {
+    std::vector<Vec2> uvs = flatten_metric(fine);
+    if (certify(disk_.faces, disk_.boundary, uvs, options_.threads).injective()) return uvs;
+    // A free boundary may overlap itself; the coarse one is simple more often than not.
+    std::vector<Vec2> fixed = flatten_dirichlet(fine);
+    const Certificate certificate =
+        certify(disk_.faces, disk_.boundary, fixed, options_.threads);
+    return certificate.injective() ? fixed : uvs;
+  }
+  return flatten_dirichlet(fine);
+}
 
+Index Run::coarse_target() const {
+  const double share = kCoarseShare * disk_.face_count();
+  const auto target = options_.coarse_faces > 0
+                          ? options_.coarse_faces
+                          : std::max(kLeastCoarseFaces, static_cast<std::int64_t>(share));
+  return static_cast<Index>(std::min<std::int64_t>(target, disk_.face_count()));
+}
+
+std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
   std::vector<Vec2> uvs;
-  std::vector<RestTriangle> rest;
   stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
-    rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
-    uvs = carry_boundary(disk_, coarse, coarse_uvs);
-    solve_harmonic(disk_, rest, metric, uvs);
+    uvs = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+    solve_harmonic(disk_, fine.rest, fine.metric, uvs);
   });
-  stage("repair", 0.95, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const RepairResult repaired = repair(disk_, rest, uvs, options_.threads, checkpoint);
-    result_.flips_before_repair = repaired.flips_before;
-    statistics.iterations = static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes);
+  mend(fine, 0.95, uvs);
+  return uvs;
+}
+
+std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
+  std::vector<Vec2> uvs;
+  std::unique_ptr<MetricLaplacian> laplacian;
+  stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    laplacian = std::make_unique<MetricLaplacian>(disk_, fine.rest, fine.metric);
+    checkpoint(0.75);
+    uvs = solve_metric(disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads);
+    const auto flips = non_positive_faces(disk_.faces, uvs, options_.threads).size();
+    if (flips <= kManyFlips) return;
+    // On extreme models the free map flips far more than the harmonic one.
+    std::vector<Vec2> harmonic = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+    solve_harmonic(disk_, fine.rest, fine.metric, harmonic);
+    if (non_positive_faces(disk_.faces, harmonic, options_.threads).size() < flips) {
+      uvs.swap(harmonic);
+    }
+  });
+  if (!mend(fine, 0.66, uvs)) return uvs;
+
+  stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    const double quarter_area = 0.25 * surface_area(disk_);
+    const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
+      return quarter_area * laplacian->solve(gradient);
+    };
+    PolishOptions polish_options;
+    polish_options.threads = options_.threads;
+    for (int round = 0; round < kPolishRounds; ++round) {
+      polish_options.max_iterations = kPolishIterations - statistics.iterations;
+      if (polish_options.max_iterations <= 0) break;
+      const PolishResult polished =
+          polish(disk_.faces, fine.rest, precondition, uvs, polish_options, [&](double) {
+            checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
+          });
+      statistics.iterations += polished.iterations();
+      clean_outliers(disk_, fine.rest, uvs, options_.threads);
+      if (!polished.blocked) break;
+    }
   });
   return uvs;
+}
+
+/// Mends flips and, where that succeeds, cleans outliers. Returns whether all faces are positive.
+bool Run::mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs) {
+  bool positive = false;
+  stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    const RepairResult repaired = repair(disk_, fine.rest, uvs, options_.threads, checkpoint);
+    result_.flips_before_repair = repaired.flips_before;
+    statistics.iterations = static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes);
+    positive = repaired.flips_after == 0;
+    if (positive) clean_outliers(disk_, fine.rest, uvs, options_.threads);
+  });
+  return positive;
 }
 
 /// Brings the map into the caller's unit (exactly: the scale is a power of two) or into the unit

@@ -24,6 +24,7 @@ struct Options {
   int max_iterations = 500;
   int threads = 1;
   bool unit_square = false;
+  std::int32_t flatten = BELTRAMI_FLATTEN_METRIC;
 };
 
 struct StageStatistics {

@@ -1,9 +1,10 @@
 #include "repair/repair.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "exact/certificate.h"
+#include "repair/patch.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -114,72 +115,18 @@ class Repair {
     return true;
   }
 
-  /// The faces within `rings` vertex rings of a face, in increasing order.
-  std::vector<Index> faces_around(Index face, int rings) const {
-    std::vector<Index> found{face}, front{face};
-    for (int ring = 0; ring < rings; ++ring) {
-      std::vector<Index> reached;
-      for (const Index f : front) {
-        for (const Index v : mesh_.faces[f]) {
-          mesh_.for_each_outgoing(v, [&](Index h) { reached.push_back(h / 3); });
-        }
-      }
-      std::sort(reached.begin(), reached.end());
-      reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
-      front.clear();
-      std::set_difference(reached.begin(), reached.end(), found.begin(), found.end(),
-                          std::back_inserter(front));
-      found.insert(found.end(), front.begin(), front.end());
-      std::sort(found.begin(), found.end());
-    }
-    return found;
-  }
-
   bool fix_patch(Index face, int rings) {
-    const std::vector<Index> patch = faces_around(face, rings);
-    std::vector<Index> vertices;
-    for (const Index f : patch) {
-      vertices.insert(vertices.end(), mesh_.faces[f].begin(), mesh_.faces[f].end());
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto local = [&](Index v) {
-      return static_cast<Index>(std::lower_bound(vertices.begin(), vertices.end(), v) -
-                                vertices.begin());
-    };
-    std::vector<Triangle> faces;
-    std::vector<RestTriangle> rest;
-    for (const Index f : patch) {
-      const Triangle& t = mesh_.faces[f];
-      faces.push_back({local(t[0]), local(t[1]), local(t[2])});
-      rest.push_back(rest_[f]);
-    }
-    std::vector<Vec2> uvs(vertices.size());
-    std::vector<bool> fixed(vertices.size(), false);
-    bool moves_boundary = false;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      uvs[i] = uvs_[vertices[i]];
-      mesh_.for_each_outgoing(vertices[i], [&](Index h) {
-        if (!std::binary_search(patch.begin(), patch.end(), h / 3)) fixed[i] = true;
-      });
-      moves_boundary = moves_boundary || (!fixed[i] && mesh_.on_boundary[vertices[i]]);
-    }
-    // A patch that is the whole mesh would drift.
-    if (std::find(fixed.begin(), fixed.end(), true) == fixed.end()) fixed[0] = true;
-    if (!untangle(faces, rest, fixed, uvs)) return false;
-    exchange(vertices, uvs);
-    if (!moves_boundary) return true;
+    Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
+    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return false;
+    patch.exchange(uvs_);
+    if (!patch.moves_boundary) return true;
     const std::int64_t crossings = count_crossings(mesh_.boundary, uvs_).count;
     if (crossings > crossings_) {
-      exchange(vertices, uvs);
+      patch.exchange(uvs_);
       return false;
     }
     crossings_ = crossings;
     return true;
-  }
-
-  void exchange(const std::vector<Index>& vertices, std::vector<Vec2>& uvs) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) std::swap(uvs_[vertices[i]], uvs[i]);
   }
 
   const DiskMesh& mesh_;

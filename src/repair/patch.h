@@ -1,0 +1,31 @@
+// A few rings of faces around a place, cut out to be optimised on their own.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+/// A piece of a mesh with its own vertex numbers. Vertices all of whose faces are in the patch may
+/// move, those on the boundary of the mesh too.
+struct Patch {
+  std::vector<Index> mesh_faces;     ///< increasing
+  std::vector<Index> mesh_vertices;  ///< per patch vertex: its number in the mesh, increasing
+  std::vector<Triangle> faces;
+  std::vector<RestTriangle> rest;
+  std::vector<bool> fixed;           ///< per patch vertex; at least one is
+  std::vector<Vec2> uvs;
+  bool moves_boundary = false;       ///< a vertex on the boundary of the mesh may move
+
+  /// Swaps the patch's UVs with those of the mesh: once to put them in, twice to undo.
+  void exchange(std::vector<Vec2>& mesh_uvs);
+};
+
+/// Cuts out the faces within `rings` vertex rings of `face`.
+Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                const std::vector<Vec2>& uvs, Index face, int rings);
+
+}  // namespace beltrami
