@@ -165,7 +165,7 @@ void draw_legend(Canvas& canvas, const EnergyScale& scale) {
   }
   for (const double t : {0.0, 0.5, 1.0}) {
     char label[32];
-    std::snprintf(label, sizeof label, "%.3g", scale.energy_at(t));
+    std::snprintf(label, sizeof label, t == 1 ? "%.4g+" : "%.3g", scale.energy_at(t));
     const double center = left + t * width;
     canvas.fill_rectangle(center - 2, top + height, center + 2, top + height + 4 * kSamples, kInk);
     draw_text(canvas, center - drawn_text_width(label) / 2, top + height + 7 * kSamples, label);
@@ -228,10 +228,10 @@ std::vector<std::array<float, 3>> smooth_normals(const MeshFile& mesh, const Vie
 Color lit(const Color& base, const Vector3& seen_normal) {
   const bool back = seen_normal[2] < 0;
   const Vector3 n = back ? -1.0 * seen_normal : seen_normal;
-  const Vector3 key = normalized({-0.5, 0.65, 0.75}, {0, 0, 1});
-  const Vector3 fill = normalized({0.8, -0.1, 0.5}, {0, 0, 1});
+  const Vector3 key = normalized({-0.4, 0.55, 0.9}, {0, 0, 1});
+  const Vector3 fill = normalized({0.8, 0.1, 0.6}, {0, 0, 1});
   const double light =
-      0.32 + 0.62 * std::max(0.0, dot(n, key)) + 0.16 * std::max(0.0, dot(n, fill));
+      0.30 + 0.58 * std::max(0.0, dot(n, key)) + 0.24 * std::max(0.0, dot(n, fill));
   const auto strength = static_cast<float>(back ? 0.45 * light : light);
   return {strength * base[0], strength * base[1], strength * base[2]};
 }

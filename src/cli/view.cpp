@@ -1,5 +1,7 @@
-// The best view is the one that shows the most surface from its front side: each candidate is
-// rasterised small with a depth buffer, and its visible front minus its visible back is counted.
+// The best view is the one that shows the most: for each candidate the mesh is rasterised small
+// with a depth buffer, and what its visible front faces weigh is added up. A face weighs its share
+// of the area, as it is seen, and its share of the bending, so that a face wins over the back of
+// the head.
 #include "view.h"
 
 #include <algorithm>
@@ -15,6 +17,8 @@ constexpr int kProbeSize = 96;
 constexpr std::size_t kManyFaces = 400000;
 /// Mean normal against area: a sphere has 0, a plane 1. Above, the model is looked at like a map.
 constexpr double kFlatness = 0.6;
+/// What all the bending of a surface weighs against all its area.
+constexpr double kBending = 0.5;
 
 struct Shape {
   Vector3 center{};  ///< weighted by area
@@ -59,32 +63,87 @@ View frame_of(const Vector3& toward, const Vector3& up) {
   return view;
 }
 
-/// Samples of visible front minus half of the visible back.
-double score(const MeshFile& mesh, const Shape& shape, const View& view) {
+Vector3 face_normal(const MeshFile& mesh, std::size_t face) {
+  const std::uint32_t* f = &mesh.faces[3 * face];
+  const Vector3 a = vertex(mesh, f[0]);
+  return 0.5 * cross(vertex(mesh, f[1]) - a, vertex(mesh, f[2]) - a);
+}
+
+/// One weight per face, 1 + kBending in total: its area, and how far its corners' normals turn.
+std::vector<float> face_weights(const MeshFile& mesh) {
+  std::vector<Vector3> normals(mesh.vertex_count(), Vector3{});
+  for (std::size_t i = 0; i < mesh.face_count(); ++i) {
+    const Vector3 normal = face_normal(mesh, i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vector3& sum = normals[mesh.faces[3 * i + k]];
+      sum = sum + normal;
+    }
+  }
+  std::vector<float> areas(mesh.face_count()), bendings(mesh.face_count());
+  double total_area = 0, total_bending = 0;
+  for (std::size_t i = 0; i < mesh.face_count(); ++i) {
+    const Vector3 normal = face_normal(mesh, i);
+    const double area = norm(normal);
+    double turn = 0;
+    for (std::size_t k = 0; k < 3 && area > 0; ++k) {
+      const Vector3 corner = normalized(normals[mesh.faces[3 * i + k]], {0, 0, 0});
+      turn += 1 - dot(corner, normal) / area;
+    }
+    areas[i] = static_cast<float>(area);
+    bendings[i] = static_cast<float>(area * turn);
+    total_area += area;
+    total_bending += area * turn;
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const double area = total_area > 0 ? areas[i] / total_area : 0;
+    const double bending = total_bending > 0 ? bendings[i] / total_bending : 0;
+    areas[i] = static_cast<float>(area + kBending * bending);
+  }
+  return areas;
+}
+
+/// What a view shows of the front, less half of what it shows of the back.
+double score(const MeshFile& mesh, const Shape& shape, const std::vector<float>& weights,
+             const View& view) {
   std::vector<float> depths(kProbeSize * kProbeSize, -std::numeric_limits<float>::infinity());
-  std::vector<signed char> sides(depths.size(), 0);
+  std::vector<bool> backs(depths.size(), false);
   const double scale = shape.radius > 0 ? kProbeSize / (2 * shape.radius) : 0;
   const auto project = [&](std::uint32_t index) {
     const Vector3 p = scale * (vertex(mesh, index) - shape.center);
     return Point{dot(p, view.right) + kProbeSize / 2.0, kProbeSize / 2.0 - dot(p, view.up),
                  dot(p, view.toward)};
   };
+  std::vector<Point> points(mesh.vertex_count());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = project(std::uint32_t(i));
   for (std::size_t i = 0; i < mesh.faces.size(); i += 3) {
-    const Point a = project(mesh.faces[i]), b = project(mesh.faces[i + 1]),
-                c = project(mesh.faces[i + 2]);
+    const Point &a = points[mesh.faces[i]], &b = points[mesh.faces[i + 1]],
+                &c = points[mesh.faces[i + 2]];
     // The canvas has y down, which turns the orientation round.
-    const bool front = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) < 0;
+    const bool back = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
     visit_triangle(a, b, c, kProbeSize, kProbeSize, [&](int x, int y, const Weights& w) {
       const auto depth = static_cast<float>(w[0] * a.depth + w[1] * b.depth + w[2] * c.depth);
       const std::size_t at = static_cast<std::size_t>(y) * kProbeSize + static_cast<std::size_t>(x);
       if (depth < depths[at]) return;
       depths[at] = depth;
-      sides[at] = front ? 1 : -1;
+      backs[at] = back;
     });
   }
   double total = 0;
-  for (const signed char side : sides) total += side > 0 ? 1.0 : 0.5 * side;
-  return total;
+  for (std::size_t i = 0; i < mesh.face_count(); ++i) {
+    const Point &a = points[mesh.faces[3 * i]], &b = points[mesh.faces[3 * i + 1]],
+                &c = points[mesh.faces[3 * i + 2]];
+    const int x = static_cast<int>((a.x + b.x + c.x) / 3),
+              y = static_cast<int>((a.y + b.y + c.y) / 3);
+    if (x < 0 || y < 0 || x >= kProbeSize || y >= kProbeSize) continue;
+    const Vector3 normal = normalized(face_normal(mesh, i), {0, 0, 0});
+    // Two samples of slack: a sloping face and its sample differ in depth.
+    const double depth = (a.depth + b.depth + c.depth) / 3 + 2;
+    const float nearest = depths[static_cast<std::size_t>(y * kProbeSize + x)];
+    if (depth >= nearest) total += weights[i] * std::max(0.0, dot(normal, view.toward));
+  }
+  const double sample_share = shape.area > 0 && scale > 0 ? 1 / (scale * scale * shape.area) : 0;
+  return total -
+         0.5 * sample_share * static_cast<double>(std::count(backs.begin(), backs.end(), true));
 }
 
 /// Models stand on y or, less often, lie with z up. A boundary below the rest, as of a bust, tells.
@@ -126,10 +185,11 @@ View choose_view(const MeshFile& mesh, const std::vector<Vector3>& boundary) {
       candidates.push_back(frame_of(std::cos(elevation) * level + std::sin(elevation) * up, up));
     }
   }
+  const std::vector<float> weights = face_weights(mesh);
   View best = candidates.front();
   double best_score = -std::numeric_limits<double>::infinity();
   for (const View& candidate : candidates) {
-    const double found = score(mesh, shape, candidate);
+    const double found = score(mesh, shape, weights, candidate);
     if (found > best_score) {
       best_score = found;
       best = candidate;
