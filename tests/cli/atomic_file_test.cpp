@@ -1,0 +1,65 @@
+// Files that appear whole or not at all.
+#include "atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include "failure.h"
+#include "temporary_directory.h"
+
+namespace beltrami::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(AtomicFile, ReplacesOnCommitOnly) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt", "old");
+  {
+    AtomicFile file(path);
+    file.write("new");
+    EXPECT_EQ(directory.read("a.txt"), "old");
+    EXPECT_EQ(directory.names().size(), 2u);
+  }
+  EXPECT_EQ(directory.read("a.txt"), "old");
+  EXPECT_EQ(directory.names().size(), 1u);
+  AtomicFile file(path);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(directory.read("a.txt"), "new");
+  EXPECT_EQ(directory.names().size(), 1u);
+}
+
+TEST(AtomicFile, FollowsLinksAndKeepsPermissions) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("real.txt", "old");
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("real.txt", directory.path("link.txt"));
+  AtomicFile file(directory.path("link.txt"));
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(directory.path("link.txt")));
+  EXPECT_EQ(directory.read("real.txt"), "new");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(AtomicFile, RefusesWhatCannotBeWritten) {
+  const TemporaryDirectory directory;
+  EXPECT_THROW(require_writable(directory.path("none/a.txt")), Failure);
+  EXPECT_THROW(require_writable(directory.path("")), Failure) << "a directory";
+  EXPECT_THROW(require_writable(""), Failure);
+  EXPECT_NO_THROW(require_writable(directory.path("a.txt")));
+  EXPECT_TRUE(directory.names().empty());
+  const std::string long_name(250, 'x');
+  EXPECT_NO_THROW(require_writable(directory.path(long_name)));
+}
+
+TEST(AtomicFile, LeavesDevicesInPlace) {
+  if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  AtomicFile file("/dev/full");
+  file.write("text");
+  EXPECT_THROW(file.commit(), Failure);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+}  // namespace
+}  // namespace beltrami::cli

@@ -1,0 +1,124 @@
+// beltrami check, end to end.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+#include "tiny_meshes.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(Check, AcceptsAnInjectiveMap) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquareWithUvs);
+  const Outcome outcome = run(
+      {"check", in, "--report", directory.path("r.json"), "--picture", directory.path("p.png")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["command"], "check");
+  EXPECT_EQ(json["status"], "BELTRAMI_OK");
+  EXPECT_EQ(json["options"]["float32"], false);
+  EXPECT_EQ(json["input"]["boundary_edges"], 4);
+  EXPECT_EQ(json["injective"]["result"], true);
+  EXPECT_TRUE(json["coarse_faces"].is_null());
+  EXPECT_EQ(json["stages"].front()["name"], "read");
+}
+
+TEST(Check, FindsFlippedFaces) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquareWithFlip);
+  const Outcome outcome = run({"check", in, "--report", directory.path("r.json")});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("NO: 1 flipped"), std::string::npos) << outcome.out;
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["status"], "BELTRAMI_NOT_INJECTIVE");
+  EXPECT_EQ(json["injective"]["negative"], 1);
+  EXPECT_EQ(json["injective"]["first_bad_face"], 1);
+}
+
+TEST(Check, FindsOverlapsOfTheBoundaryWithoutAnyFlip) {
+  // A fan around the origin that turns by more than a whole circle.
+  const TemporaryDirectory directory;
+  std::string text;
+  std::string uvs = "vt 0 0\n";
+  text += "v 0 0 0\n";
+  for (int i = 0; i <= 8; ++i) {
+    char line[96];
+    const double angle = i * 0.9;  // 7.2 in all, more than 2 pi
+    std::snprintf(line, sizeof line, "v %g %g %g\n", std::cos(angle), std::sin(angle), 0.1 * i);
+    text += line;
+    std::snprintf(line, sizeof line, "vt %g %g\n", std::cos(angle), std::sin(angle));
+    uvs += line;
+  }
+  std::string faces;
+  for (int i = 2; i <= 9; ++i) {
+    faces += "f 1/1 " + std::to_string(i) + "/" + std::to_string(i) + " " + std::to_string(i + 1) +
+             "/" + std::to_string(i + 1) + "\n";
+  }
+  const Outcome outcome = run({"check", directory.file("in.obj", text + uvs + faces), "--report",
+                               directory.path("r.json")});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["injective"]["negative"], 0);
+  EXPECT_GT(json["injective"]["boundary_crossings"], 0);
+}
+
+TEST(Check, JudgesSinglePrecisionOnRequest) {
+  // 1 + 2^-30 is 1 in single precision, where the second triangle has no area.
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0.25\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 1 1.0000000009313226\n"
+      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  const Outcome exact = run({"check", in, "--report", directory.path("r.json")});
+  EXPECT_EQ(exact.exit_code, 0);
+  EXPECT_NE(exact.out.find("NOT when rounded to float32"), std::string::npos) << exact.out;
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["injective"]["float32"], false);
+  EXPECT_EQ(run({"check", in, "--float32"}).exit_code, 3);
+}
+
+TEST(Check, ReadsTheNamesThatPlyWritersUse) {
+  for (const std::string names : {"s t", "u v", "texture_u texture_v"}) {
+    const TemporaryDirectory directory;
+    const std::size_t blank = names.find(' ');
+    const std::string in = directory.file(
+        "in.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float " +
+            names.substr(0, blank) + "\nproperty float " + names.substr(blank + 1) +
+            "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+    EXPECT_EQ(run({"check", in}).exit_code, 0) << names;
+  }
+}
+
+TEST(Check, RefusesWhatItCannotJudge) {
+  const TemporaryDirectory directory;
+  const std::string seam =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\n"
+      "f 1/1 2/2 3/3\nf 1/1 3/5 4/4\n";
+  const std::string nan_uv = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt nan 1\nf 1/1 2/2 3/3\n";
+  for (const auto& [what, text, word] :
+       {std::tuple<std::string, std::string, std::string>{"seam", seam, "vertex 2"},
+        {"no UVs", kSquare, "no texture coordinates"},
+        {"NaN", nan_uv, "vertex 2"},
+        {"two components",
+         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 5 0\n"
+         "vt 6 0\nvt 5 1\nf 1/1 2/2 3/3\nf 4/4 5/5 6/6\n",
+         "face 1"}}) {
+    const std::string in = directory.file("in.obj", text);
+    const Outcome outcome = run({"check", in});
+    EXPECT_EQ(outcome.exit_code, 2) << what;
+    EXPECT_EQ(outcome.err_lines(), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("beltrami: " + in + ": ", 0), 0u) << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(run({"check", directory.file("in.stl", "solid\nendsolid\n")}).exit_code, 2);
+  EXPECT_EQ(run({"check", directory.path("none.obj")}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace beltrami::cli

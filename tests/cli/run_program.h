@@ -1,0 +1,58 @@
+// Runs the program as a script would.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "temporary_directory.h"
+
+namespace beltrami::cli {
+
+struct Outcome {
+  int exit_code = -1;  ///< -1 for a death by signal
+  std::string out, err;
+
+  int err_lines() const { return static_cast<int>(std::count(err.begin(), err.end(), '\n')); }
+};
+
+/// Starts the program with its output in the files "out" and "err" of a directory of its own.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BELTRAMI_PROGRAM);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const std::string out = directory_.path("out"), err = directory_.path("err");
+    child_ = fork();
+    if (child_ != 0) return;
+    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
+    execv(pointers[0], pointers.data());
+    _exit(127);
+  }
+
+  pid_t id() const { return child_; }
+
+  Outcome wait() {
+    int status = 0;
+    waitpid(child_, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, directory_.read("out"),
+            directory_.read("err")};
+  }
+
+ private:
+  TemporaryDirectory directory_;
+  pid_t child_ = -1;
+};
+
+inline Outcome run(std::vector<std::string> arguments) {
+  return Program(std::move(arguments)).wait();
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,81 @@
+// Options, reports and the progress line.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "options.h"
+#include "progress_bar.h"
+#include "report.h"
+
+namespace beltrami::cli {
+namespace {
+
+Option number_option(std::int32_t type, double minimum, double maximum) {
+  Option option;
+  option.info.type = type;
+  option.info.minimum = minimum;
+  option.info.maximum = maximum;
+  return option;
+}
+
+TEST(ParseOption, TakesWholeNumbersInRange) {
+  Option option = number_option(BELTRAMI_TYPE_INT, 0, 100);
+  EXPECT_EQ(parse_option("010", option), "");
+  EXPECT_EQ(option.integer, 10) << "not octal";
+  for (const char* text : {"", "1.5", "101", "-1", "7x", "99999999999999999999", "0x10"}) {
+    EXPECT_EQ(parse_option(text, option),
+              "'" + std::string(text) + "' is not a whole number from 0 to 100");
+    EXPECT_EQ(option.integer, 10) << "the old value stays";
+  }
+}
+
+TEST(ParseOption, TakesNumbersInRange) {
+  Option option = number_option(BELTRAMI_TYPE_FLOAT, 0, 1);
+  EXPECT_EQ(parse_option("1e-4", option), "");
+  EXPECT_EQ(option.real, 1e-4);
+  for (const char* text : {"nan", "inf", "1,5", "2"}) EXPECT_NE(parse_option(text, option), "");
+}
+
+TEST(ParseOption, TakesNamedChoices) {
+  Option option = number_option(BELTRAMI_TYPE_CHOICE, 0, 1);
+  option.choices = {"red", "green"};
+  EXPECT_EQ(parse_option("green", option), "");
+  EXPECT_EQ(option.integer, 1);
+  EXPECT_EQ(parse_option("blue", option), "'blue' is not one of red, green");
+}
+
+TEST(Options, HaveTheLibrarysDefaults) {
+  const Options options;
+  EXPECT_EQ(options.to_json()["method"], "beltrami");
+  EXPECT_EQ(options.to_json()["unit-square"], false);
+  EXPECT_GT(options.to_json()["tolerance"], 0.0);
+}
+
+TEST(Report, NeverHoldsNumbersThatJsonHasNot) {
+  Report report;
+  report.input_path = "\xFF.obj";
+  report.area = std::numeric_limits<double>::infinity();
+  report.energy.emplace();
+  report.energy->symmetric_dirichlet = std::numeric_limits<double>::quiet_NaN();
+  report.energy->worst_face = BELTRAMI_NO_ELEMENT;
+  const auto json = nlohmann::json::parse(to_json(report));
+  EXPECT_TRUE(json["input"]["area"].is_null());
+  EXPECT_TRUE(json["energy"]["symmetric_dirichlet"].is_null());
+  EXPECT_TRUE(json["energy"]["worst_face"].is_null());
+  EXPECT_TRUE(json["injective"].is_null());
+}
+
+TEST(ProgressLine, IsShortAndBounded) {
+  EXPECT_EQ(progress_line(0.5, "flatten", 3.2),
+            "flatten    [###############...............]  50%     3.2 s");
+  for (const double fraction : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(progress_line(fraction, "a stage with a long name", 1).size(), 59u);
+  }
+}
+
+TEST(OneLine, HasNoControlCharacters) {
+  EXPECT_EQ(one_line("a\nb\r\x1b[2K"), "a b  [2K");
+}
+
+}  // namespace
+}  // namespace beltrami::cli
