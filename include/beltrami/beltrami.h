@@ -150,7 +150,8 @@ enum {
   BELTRAMI_OPTION_MAX_ITERATIONS = 4, /* int: limit of CM iterations */
   BELTRAMI_OPTION_THREADS = 5,        /* int: threads to use; the result does not depend on it */
   BELTRAMI_OPTION_UNIT_SQUARE = 6,    /* int: 1 scales and shifts the UVs into [0,1]^2 */
-  BELTRAMI_OPTION_FLATTEN = 7         /* choice: BELTRAMI_FLATTEN_ */
+  BELTRAMI_OPTION_FLATTEN = 7,        /* choice: BELTRAMI_FLATTEN_ */
+  BELTRAMI_OPTION_INJECTIVITY = 8     /* choice: BELTRAMI_INJECTIVITY_ */
 };
 
 enum {
@@ -171,6 +172,15 @@ enum {
   /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster, and
    * 0.3% to 3% higher in energy. */
   BELTRAMI_FLATTEN_DIRICHLET = 1
+};
+
+/* What the optimisation sees to. The certificate always judges global injectivity. */
+enum {
+  BELTRAMI_INJECTIVITY_FORCE_SIGNED_ = -1,
+  /* No flips, and no part of the boundary may cross another. */
+  BELTRAMI_INJECTIVITY_GLOBAL = 0,
+  /* No flips; the boundary may overlap itself, at a slightly lower energy. */
+  BELTRAMI_INJECTIVITY_LOCAL = 1
 };
 
 enum {

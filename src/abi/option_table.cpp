@@ -10,6 +10,7 @@ namespace {
 
 constexpr const char* kMethods[] = {"beltrami", "cm", "tutte"};
 constexpr const char* kFlattens[] = {"metric", "dirichlet"};
+constexpr const char* kInjectivities[] = {"global", "local"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet"};
 
 template <auto Member>
@@ -81,6 +82,11 @@ const OptionEntry kOptions[] = {
      "a polish) or dirichlet (harmonic, boundary from the coarse map: faster, energy a little "
      "higher).",
      0, std::size(kFlattens) - 1, kFlattens, get<&Options::flatten>, set<&Options::flatten>},
+    {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_TYPE_CHOICE, "injectivity",
+     "What the optimisation sees to: global (no flips, no boundary crossings) or local (no flips: "
+     "parts may overlap, at a slightly lower energy).",
+     0, std::size(kInjectivities) - 1, kInjectivities, get<&Options::injectivity>,
+     set<&Options::injectivity>},
 };
 
 std::string number(double value) {

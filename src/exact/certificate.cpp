@@ -36,9 +36,9 @@ class PolygonCrossings {
     }
   }
 
-  Crossings count() {
+  std::vector<std::array<Index, 2>> find() {
     visit_within(1);
-    return found_;
+    return std::move(found_);
   }
 
  private:
@@ -71,8 +71,7 @@ class PolygonCrossings {
     if (f_follows) illegal = folds_back(start(e), end(e), end(f));
     if (e_follows) illegal = illegal || folds_back(start(f), end(f), end(e));
     if (!f_follows && !e_follows) illegal = segments_meet(e, f);
-    if (!illegal) return;
-    if (found_.count++ == 0) found_.first_pair = {loop_[e], loop_[f]};
+    if (illegal) found_.push_back({e, f});
   }
 
   /// Whether the edges a-b and b-c, which share b, overlap in more than b.
@@ -97,7 +96,7 @@ class PolygonCrossings {
   Index edge_count_;
   Index leaf_count_ = 1;
   std::vector<Box> boxes_;
-  Crossings found_;
+  std::vector<std::array<Index, 2>> found_;
 };
 
 }  // namespace
@@ -135,8 +134,16 @@ Orientations count_orientations(const std::vector<Triangle>& faces, const std::v
   return counts;
 }
 
+std::vector<std::array<Index, 2>> find_crossings(const std::vector<Index>& loop,
+                                                 const std::vector<Vec2>& uvs) {
+  return PolygonCrossings(loop, uvs).find();
+}
+
 Crossings count_crossings(const std::vector<Index>& loop, const std::vector<Vec2>& uvs) {
-  return PolygonCrossings(loop, uvs).count();
+  const auto pairs = find_crossings(loop, uvs);
+  Crossings crossings{static_cast<std::int64_t>(pairs.size()), {kNone, kNone}};
+  if (!pairs.empty()) crossings.first_pair = {loop[pairs[0][0]], loop[pairs[0][1]]};
+  return crossings;
 }
 
 Certificate certify(const std::vector<Triangle>& faces, const std::vector<Index>& loop,

@@ -47,6 +47,11 @@ std::vector<Index> non_positive_faces(const std::vector<Triangle>& faces,
 /// polygons that are not pathologically nested.
 Crossings count_crossings(const std::vector<Index>& loop, const std::vector<Vec2>& uvs);
 
+/// The pairs that count_crossings counts, as positions in the loop: edge i runs from loop[i] to
+/// loop[i + 1].
+std::vector<std::array<Index, 2>> find_crossings(const std::vector<Index>& loop,
+                                                 const std::vector<Vec2>& uvs);
+
 /// Both tests. Precondition: `faces` form one oriented manifold disk with boundary `loop`.
 Certificate certify(const std::vector<Triangle>& faces, const std::vector<Index>& loop,
                     const std::vector<Vec2>& uvs, int threads);

@@ -29,13 +29,32 @@ std::array<Complex, 3> target_corners(const RestTriangle& rest, const FaceMetric
   return corners;
 }
 
+/// The unit complex per face that turns its target closest to the present map.
+void fit_rotations(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                   const std::vector<FaceMetric>& metric, const std::vector<Vec2>& uvs, int threads,
+                   std::vector<Complex>& rotation) {
+  parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = mesh.faces[f];
+      const auto weights = edge_weights(rest[f], metric[f]);
+      const auto corners = target_corners(rest[f], metric[f]);
+      Complex fit = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int i = next_corner(k), j = previous_corner(k);
+        const Vec2 edge = uvs[t[i]] - uvs[t[j]];
+        fit += weights[k] * Complex(edge.x(), edge.y()) * std::conj(corners[i] - corners[j]);
+      }
+      if (std::abs(fit) > 0) rotation[f] = fit / std::abs(fit);
+    }
+  });
+}
+
 }  // namespace
 
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                 const std::vector<FaceMetric>& metric)
+                                 const std::vector<FaceMetric>& metric,
+                                 const std::vector<bool>& held)
     : solver_(make_spd_solver()) {
-  std::vector<bool> held(mesh.vertex_count(), false);
-  held[mesh.boundary.front()] = true;
   MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, held, 1);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto weights = edge_weights(rest[f], metric[f]);
@@ -49,6 +68,7 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
   }
   row_ = laplacian.rows();
   free_count_ = laplacian.free_count();
+  if (free_count_ == 0) return;
   solver_->analyze(laplacian.matrix());
   if (!solver_->factorize(laplacian.matrix())) {
     throw Error(BELTRAMI_E_SOLVER,
@@ -58,6 +78,7 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
 }
 
 DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
+  if (free_count_ == 0) return DenseMatrix::Zero(rhs.rows(), rhs.cols());
   DenseMatrix packed(free_count_, rhs.cols());
   for (Index v = 0; v < size_of(row_); ++v) {
     if (row_[v] != kNone) packed.row(row_[v]) = rhs.row(v);
@@ -70,43 +91,30 @@ DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
   return result;
 }
 
-std::vector<Vec2> solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                               const std::vector<FaceMetric>& metric,
-                               const MetricLaplacian& laplacian, int rotations, int threads,
-                               const Checkpoint& checkpoint) {
+void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  const std::vector<FaceMetric>& metric, const MetricLaplacian& laplacian,
+                  int rotations, int threads, std::vector<Vec2>& uvs,
+                  const Checkpoint& checkpoint) {
   std::vector<Complex> rotation(mesh.face_count(), Complex(1));
-  std::vector<Vec2> uvs(mesh.vertex_count());
-  for (int round = 0;; ++round) {
-    checkpoint((round + 0.5) / (rotations + 1));
-    DenseMatrix rhs = DenseMatrix::Zero(mesh.vertex_count(), 2);
+  for (int round = 0; round <= rotations; ++round) {
+    checkpoint(static_cast<double>(round) / (rotations + 1));
+    if (round > 0) fit_rotations(mesh, rest, metric, uvs, threads, rotation);
+    // The residual of the present map, so that held vertices need no treatment of their own.
+    DenseMatrix residual = DenseMatrix::Zero(mesh.vertex_count(), 2);
     for (Index f = 0; f < mesh.face_count(); ++f) {
+      const Triangle& t = mesh.faces[f];
       const auto weights = edge_weights(rest[f], metric[f]);
       const auto corners = target_corners(rest[f], metric[f]);
       for (int k = 0; k < 3; ++k) {
         const int i = next_corner(k), j = previous_corner(k);
-        const Complex edge = weights[k] * rotation[f] * (corners[i] - corners[j]);
-        const Eigen::RowVector2d term(edge.real(), edge.imag());
-        rhs.row(mesh.faces[f][i]) += term;
-        rhs.row(mesh.faces[f][j]) -= term;
+        const Complex edge = rotation[f] * (corners[i] - corners[j]);
+        const Vec2 term = weights[k] * (Vec2(edge.real(), edge.imag()) - (uvs[t[i]] - uvs[t[j]]));
+        residual.row(t[i]) += term.transpose();
+        residual.row(t[j]) -= term.transpose();
       }
     }
-    const DenseMatrix solution = laplacian.solve(rhs);
-    for (Index v = 0; v < mesh.vertex_count(); ++v) uvs[v] = solution.row(v).transpose();
-    if (round == rotations) return uvs;
-
-    parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t f = begin; f < end; ++f) {
-        const auto weights = edge_weights(rest[f], metric[f]);
-        const auto corners = target_corners(rest[f], metric[f]);
-        Complex fit = 0;
-        for (int k = 0; k < 3; ++k) {
-          const int i = next_corner(k), j = previous_corner(k);
-          const Vec2 edge = uvs[mesh.faces[f][i]] - uvs[mesh.faces[f][j]];
-          fit += weights[k] * Complex(edge.x(), edge.y()) * std::conj(corners[i] - corners[j]);
-        }
-        if (std::abs(fit) > 0) rotation[f] = fit / std::abs(fit);
-      }
-    });
+    const DenseMatrix change = laplacian.solve(residual);
+    for (Index v = 0; v < mesh.vertex_count(); ++v) uvs[v] += change.row(v).transpose();
   }
 }
 

@@ -1,5 +1,6 @@
 // The fine map from the whole prolonged metric: one Poisson solve, rotations re-fitted with the same
-// factor. Free boundary: nothing is taken from the coarse map but its metric.
+// factor. Free boundary: nothing is taken from the coarse map but its metric, and the places of
+// vertices that are held on purpose.
 #pragma once
 
 #include <memory>
@@ -15,16 +16,16 @@
 
 namespace beltrami {
 
-/// The Laplacian of a prolonged metric, weighted by 3D area, with one vertex held, and its factor.
+/// The Laplacian of a prolonged metric, weighted by 3D area, with some vertices held, and its factor.
 /// 1/4 of the inverse times the total area approximates the inverse Hessian of the mean symmetric
 /// Dirichlet energy at a map that has the metric, so the same factor preconditions the polish.
 class MetricLaplacian {
  public:
-  /// Assembles and factorizes. Throws Error SOLVER.
+  /// Assembles and factorizes. `held`: per vertex; at least one must be. Throws Error SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric);
+                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held);
 
-  /// Solves L x = rhs; both one row per vertex, x zero at the held vertex.
+  /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
 
  private:
@@ -35,10 +36,11 @@ class MetricLaplacian {
 
 /// Minimises the area-weighted relative deviation from the target edges X z + Y conj(z) of every
 /// face (Y = mu X), then alternates `rotations` times between the best rotation of each target
-/// (Liu et al. 2008, local step) and a solve. Returns one UV per vertex; faces may be flipped.
-std::vector<Vec2> solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                               const std::vector<FaceMetric>& metric,
-                               const MetricLaplacian& laplacian, int rotations, int threads,
-                               const Checkpoint& checkpoint = no_checkpoint);
+/// (Liu et al. 2008, local step) and a solve. `uvs`, one per vertex, is changed in place; vertices
+/// that `laplacian` holds keep their place, of the others nothing is used. Faces may be flipped.
+void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  const std::vector<FaceMetric>& metric, const MetricLaplacian& laplacian,
+                  int rotations, int threads, std::vector<Vec2>& uvs,
+                  const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

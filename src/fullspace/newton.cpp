@@ -27,12 +27,19 @@ NewtonResult minimise_energy(const std::vector<Triangle>& faces,
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
   int proxy_steps = options.proxy_steps;
+  std::vector<Vec2> admitted;
   while (!result.converged && result.iterations() < options.max_iterations) {
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
+    if (options.admissible) admitted = uvs;
     const NewtonStep step =
         proxy ? stepper.step_with(SymmetricDirichletProxy{}, uvs, before) : stepper.step(uvs, before);
+    if (step.length > 0 && options.admissible && !options.admissible(uvs)) {
+      uvs.swap(admitted);
+      result.refused = true;
+      break;
+    }
     if (step.length > 0) result.energies.push_back(step.energy);
     if (proxy) {
       proxy_steps = step.length > 0 ? proxy_steps - 1 : 0;

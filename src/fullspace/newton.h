@@ -3,6 +3,7 @@
 // SLIM (Rabinovich et al. 2017).
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -19,11 +20,15 @@ struct NewtonOptions {
   /// save a third of all steps on ordinary meshes, and on hard ones make the difference between 75
   /// steps and none that helps. 0: composite majorization alone.
   int proxy_steps = 5;
+  /// Judges the map after each step; a refused step is taken back and ends the run. For instance:
+  /// the boundary is still simple. Anything goes by default.
+  std::function<bool(const std::vector<Vec2>& uvs)> admissible;
 };
 
 struct NewtonResult {
   std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
   bool converged = false;
+  bool refused = false;          ///< ended by a step that was not admissible
 
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };

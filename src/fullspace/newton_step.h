@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -22,7 +24,8 @@ struct NewtonStep {
   double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model
 };
 
-/// Newton's method on the mean of a density over `faces`, weighted by rest area. A Density has
+/// Newton's method on the weighted mean of a density over `faces`: by rest area, or by `weights`, one
+/// per face, divided by the sum of the first `counted` of them. A Density has
 /// value(s1, s2), model(s1, s2) and `kBarrier`: whether it is infinite at s2 = 0, so that steps must
 /// stop short of singular faces. Keeps references to `faces` and `rest`.
 template <class Density>
@@ -30,23 +33,36 @@ class NewtonStepper {
  public:
   NewtonStepper(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                 const std::vector<bool>& fixed, int threads, Density density = {})
+      : NewtonStepper(faces, rest, area_weights(rest), size_of(faces), fixed, threads, density) {}
+
+  NewtonStepper(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                std::vector<double> weights, Index counted, const std::vector<bool>& fixed,
+                int threads, Density density = {})
       : faces_(faces),
         rest_(rest),
+        weights_(std::move(weights)),
         threads_(threads),
         density_(density),
         hessian_(static_cast<Index>(fixed.size()), faces, fixed, 2),
         solver_(make_spd_solver()) {
-    for (const RestTriangle& r : rest) total_area_ += r.area();
+    double total = 0;
+    for (Index f = 0; f < counted; ++f) total += weights_[f];
+    for (double& w : weights_) w /= total;
     if (free_count() > 0) solver_->analyze(hessian_.matrix());
   }
 
   Index free_count() const { return hessian_.free_count(); }
   void set_density(const Density& density) { density_ = density; }
+  /// What a step must not break, besides the energy; anything goes by default.
+  void set_accept(std::function<bool(const std::vector<Vec2>&)> accept) {
+    accept_ = std::move(accept);
+  }
 
   /// Infinite if a face is not positive under a barrier density.
   double mean_energy(const std::vector<Vec2>& uvs) const;
 
   /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
+  /// A step that is not accepted is halved further, like one that does not lower the energy.
   /// Throws Error SOLVER if no shift makes the system definite.
   NewtonStep step(std::vector<Vec2>& uvs, double energy) { return step_with(density_, uvs, energy); }
 
@@ -63,16 +79,22 @@ class NewtonStepper {
   static constexpr double kLargestShift = 1e-3;
   static constexpr int kMaxHalvings = 60;
 
+  static std::vector<double> area_weights(const std::vector<RestTriangle>& rest) {
+    std::vector<double> weights(rest.size());
+    for (std::size_t f = 0; f < rest.size(); ++f) weights[f] = rest[f].area();
+    return weights;
+  }
   void factorize();
 
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
+  std::vector<double> weights_;
   const int threads_;
   Density density_;
-  double total_area_ = 0;
   MeshMatrix hessian_;
   std::unique_ptr<SpdSolver> solver_;
   Eigen::VectorXd gradient_;
+  std::function<bool(const std::vector<Vec2>&)> accept_;
 };
 
 template <class Density>
@@ -84,11 +106,11 @@ double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
       const SingularValues s =
           singular_values(linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
       if (Density::kBarrier && !(s.s2 > 0)) return std::numeric_limits<double>::infinity();
-      sum += rest_[f].area() * density_.value(s.s1, s.s2);
+      sum += weights_[f] * density_.value(s.s1, s.s2);
     }
     return sum;
   };
-  return parallel_sum(threads_, size_of(faces_), kGrain, part) / total_area_;
+  return parallel_sum(threads_, size_of(faces_), kGrain, part);
 }
 
 /// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
@@ -112,8 +134,7 @@ template <class Model>
 NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
                                              double energy) {
   assemble(
-      faces_, rest_, uvs, model, [&](Index f) { return rest_[f].area() / total_area_; },
-      threads_, hessian_, gradient_);
+      faces_, rest_, uvs, model, [&](Index f) { return weights_[f]; }, threads_, hessian_, gradient_);
   factorize();
   const Eigen::VectorXd flat = solver_->solve(-gradient_);
   NewtonStep result;
@@ -133,7 +154,8 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
     const double trial_energy = mean_energy(trial);
-    if (trial_energy <= energy - kArmijo * length * result.predicted) {
+    if (trial_energy <= energy - kArmijo * length * result.predicted &&
+        (!accept_ || accept_(trial))) {
       uvs.swap(trial);
       result.length = length;
       result.energy = trial_energy;

@@ -10,6 +10,7 @@
 #include "flatten/metric.h"
 #include "flatten/polish.h"
 #include "fullspace/newton.h"
+#include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
 #include "mesh/rest_shape.h"
 #include "repair/outliers.h"
@@ -26,6 +27,8 @@ constexpr int kRotations = 2;             // ARAP rounds after the Poisson solve
 constexpr std::size_t kManyFlips = 20;    // beyond which the harmonic map is looked at too
 constexpr int kPolishIterations = 20;
 constexpr int kPolishRounds = 6;          // each ended by faces that block the steps
+constexpr double kFirstReach = 0.01;      // of the boundary length, held on both sides of a crossing
+constexpr double kReachGrowth = 3;
 
 /// What is known about the fine mesh when the coarse one is done.
 struct FineProblem {
@@ -55,6 +58,10 @@ class Run {
   Index coarse_target() const;
   std::vector<Vec2> flatten_metric(const FineProblem& fine);
   std::vector<Vec2> flatten_dirichlet(const FineProblem& fine);
+  void hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                 std::vector<bool>& held) const;
+  std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
+                                     const std::vector<bool>& held, bool global);
   bool mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs);
   std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
   void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
@@ -91,8 +98,9 @@ void Run::report(double fraction, const char* name) {
   }
 }
 
-/// Tutte's embedding, then composite majorization. A start that is folded in floating point is
-/// mended first; if it cannot be, it is returned as it is, and the certificate will say so.
+/// Tutte's embedding, then composite majorization; with a scaffold from the first step on that would
+/// make the boundary cross itself. A start that is folded in floating point is mended first; if it
+/// cannot be, it is returned as it is, and the certificate will say so.
 std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until) {
   std::vector<Vec2> uvs;
   stage(name, until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
@@ -104,10 +112,22 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     for (Vec2& w : uvs) w *= scale;
     std::vector<bool> fixed(mesh.vertex_count(), false);
     fixed[mesh.boundary.front()] = true;
-    const NewtonOptions newton{options_.tolerance, options_.max_iterations, options_.threads};
-    const NewtonResult done =
-        minimise_energy(mesh.faces, rest, fixed, uvs, newton, checkpoint);
+    NewtonOptions newton;
+    newton.tolerance = options_.tolerance;
+    newton.max_iterations = options_.max_iterations;
+    newton.threads = options_.threads;
+    if (options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL) {
+      newton.admissible = [&](const std::vector<Vec2>& map) {
+        return count_crossings(mesh.boundary, map).count == 0;
+      };
+    }
+    NewtonResult done = minimise_energy(mesh.faces, rest, fixed, uvs, newton, checkpoint);
     statistics.iterations = done.iterations();
+    if (done.refused) {
+      newton.max_iterations -= done.iterations();
+      done = minimise_with_scaffold(mesh, rest, uvs, newton, checkpoint);
+      statistics.iterations += done.iterations();
+    }
     if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   });
   return uvs;
@@ -133,15 +153,7 @@ std::vector<Vec2> Run::run_beltrami() {
                                  options_.threads, checkpoint);
     fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
   });
-  if (options_.flatten == BELTRAMI_FLATTEN_METRIC) {
-    std::vector<Vec2> uvs = flatten_metric(fine);
-    if (certify(disk_.faces, disk_.boundary, uvs, options_.threads).injective()) return uvs;
-    // A free boundary may overlap itself; the coarse one is simple more often than not.
-    std::vector<Vec2> fixed = flatten_dirichlet(fine);
-    const Certificate certificate =
-        certify(disk_.faces, disk_.boundary, fixed, options_.threads);
-    return certificate.injective() ? fixed : uvs;
-  }
+  if (options_.flatten == BELTRAMI_FLATTEN_METRIC) return flatten_metric(fine);
   return flatten_dirichlet(fine);
 }
 
@@ -163,23 +175,68 @@ std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
   return uvs;
 }
 
+/// The metric solve and its polish. A free boundary may cross itself: then the boundary near the
+/// crossings is held where the coarse map has it, further around in each round, up to the whole of
+/// it. (The coarse boundary is simple, or there is nothing to hold on to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
+  const std::vector<Vec2> carried = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+  const bool global = options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL &&
+                      count_crossings(disk_.boundary, carried).count == 0;
+  std::vector<bool> held(disk_.vertex_count(), false);
+  held[disk_.boundary.front()] = true;
   std::vector<Vec2> uvs;
+  for (double reach = kFirstReach;; reach *= kReachGrowth) {
+    uvs = solve_and_polish(fine, carried, held, global);
+    if (!global) return uvs;
+    const auto crossings = find_crossings(disk_.boundary, uvs);
+    if (crossings.empty()) return uvs;
+    if (reach > 1) break;
+    hold_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, held);
+  }
+  return flatten_dirichlet(fine);
+}
+
+/// Holds the boundary vertices within `reach` times the boundary length of the given edges.
+void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                    std::vector<bool>& held) const {
+  const Index count = size_of(disk_.boundary);
+  std::vector<double> along(count + 1, 0);
+  for (Index i = 0; i < count; ++i) {
+    const Index a = disk_.boundary[i], b = disk_.boundary[i + 1 == count ? 0 : i + 1];
+    along[i + 1] = along[i] + (disk_.positions[b] - disk_.positions[a]).norm();
+  }
+  const double length = along[count];
+  for (const auto& pair : edges) {
+    for (const Index edge : pair) {
+      for (Index i = 0; i < count; ++i) {
+        const double apart = std::abs(along[i] - along[edge]);
+        if (std::min(apart, length - apart) <= reach * length) held[disk_.boundary[i]] = true;
+      }
+      held[disk_.boundary[edge]] = held[disk_.boundary[edge + 1 == count ? 0 : edge + 1]] = true;
+    }
+  }
+}
+
+std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
+                                        const std::vector<bool>& held, bool global) {
+  std::vector<Vec2> uvs = carried;
   std::unique_ptr<MetricLaplacian> laplacian;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    laplacian = std::make_unique<MetricLaplacian>(disk_, fine.rest, fine.metric);
+    laplacian = std::make_unique<MetricLaplacian>(disk_, fine.rest, fine.metric, held);
     checkpoint(0.75);
-    uvs = solve_metric(disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads);
+    solve_metric(disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
     const auto flips = non_positive_faces(disk_.faces, uvs, options_.threads).size();
     if (flips <= kManyFlips) return;
     // On extreme models the free map flips far more than the harmonic one.
-    std::vector<Vec2> harmonic = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+    std::vector<Vec2> harmonic = carried;
     solve_harmonic(disk_, fine.rest, fine.metric, harmonic);
     if (non_positive_faces(disk_.faces, harmonic, options_.threads).size() < flips) {
       uvs.swap(harmonic);
     }
   });
   if (!mend(fine, 0.66, uvs)) return uvs;
+  // Polishing a map that crosses itself already would be in vain.
+  if (global && count_crossings(disk_.boundary, uvs).count > 0) return uvs;
 
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const double quarter_area = 0.25 * surface_area(disk_);

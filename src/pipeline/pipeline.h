@@ -25,6 +25,7 @@ struct Options {
   int threads = 1;
   bool unit_square = false;
   std::int32_t flatten = BELTRAMI_FLATTEN_METRIC;
+  std::int32_t injectivity = BELTRAMI_INJECTIVITY_GLOBAL;
 };
 
 struct StageStatistics {
