@@ -153,7 +153,8 @@ int check_command(const CheckArguments& arguments) {
   report.command = "check";
   report.input_path = arguments.input;
   report.options = {{"float32", arguments.float32}};
-  return run_guarded(report, arguments.report, [&] { return Check(arguments, report).run(); });
+  return run_guarded(report, arguments.report, {arguments.input, arguments.picture},
+                     [&] { return Check(arguments, report).run(); });
 }
 
 }  // namespace beltrami::cli

@@ -78,31 +78,41 @@ void require_ok(beltrami_status status, const std::string& path, const char* mes
   throw Failure(status, text, element_kind, element);
 }
 
-void require_distinct(const std::vector<std::string>& paths) {
+bool same_file(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
+  if (a.empty() || b.empty()) return false;
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  // Files that are yet to be written are compared by name.
+  const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
+  return first == fs::weakly_canonical(fs::absolute(b, error), error) && !error;
+}
+
+void require_distinct(const std::vector<std::string>& paths) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      std::error_code error;
-      if (paths[i].empty() || paths[j].empty()) continue;
-      const bool same =
-          fs::weakly_canonical(paths[i], error) == fs::weakly_canonical(paths[j], error);
-      if (same && !error) throw Failure(paths[i] + ": one file is named for two purposes");
+      if (same_file(paths[i], paths[j])) {
+        throw Failure(paths[i] + ": one file is named for two purposes");
+      }
     }
   }
 }
 
-int run_guarded(Report& report, const std::string& report_path, const std::function<int()>& body) {
+int run_guarded(Report& report, const std::string& report_path,
+                const std::vector<std::string>& others, const std::function<int()>& body) {
+  std::string path = report_path;
+  for (const std::string& other : others) {
+    if (same_file(report_path, other)) path.clear();
+  }
   try {
     return body();
   } catch (const Failure& failure) {
-    return fail(report, report_path, failure);
+    return fail(report, path, failure);
   } catch (const std::bad_alloc&) {
-    return fail(
-        report, report_path,
-        Failure(BELTRAMI_E_OUT_OF_MEMORY,
-                report.input_path + ": " + beltrami_status_advice(BELTRAMI_E_OUT_OF_MEMORY)));
+    const std::string advice = beltrami_status_advice(BELTRAMI_E_OUT_OF_MEMORY);
+    return fail(report, path, Failure(BELTRAMI_E_OUT_OF_MEMORY, report.input_path + ": " + advice));
   } catch (const std::exception& error) {
-    return fail(report, report_path,
+    return fail(report, path,
                 Failure(BELTRAMI_E_INTERNAL, report.input_path + ": " + error.what()));
   }
 }

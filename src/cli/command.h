@@ -41,12 +41,16 @@ bool injective_in_float32(const MeshFile& file, const std::vector<double>& uvs);
 void require_ok(beltrami_status status, const std::string& path, const char* message,
                 std::int32_t element_kind, std::uint64_t element);
 
-/// Throws Failure if two of the paths (the first may be an input) are the same file.
+/// Whether two paths lead to one file; "" is no path.
+bool same_file(const std::string& a, const std::string& b);
+
+/// Throws Failure if two of the paths are the same file.
 void require_distinct(const std::vector<std::string>& paths);
 
 /// Runs `body`, which returns the exit code. Its failures become one line on stderr, an exit code,
-/// and a report at `report_path` (unless that is "").
-int run_guarded(Report& report, const std::string& report_path, const std::function<int()>& body);
+/// and a report at `report_path`, unless that is "" or one of `others`, which must not be lost.
+int run_guarded(Report& report, const std::string& report_path,
+                const std::vector<std::string>& others, const std::function<int()>& body);
 
 /// Seconds since the program started.
 double seconds_so_far();

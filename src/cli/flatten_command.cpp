@@ -173,6 +173,7 @@ int flatten_command(const FlattenArguments& arguments, const Options& options) {
   report.options = options.to_json();
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
   return run_guarded(report, arguments.report,
+                     {arguments.input, arguments.output, arguments.picture},
                      [&] { return Flattening(arguments, options, report).run(); });
 }
 

@@ -63,6 +63,12 @@ class ObjReader {
     if (!cursor_.at_line_end()) fail_corners(4);
   }
 
+  /// After a slash: whether something stands there. Some writers leave slashes behind nothing.
+  bool names_number() const {
+    const char c = cursor_.peek();
+    return c != '/' && c != ' ' && c != '\t' && c != '\r' && !cursor_.at_line_end();
+  }
+
   /// v, v/vt, v//vn or v/vt/vn.
   void read_corner() {
     const auto face = mesh_.faces.size() / 3;
@@ -71,7 +77,7 @@ class ObjReader {
     std::uint32_t texture = kNoTexture;
     if (cursor_.peek() == '/') {
       cursor_.advance();
-      if (cursor_.peek() != '/') {
+      if (names_number()) {
         const std::int64_t number = cursor_.integer("a texture number");
         if (content_ == Content::kUvs) {
           texture = resolve(number, textures_.size() / 2, "texture coordinate", face);
@@ -79,7 +85,7 @@ class ObjReader {
       }
       if (cursor_.peek() == '/') {
         cursor_.advance();
-        cursor_.integer("a normal number");
+        if (names_number()) cursor_.integer("a normal number");
       }
     }
     if (content_ == Content::kUvs) corner_textures_.push_back(texture);

@@ -18,7 +18,6 @@ bool ends_number(const char* at, const char* end) {
     case '\n':
     case '\v':
     case '\f':
-    case '#':
     case '\\':
       return true;
     default:

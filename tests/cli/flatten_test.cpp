@@ -186,7 +186,9 @@ TEST(Flatten, RefusesEveryBrokenMeshInOneLine) {
     EXPECT_EQ(directory.names().size(), 3u) << "a temporary is left";
 
     const Json json = Json::parse(directory.read("r.json"));
-    if (broken.status) EXPECT_EQ(json["status"], broken.status);
+    if (broken.status) {
+      EXPECT_EQ(json["status"], broken.status);
+    }
     EXPECT_NE(json["message"], "");
     EXPECT_TRUE(json["injective"].is_null());
     if (*broken.kind) {

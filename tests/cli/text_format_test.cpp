@@ -24,7 +24,7 @@ TEST(ParseOption, TakesWholeNumbersInRange) {
   EXPECT_EQ(option.integer, 10) << "not octal";
   for (const char* text : {"", "1.5", "101", "-1", "7x", "99999999999999999999", "0x10"}) {
     EXPECT_EQ(parse_option(text, option),
-              "'" + std::string(text) + "' is not a whole number from 0 to 100");
+              std::string("'") + text + "' is not a whole number from 0 to 100");
     EXPECT_EQ(option.integer, 10) << "the old value stays";
   }
 }
@@ -69,7 +69,7 @@ TEST(ProgressLine, IsShortAndBounded) {
   EXPECT_EQ(progress_line(0.5, "flatten", 3.2),
             "flatten    [###############...............]  50%     3.2 s");
   for (const double fraction : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(progress_line(fraction, "a stage with a long name", 1).size(), 59u);
+    EXPECT_EQ(progress_line(fraction, "a stage with a long name", 1).size(), 58u);
   }
 }
 
