@@ -1,0 +1,95 @@
+// What a small host would write round the C ABI.
+#pragma once
+
+#include <beltrami/beltrami.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/meshes.h"
+
+namespace beltrami::host {
+
+struct Destroy {
+  void operator()(beltrami_context* context) const { beltrami_destroy(context); }
+};
+using Context = std::unique_ptr<beltrami_context, Destroy>;
+
+inline Context create() {
+  beltrami_context* context = nullptr;
+  EXPECT_EQ(beltrami_create(&context), BELTRAMI_OK);
+  return Context(context);
+}
+
+/// Views of a triangle list, which must outlive them.
+inline beltrami_mesh view(const meshes::TriangleList& mesh) {
+  beltrami_mesh view{};
+  view.struct_size = sizeof view;
+  view.vertex_count = mesh.positions.size();
+  view.face_count = mesh.faces.size();
+  view.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
+  view.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
+  return view;
+}
+
+inline beltrami_buffer view(const std::vector<std::array<double, 2>>& uvs) {
+  return {uvs.data(), 0, BELTRAMI_F64, 0};
+}
+inline beltrami_buffer view(const std::vector<std::array<float, 2>>& uvs) {
+  return {uvs.data(), 0, BELTRAMI_F32, 0};
+}
+
+template <class Struct>
+Struct sized() {
+  Struct value{};
+  value.struct_size = sizeof value;
+  return value;
+}
+
+inline std::string message(const Context& context) {
+  return beltrami_error_message(context.get());
+}
+
+inline beltrami_status set_mesh(const Context& context, const meshes::TriangleList& mesh) {
+  const beltrami_mesh mesh_view = view(mesh);
+  return beltrami_set_mesh(context.get(), &mesh_view);
+}
+
+/// A context with this mesh, set to the method that depends on the fewest stages.
+inline Context loaded(const meshes::TriangleList& mesh) {
+  Context context = create();
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_TUTTE),
+            BELTRAMI_OK);
+  EXPECT_EQ(set_mesh(context, mesh), BELTRAMI_OK) << message(context);
+  return context;
+}
+
+inline beltrami_status run(const Context& context) {
+  return beltrami_run(context.get(), nullptr, nullptr);
+}
+
+inline std::vector<std::array<double, 2>> uvs(const Context& context, std::size_t vertices) {
+  std::vector<std::array<double, 2>> uvs(vertices);
+  EXPECT_EQ(beltrami_get_uvs(context.get(), uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK)
+      << message(context);
+  return uvs;
+}
+
+/// The vertices' x and y as UVs: injective for a flat mesh.
+inline std::vector<std::array<double, 2>> flat_uvs(const meshes::TriangleList& mesh) {
+  std::vector<std::array<double, 2>> uvs;
+  for (const Vec3& p : mesh.positions) uvs.push_back({p.x(), p.y()});
+  return uvs;
+}
+
+/// Whether two arrays hold the same bits.
+template <class Item>
+bool same_bits(const std::vector<Item>& a, const std::vector<Item>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+}
+
+}  // namespace beltrami::host

@@ -1,0 +1,268 @@
+// Runs: states, progress, cancellation, results and their bits.
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "abi/host.h"
+
+namespace beltrami {
+namespace {
+
+using namespace host;
+using meshes::TriangleList;
+
+Context loaded_with(const TriangleList& mesh, int32_t method) {
+  Context context = loaded(mesh);
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, method), BELTRAMI_OK);
+  return context;
+}
+
+TEST(Run, NeedsAMesh) {
+  const Context context = create();
+  EXPECT_EQ(run(context), BELTRAMI_E_INVALID_STATE);
+  EXPECT_NE(message(context).find("beltrami_set_mesh"), std::string::npos);
+}
+
+TEST(Run, ResultsNeedARun) {
+  const Context context = loaded(meshes::quad());
+  beltrami_context* c = context.get();
+  auto result = sized<beltrami_result>();
+  auto certificate = sized<beltrami_certificate>();
+  auto energy = sized<beltrami_energy>();
+  auto stage = sized<beltrami_stage>();
+  double room[8];
+  EXPECT_EQ(beltrami_get_result(c, &result), BELTRAMI_E_INVALID_STATE);
+  EXPECT_EQ(beltrami_get_certificate(c, &certificate), BELTRAMI_E_INVALID_STATE);
+  EXPECT_EQ(beltrami_get_energy(c, &energy), BELTRAMI_E_INVALID_STATE);
+  EXPECT_EQ(beltrami_get_stage(c, 0, &stage), BELTRAMI_E_INVALID_STATE);
+  EXPECT_EQ(beltrami_get_uvs(c, room, BELTRAMI_F64, 0), BELTRAMI_E_INVALID_STATE);
+  EXPECT_EQ(beltrami_get_face_energies(c, room, 0), BELTRAMI_E_INVALID_STATE);
+  EXPECT_NE(message(context).find("beltrami_run"), std::string::npos);
+  EXPECT_EQ(beltrami_stage_count(c), 0);
+}
+
+class EveryMethod : public testing::TestWithParam<int32_t> {};
+INSTANTIATE_TEST_SUITE_P(Run, EveryMethod,
+                         testing::Values(BELTRAMI_METHOD_BELTRAMI, BELTRAMI_METHOD_CM,
+                                         BELTRAMI_METHOD_TUTTE),
+                         [](const auto& parameter) {
+                           return std::string(
+                               beltrami_option_choice(BELTRAMI_OPTION_METHOD, parameter.param));
+                         });
+
+TEST_P(EveryMethod, FlattensInjectively) {
+  for (const TriangleList& mesh :
+       {meshes::triangle(), meshes::quad(), meshes::fan(5), meshes::strip(9), meshes::bumps(12, 9),
+        meshes::cap(6, 11, 1.5)}) {
+    SCOPED_TRACE(testing::Message() << mesh.faces.size() << " faces");
+    const Context context = loaded_with(mesh, GetParam());
+    ASSERT_EQ(run(context), BELTRAMI_OK) << message(context);
+    EXPECT_EQ(message(context), "");
+    auto certificate = sized<beltrami_certificate>(), checked = certificate;
+    ASSERT_EQ(beltrami_get_certificate(context.get(), &certificate), BELTRAMI_OK);
+    EXPECT_EQ(certificate.injective, 1);
+    EXPECT_EQ(certificate.positive, mesh.faces.size());
+    const auto got = uvs(context, mesh.positions.size());
+    const beltrami_mesh mesh_view = view(mesh);
+    const beltrami_buffer uv_view = view(got);
+    EXPECT_EQ(beltrami_check_injective(&mesh_view, &uv_view, &checked), BELTRAMI_OK);
+    EXPECT_EQ(std::memcmp(&checked, &certificate, sizeof checked), 0)
+        << "the certificate is of the UVs as returned";
+  }
+}
+
+TEST_P(EveryMethod, ReportsItsStages) {
+  const TriangleList mesh = meshes::bumps(12, 9);
+  const Context context = loaded_with(mesh, GetParam());
+  ASSERT_EQ(run(context), BELTRAMI_OK);
+  const int32_t stages = beltrami_stage_count(context.get());
+  ASSERT_GE(stages, 1);
+  auto result = sized<beltrami_result>();
+  ASSERT_EQ(beltrami_get_result(context.get(), &result), BELTRAMI_OK);
+  double seconds = 0;
+  for (int32_t i = 0; i < stages; ++i) {
+    auto stage = sized<beltrami_stage>();
+    ASSERT_EQ(beltrami_get_stage(context.get(), i, &stage), BELTRAMI_OK);
+    EXPECT_STRNE(stage.name, "");
+    EXPECT_GE(stage.seconds, 0);
+    EXPECT_GE(stage.cpu_seconds, 0);
+    EXPECT_GE(stage.iterations, 0);
+    seconds += stage.seconds;
+  }
+  EXPECT_LE(seconds, result.seconds + 1e-6);
+  EXPECT_EQ(result.status, BELTRAMI_OK);
+  EXPECT_GT(result.peak_memory_bytes, 0u);
+  EXPECT_GT(result.area, 1);
+  auto stage = sized<beltrami_stage>();
+  EXPECT_EQ(beltrami_get_stage(context.get(), stages, &stage), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_EQ(beltrami_get_stage(context.get(), -1, &stage), BELTRAMI_E_INVALID_ARGUMENT);
+}
+
+TEST_P(EveryMethod, GivesTheSameBitsAtAnyNumberOfThreadsAndTimes) {
+  const TriangleList mesh = meshes::bumps(40, 37);
+  const Context context = loaded_with(mesh, GetParam());
+  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_COARSE_FACES, 400), BELTRAMI_OK);
+  ASSERT_GE(run(context), BELTRAMI_OK);
+  const auto expected = uvs(context, mesh.positions.size());
+  for (const int threads : {1, 2, 7}) {
+    ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_THREADS, threads), BELTRAMI_OK);
+    ASSERT_GE(run(context), BELTRAMI_OK);
+    EXPECT_TRUE(same_bits(uvs(context, mesh.positions.size()), expected)) << threads << " threads";
+  }
+}
+
+TEST_P(EveryMethod, KeepsTheUnitOfLength) {
+  // Scaling by a power of two scales the UVs by it, to the bit.
+  const TriangleList mesh = meshes::bumps(10, 10);
+  TriangleList scaled = mesh;
+  for (Vec3& p : scaled.positions) p *= 1024;
+  const Context one = loaded_with(mesh, GetParam()), other = loaded_with(scaled, GetParam());
+  ASSERT_GE(run(one), BELTRAMI_OK);
+  ASSERT_GE(run(other), BELTRAMI_OK);
+  auto expected = uvs(one, mesh.positions.size());
+  for (auto& uv : expected) {
+    for (double& x : uv) x *= 1024;
+  }
+  EXPECT_EQ(uvs(other, mesh.positions.size()), expected);
+  auto a = sized<beltrami_result>(), b = sized<beltrami_result>();
+  ASSERT_EQ(beltrami_get_result(one.get(), &a), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_get_result(other.get(), &b), BELTRAMI_OK);
+  EXPECT_EQ(b.area, a.area * 1024 * 1024);
+}
+
+struct Watch {
+  beltrami_context* context = nullptr;
+  std::thread::id thread = std::this_thread::get_id();
+  double last = -1;
+  int calls = 0;
+  int stop_at = -1;     ///< the call that returns non-zero
+  int cancel_at = -1;   ///< the call that calls beltrami_cancel
+  bool meddle = false;  ///< calls what is not allowed during a run
+};
+
+int32_t watch(void* user, double fraction, const char* stage) {
+  auto& self = *static_cast<Watch*>(user);
+  EXPECT_EQ(std::this_thread::get_id(), self.thread);
+  EXPECT_GE(fraction, self.last);
+  EXPECT_GE(fraction, 0);
+  EXPECT_LE(fraction, 1);
+  EXPECT_NE(stage, nullptr);
+  self.last = fraction;
+  if (self.calls == self.cancel_at) beltrami_cancel(self.context);
+  if (self.meddle) {
+    const TriangleList quad = meshes::quad();
+    const beltrami_mesh mesh = view(quad);
+    auto result = sized<beltrami_result>();
+    beltrami_context* c = self.context;
+    EXPECT_EQ(beltrami_run(c, nullptr, nullptr), BELTRAMI_E_INVALID_STATE);
+    EXPECT_EQ(beltrami_set_mesh(c, &mesh), BELTRAMI_E_INVALID_STATE);
+    EXPECT_EQ(beltrami_set_int(c, BELTRAMI_OPTION_THREADS, 2), BELTRAMI_E_INVALID_STATE);
+    EXPECT_EQ(beltrami_set_float(c, BELTRAMI_OPTION_TOLERANCE, 0), BELTRAMI_E_INVALID_STATE);
+    EXPECT_EQ(beltrami_get_result(c, &result), BELTRAMI_E_INVALID_STATE);
+    EXPECT_STRNE(beltrami_error_message(c), "");
+  }
+  return self.calls++ == self.stop_at ? 1 : 0;
+}
+
+TEST_P(EveryMethod, ReportsProgressOnTheCallersThreadAndNeverBack) {
+  const Context context = loaded_with(meshes::bumps(30, 30), GetParam());
+  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_COARSE_FACES, 300), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_THREADS, 4), BELTRAMI_OK);
+  Watch state{context.get()};
+  ASSERT_GE(beltrami_run(context.get(), watch, &state), BELTRAMI_OK);
+  EXPECT_GE(state.calls, 2);
+  EXPECT_EQ(state.last, 1);
+}
+
+TEST(Run, RefusesCallsFromItsOwnProgress) {
+  const Context context = loaded(meshes::bumps(6, 6));
+  Watch state{context.get()};
+  state.meddle = true;
+  EXPECT_EQ(beltrami_run(context.get(), watch, &state), BELTRAMI_OK);
+  EXPECT_EQ(message(context), "");
+  auto result = sized<beltrami_result>();
+  EXPECT_EQ(beltrami_get_result(context.get(), &result), BELTRAMI_OK);
+}
+
+/// How often a run of this context calls its progress.
+int calls_of_a_run(const Context& context) {
+  Watch state{context.get()};
+  EXPECT_EQ(beltrami_run(context.get(), watch, &state), BELTRAMI_OK);
+  return state.calls;
+}
+
+TEST(Cancel, FromAnyCallOfProgressKeepsTheOldResults) {
+  const TriangleList mesh = meshes::bumps(6, 6);
+  const Context context = loaded(mesh);
+  const int calls = calls_of_a_run(context);
+  const auto before = uvs(context, mesh.positions.size());
+  for (int at = 0; at < calls; ++at) {  // the last call included
+    for (const bool by_return : {true, false}) {
+      Watch state{context.get()};
+      (by_return ? state.stop_at : state.cancel_at) = at;
+      EXPECT_EQ(beltrami_run(context.get(), watch, &state), BELTRAMI_E_CANCELLED)
+          << "call " << at << " of " << calls;
+      EXPECT_NE(message(context), "");
+      EXPECT_EQ(state.calls, at + 1) << "not called again";
+      EXPECT_TRUE(same_bits(uvs(context, mesh.positions.size()), before));
+    }
+  }
+  EXPECT_EQ(run(context), BELTRAMI_OK) << "a request serves one run only";
+}
+
+TEST(Cancel, BeforeARunStopsThatRunOnly) {
+  const Context context = loaded(meshes::quad());
+  beltrami_cancel(context.get());
+  beltrami_cancel(context.get());
+  EXPECT_EQ(run(context), BELTRAMI_E_CANCELLED);
+  EXPECT_EQ(run(context), BELTRAMI_OK);
+}
+
+TEST(Cancel, IsDroppedByANewMesh) {
+  const Context context = loaded(meshes::quad());
+  beltrami_cancel(context.get());
+  ASSERT_EQ(set_mesh(context, meshes::triangle()), BELTRAMI_OK);
+  EXPECT_EQ(run(context), BELTRAMI_OK);
+}
+
+TEST(Cancel, FromAnotherThreadEndsALongRun) {
+  const Context context = loaded_with(meshes::bumps(220, 220), BELTRAMI_METHOD_CM);
+  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_TOLERANCE, 0), BELTRAMI_OK);
+  std::atomic<bool> begun{false};
+  std::thread other([&] {
+    while (!begun) std::this_thread::yield();
+    beltrami_cancel(context.get());
+  });
+  const auto begin = [](void* user, double, const char*) -> int32_t {
+    static_cast<std::atomic<bool>*>(user)->store(true);
+    return 0;
+  };
+  EXPECT_EQ(beltrami_run(context.get(), begin, &begun), BELTRAMI_E_CANCELLED);
+  other.join();
+}
+
+TEST(Contexts, ShareNothingAcrossThreads) {
+  const TriangleList meshes_of[2] = {meshes::bumps(14, 10), meshes::cap(7, 12, 1.8)};
+  std::vector<std::array<double, 2>> expected[2], found[2];
+  for (int i = 0; i < 2; ++i) {
+    const Context context = loaded(meshes_of[i]);
+    ASSERT_EQ(run(context), BELTRAMI_OK);
+    expected[i] = uvs(context, meshes_of[i].positions.size());
+  }
+  const auto work = [&](int i) {
+    for (int round = 0; round < 8; ++round) {
+      const Context context = loaded(meshes_of[i]);
+      EXPECT_EQ(set_mesh(context, meshes::octahedron()), BELTRAMI_E_CLOSED);
+      EXPECT_EQ(run(context), BELTRAMI_OK);
+      found[i] = uvs(context, meshes_of[i].positions.size());
+      EXPECT_TRUE(same_bits(found[i], expected[i]));
+    }
+  };
+  std::thread other(work, 0);
+  work(1);
+  other.join();
+}
+
+}  // namespace
+}  // namespace beltrami
