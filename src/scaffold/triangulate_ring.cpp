@@ -166,16 +166,14 @@ class RingBuilder {
     moved_.assign(tail_.size(), kNone);
     std::vector<Index> missing;
     for (Index i = 0; i < inner_count_; ++i) {
-      const Index h = find_edge(i, after(i));
-      if (h == kNone) {
-        missing.push_back(i);
-      } else {
-        fix(h);
-      }
+      if (!fix_if_present(i, after(i))) missing.push_back(i);
     }
     std::sort(missing.begin(), missing.end(),
               [](Index i, Index j) { return random_bits(i) < random_bits(j); });
-    for (const Index i : missing) insert_edge(i, after(i));
+    for (const Index i : missing) {
+      // The edges inserted before may have made this one Delaunay.
+      if (!fix_if_present(i, after(i))) insert_edge(i, after(i));
+    }
   }
 
   std::vector<Triangle> ring_faces() const {
@@ -227,9 +225,8 @@ class RingBuilder {
   }
 
   std::string name(Index p) const {
-    return p < inner_count_
-               ? "vertex " + std::to_string(p) + " of the inner polygon"
-               : "vertex " + std::to_string(p - inner_count_) + " of the outer polygon";
+    return p < inner_count_ ? "inner vertex " + std::to_string(p)
+                            : "outer vertex " + std::to_string(p - inner_count_);
   }
 
   Index new_face() {
@@ -411,9 +408,18 @@ class RingBuilder {
     return kNone;
   }
 
+  bool fix_if_present(Index a, Index b) {
+    const Index h = find_edge(a, b);
+    if (h != kNone) fix(h);
+    return h != kNone;
+  }
+
+  std::string edge_name(Index a, Index b) const {
+    return "the edge from " + name(a) + " to " + name(b);
+  }
+
   [[noreturn]] void fail_through(Index a, Index b, Index p) const {
-    fail("the edge of the inner polygon from vertex " + std::to_string(a) + " to " +
-         std::to_string(b) + " passes through " + name(p) + ".");
+    fail(edge_name(a, b) + " passes through " + name(p) + ".");
   }
 
   /// The half-edge that leaves a in the face that the missing edge a-b enters first.
@@ -444,8 +450,8 @@ class RingBuilder {
     Index crossed = next(first);
     for (;;) {
       if (twin_[crossed] == kNone || fixed_[crossed]) {
-        fail("the edge of the inner polygon from " + name(a) + " crosses the one between " +
-             name(tail_[crossed]) + " and " + name(head(crossed)) + ".");
+        fail(edge_name(a, b) + " crosses the edge from " + name(tail_[crossed]) + " to " +
+             name(head(crossed)) + ".");
       }
       const Index h = twin_[crossed];
       const Index p = apex(h);
@@ -490,6 +496,7 @@ class RingBuilder {
         attach(3 * f, middle);
         attach(3 * f + 1, end);
         suspects_.insert(suspects_.end(), {3 * f, 3 * f + 1});
+        fixed_[3 * f + 2] = false;
         end = {end.vertex, nullptr, 3 * f + 2};
         chain.pop_back();
       }
