@@ -72,8 +72,10 @@ void require_ok(beltrami_status status, const std::string& path, const char* mes
   if (status == BELTRAMI_E_CANCELLED) throw Failure(status, "cancelled");
   std::string text = path + ": " + (*message ? message : beltrami_status_advice(status));
   if (element != BELTRAMI_NO_ELEMENT && element_kind != BELTRAMI_ELEMENT_NONE) {
-    const char* kind = element_kind == BELTRAMI_ELEMENT_FACE ? "face" : "vertex";
-    text += std::string(" (") + kind + " " + std::to_string(element) + ", counted from 0)";
+    const std::string name =
+        (element_kind == BELTRAMI_ELEMENT_FACE ? "face " : "vertex ") + std::to_string(element);
+    const bool named = text.find(name) != std::string::npos;
+    text += named ? " (counted from 0)" : " (" + name + ", counted from 0)";
   }
   throw Failure(status, text, element_kind, element);
 }

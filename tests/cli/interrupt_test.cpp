@@ -18,13 +18,16 @@ TEST_P(Interrupt, CancelsAndLeavesTheTargetAlone) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", grid(150));
   const std::string out = directory.file("out.obj", "precious");
-  // Iterations without end, so that the signal cannot come too late.
-  Program program({"flatten", in, out, "--method", "cm", "--tolerance", "0", "--max-iterations",
-                   "1000000", "--report", directory.path("r.json")});
-  // Too early would kill a process that has not yet set its handler; busy machines take their time.
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
-  kill(program.id(), GetParam());
-  const Outcome outcome = program.wait();
+  // Iterations without end, so that the signal cannot come too late. Too early would kill a process
+  // that has not yet set its handler: a busy machine gets another chance.
+  Outcome outcome;
+  for (int patience = 700; patience < 10000 && outcome.exit_code == -1; patience *= 3) {
+    Program program({"flatten", in, out, "--method", "cm", "--tolerance", "0", "--max-iterations",
+                     "1000000", "--report", directory.path("r.json")});
+    std::this_thread::sleep_for(std::chrono::milliseconds(patience));
+    kill(program.id(), GetParam());
+    outcome = program.wait();
+  }
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err, "cancelled\n");
