@@ -340,6 +340,33 @@ TEST(Simplify, SurvivesAMeshWithoutAnyArea) {
   }
 }
 
+TEST(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
+  // A flower whose outermost ring lies on the one inside it.
+  const DiskMesh cap = spherical_cap(30, 120, 0.3);
+  std::vector<Vec3> positions = cap.positions;
+  for (Index i = 1; i < size_of(positions); ++i) {
+    const Index spoke = (i - 1) % 120, ring = std::min<Index>((i - 1) / 120, 28);
+    const double turn = 0.05235987755983 * spoke;
+    const double radius = ring * (1 + 0.4 * std::cos(5 * turn));
+    positions[i] = {radius * std::cos(turn), radius * std::sin(turn), 0};
+  }
+  const DiskMesh fine = build_disk(std::move(positions), cap.faces);
+  const CoarseDisk coarse = simplify(fine, 400);
+  expect_sound(fine, coarse);
+  EXPECT_NEAR(surface_area(coarse.mesh) / surface_area(fine), 1, 0.002);
+  EXPECT_GE(size_of(coarse.mesh.boundary), 30);
+}
+
+TEST(Simplify, PutsDegenerateVerticesOnTheirDuplicatesFirst) {
+  // All vertices lie on every fifth grid point: collapsing elsewhere would fold the plane.
+  const DiskMesh fine = grid(100, 100, [](double x, double y) {
+    return Vec3(5 * std::floor(x / 5), 5 * std::floor(y / 5), 0);
+  });
+  const CoarseDisk coarse = simplify(fine, 1200);
+  expect_sound(fine, coarse);
+  EXPECT_NEAR(surface_area(coarse.mesh), surface_area(fine), 1e-9);
+}
+
 TEST(Simplify, ReducesAMeshOfSlivers) {
   const DiskMesh fine = grid(40, 40, [](double x, double y) { return Vec3(200 * x, y, 0); });
   const CoarseDisk coarse = simplify(fine, 300);

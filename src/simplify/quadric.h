@@ -1,19 +1,17 @@
 // The error quadric of Garland & Heckbert 1997, kept in the frame of its own vertex.
 #pragma once
 
-#include <algorithm>
-
 #include "base/types.h"
 
 namespace beltrami {
 
 /// Weighted sum of squared distances to planes, as a function of the offset d from the vertex that
-/// owns it: d'Ad + 2 b'd + c. With the origin at the vertex the planes of its own faces have b = 0
-/// and c = 0 exactly, so nothing cancels however far the mesh lies from the origin.
+/// owns it: d'Ad + 2 b'd, relative to the error at the vertex itself, which its owner keeps. With
+/// the origin at the vertex the planes of its own faces have b = 0 exactly, so nothing cancels
+/// however far the mesh lies from the origin.
 struct Quadric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< A, symmetric
   double bx = 0, by = 0, bz = 0;
-  double c = 0;
 
   /// Adds a plane through the owner. `normal` is a unit vector.
   void add_plane(const Vec3& normal, double weight) {
@@ -26,15 +24,20 @@ struct Quadric {
     zz += n.z() * normal.z();
   }
 
-  /// The sum of the weights of all planes, since every unit normal adds its weight to the trace.
+  /// Adds the owner's own place: the squared distance from it.
+  void add_point(double weight) {
+    xx += weight;
+    yy += weight;
+    zz += weight;
+  }
+
+  /// The sum of the weights, since every unit normal adds its weight to the trace.
   double weight() const { return xx + yy + zz; }
 
-  /// The error at the offset d; rounding cannot make it negative.
-  double at(const Vec3& d) const {
-    const double quadratic = d.x() * (xx * d.x() + 2 * (xy * d.y() + xz * d.z() + bx)) +
-                             d.y() * (yy * d.y() + 2 * (yz * d.z() + by)) +
-                             d.z() * (zz * d.z() + 2 * bz);
-    return std::max(0.0, quadratic + c);
+  /// The error at the offset d less the error at the owner: it can be negative.
+  double change(const Vec3& d) const {
+    return d.x() * (xx * d.x() + 2 * (xy * d.y() + xz * d.z() + bx)) +
+           d.y() * (yy * d.y() + 2 * (yz * d.z() + by)) + d.z() * (zz * d.z() + 2 * bz);
   }
 
   /// The same function seen from an owner at the offset d.
@@ -43,7 +46,6 @@ struct Quadric {
     moved.bx += xx * d.x() + xy * d.y() + xz * d.z();
     moved.by += xy * d.x() + yy * d.y() + yz * d.z();
     moved.bz += xz * d.x() + yz * d.y() + zz * d.z();
-    moved.c = at(d);
     return moved;
   }
 
@@ -57,7 +59,6 @@ struct Quadric {
     bx += other.bx;
     by += other.by;
     bz += other.bz;
-    c += other.c;
     return *this;
   }
 };

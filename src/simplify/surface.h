@@ -1,0 +1,75 @@
+// The shrinking surface of the simplifier in flat arrays, compacted between passes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
+#include "simplify/quadric.h"
+
+namespace beltrami {
+
+/// The surface between passes. Vertices and faces are compacted before each pass, in their order.
+struct ShrinkingSurface {
+  /// What a vertex is; a fixed one may be collapsed onto, but is never removed.
+  enum class Role : std::uint8_t { kInterior, kBoundary, kFixedBoundary, kRemoved };
+
+  /// What the cost of a collapse asks of its target: together, since the access is random.
+  struct Site {
+    Vec3 position;
+    double error;  ///< of the vertex under its own quadric
+  };
+
+  std::vector<Site> site;
+  std::vector<Quadric> quadric;
+  std::vector<Role> role;
+  std::vector<Index> loop_next, loop_previous;  ///< along the boundary; kNone inside
+  std::vector<Index> fine_vertex;
+  std::vector<Triangle> faces;  ///< a removed one has kNone as its first corner
+  Index live_faces = 0;
+  Index boundary_count = 0;
+  Index min_boundary = 0;
+
+  // Built for one pass.
+  std::vector<Index> fan_start;  ///< per vertex: its first entry in `fan`
+  std::vector<Index> fan;        ///< half-edges 3 * face + corner, by origin
+  std::vector<Index> valence;    ///< live faces per vertex
+  std::vector<Index> mark;       ///< scratch: the vertex whose ring was marked last
+  std::vector<bool> locked;
+
+  Index vertex_count() const { return size_of(site); }
+  const Vec3& position(Index v) const { return site[v].position; }
+  bool on_boundary(Index v) const {
+    return role[v] == Role::kBoundary || role[v] == Role::kFixedBoundary;
+  }
+  Index min_valence(Index v) const { return on_boundary(v) ? 2 : 3; }
+
+  /// Calls visit(face, corner, next vertex, previous vertex) for each live face of v.
+  template <class Visit>
+  void for_each_corner(Index v, Visit&& visit) const {
+    for (Index i = fan_start[v]; i < fan_start[v + 1]; ++i) {
+      const Index f = fan[i] / 3;
+      const int k = fan[i] % 3;
+      const Triangle& face = faces[f];
+      if (face[0] != kNone) visit(f, k, face[next_corner(k)], face[previous_corner(k)]);
+    }
+  }
+
+  template <class Visit>
+  void for_each_neighbour(Index v, Visit&& visit) const {
+    for_each_corner(v, [&](Index, int, Index a, Index) { visit(a); });
+    if (on_boundary(v)) visit(loop_previous[v]);
+  }
+};
+
+/// The surface at the start: no pass begun yet.
+ShrinkingSurface make_surface(const DiskMesh& mesh);
+
+/// Drops removed faces and vertices, keeping the order of the others.
+void compact(ShrinkingSurface& surface);
+
+/// Compacts, lists the half-edges of each vertex and clears the state of the last pass.
+void begin_pass(ShrinkingSurface& surface);
+
+}  // namespace beltrami
