@@ -113,8 +113,8 @@ inline meshes::TriangleList degenerate_faces(Index n) {
   return mesh;
 }
 
-/// A flat grid of 2n by 2n cells slit from the middle of its right side to its centre: the two sides
-/// of the slit coincide.
+/// A flat grid of 2n by 2n cells slit from the middle of its right side to its centre: the two
+/// sides of the slit coincide.
 inline meshes::TriangleList slit(Index n) {
   meshes::TriangleList mesh = meshes::grid(2 * n, 2 * n);
   const Index row = n * (2 * n + 1);

@@ -1,0 +1,156 @@
+// Parallel loops, and the floating-point mode that exactness needs.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cfenv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "base/floating_point.h"
+#include "base/parallel.h"
+#include "base/resources.h"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace beltrami {
+namespace {
+
+TEST(ParallelFor, CoversEveryIndexOnceAtAnyThreadCount) {
+  for (const int threads : {1, 2, 3, 8}) {
+    for (const int count : {0, 1, 9, 10, 11, 1000}) {
+      std::vector<int> visits(static_cast<std::size_t>(count), 0);
+      parallel_for(threads, count, 10, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+      });
+      EXPECT_EQ(visits, std::vector<int>(visits.size(), 1)) << threads << ' ' << count;
+    }
+  }
+}
+
+TEST(ParallelFor, CutsTheSameChunksAtAnyThreadCount) {
+  for (const int threads : {1, 2, 3}) {
+    std::atomic<int> odd_chunks{0};
+    parallel_for(threads, 105, 10, [&](std::int64_t begin, std::int64_t end) {
+      if (begin % 10 != 0 || end - begin != (begin == 100 ? 5 : 10)) ++odd_chunks;
+    });
+    EXPECT_EQ(odd_chunks, 0) << threads;
+  }
+}
+
+TEST(ParallelFor, UsesNoMoreThreadsThanAsked) {
+  std::atomic<int> inside{0}, most{0};
+  parallel_for(2, 64, 1, [&](std::int64_t, std::int64_t) {
+    const int now = ++inside;
+    for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+    }
+    std::this_thread::yield();
+    --inside;
+  });
+  EXPECT_LE(most, 2);
+}
+
+TEST(ParallelFor, RethrowsAnExceptionOfAnyThread) {
+  for (const int threads : {1, 2, 3}) {
+    const auto loop = [&] {
+      parallel_for(threads, 100, 1, [](std::int64_t begin, std::int64_t) {
+        if (begin == 50) throw std::out_of_range("fifty");
+      });
+    };
+    EXPECT_THROW(loop(), std::out_of_range) << threads;
+  }
+}
+
+TEST(ParallelFor, StopsSoonAfterAnException) {
+  std::atomic<int> chunks{0};
+  const auto body = [&](std::int64_t, std::int64_t) {
+    ++chunks;
+    throw std::runtime_error("at once");
+  };
+  EXPECT_THROW(parallel_for(2, 100000, 1, body), std::runtime_error);
+  EXPECT_LE(chunks, 2);
+}
+
+TEST(ParallelSum, HasTheSameBitsAtOneTwoAndThreeThreads) {
+  const auto term = [](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t i = begin; i < end; ++i) sum += std::sin(static_cast<double>(i)) * 1e3;
+    return sum;
+  };
+  const double one = parallel_sum(1, 10007, 64, term);
+  EXPECT_EQ(one, parallel_sum(2, 10007, 64, term));
+  EXPECT_EQ(one, parallel_sum(3, 10007, 64, term));
+}
+
+TEST(ParallelSum, OfNothingIsZero) {
+  EXPECT_EQ(parallel_sum(2, 0, 64, [](std::int64_t, std::int64_t) { return 1.0; }), 0);
+}
+
+bool keeps_subnormals() {
+  volatile double least_normal = std::numeric_limits<double>::min();
+  volatile double half = least_normal / 2;
+  return half > 0 && half * 2 == least_normal;
+}
+
+double third() {
+  volatile double one = 1, three = 3;
+  return one / three;
+}
+
+TEST(StandardFloatingPoint, RoundsToNearestAndRestoresTheRoundingModeOfTheHost) {
+  const double nearest = third();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+  const double upward = third();
+  {
+    const StandardFloatingPoint standard;
+    EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+    EXPECT_EQ(third(), nearest);
+  }
+  EXPECT_EQ(std::fegetround(), FE_UPWARD);
+  EXPECT_EQ(third(), upward);
+  std::fesetround(FE_TONEAREST);
+  EXPECT_NE(nearest, upward);
+}
+
+#if defined(__SSE2__)
+constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
+
+TEST(StandardFloatingPoint, KeepsSubnormalsAndRestoresFlushToZeroOfTheHost) {
+  const unsigned before = _mm_getcsr();
+  const unsigned fast = before | kFlushToZero | kDenormalsAreZero;
+  _mm_setcsr(fast);
+  EXPECT_FALSE(keeps_subnormals());
+  {
+    const StandardFloatingPoint standard;
+    EXPECT_TRUE(keeps_subnormals());
+  }
+  const unsigned after = _mm_getcsr();
+  _mm_setcsr(before);
+  EXPECT_EQ(after & (kFlushToZero | kDenormalsAreZero), kFlushToZero | kDenormalsAreZero);
+}
+
+TEST(StandardFloatingPoint, HoldsOnTheThreadsOfAParallelLoop) {
+  const unsigned before = _mm_getcsr();
+  _mm_setcsr(before | kFlushToZero | kDenormalsAreZero);
+  std::atomic<int> flushed{0};
+  parallel_for(2, 100, 1, [&](std::int64_t, std::int64_t) { flushed += !keeps_subnormals(); });
+  _mm_setcsr(before);
+  EXPECT_EQ(flushed, 0);
+}
+#endif
+
+TEST(Resources, ClocksDoNotRunBackwardsAndMemoryIsUsed) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  EXPECT_GE(wall_seconds(), wall);
+  EXPECT_GE(cpu_seconds(), cpu);
+#if defined(__unix__) || defined(__APPLE__)
+  EXPECT_GT(peak_memory_bytes(), 100000u);
+#endif
+}
+
+}  // namespace
+}  // namespace beltrami
