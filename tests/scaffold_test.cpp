@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <random>
-#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -155,6 +157,12 @@ double area(const Polygon& polygon) {
 Polygon with_direction(Polygon polygon) {
   if (area(polygon) < 0) std::reverse(polygon.begin(), polygon.end());
   return polygon;
+}
+
+bool is_simple(const Polygon& polygon) {
+  std::vector<Index> loop(polygon.size());
+  std::iota(loop.begin(), loop.end(), 0);
+  return count_crossings(loop, polygon).count == 0;
 }
 
 // --- Checks -------------------------------------------------------------------------------------
@@ -310,15 +318,7 @@ TEST(Ring, is_filled_around_every_shape) {
        {star(5), star(200), spiral(5, 60), comb(40, 0.3, 0, 20), comb(40, 0.3, 15, 20),
         comb(100, 1e-3, 300, 1), skyline(60, 1), subdivide(kSquare, 64),
         subdivide({{0, 0}, {4, 1}, {8, 0}, {4, 8}}, 32)}) {
-    ASSERT_EQ(count_crossings(
-                  [&] {
-                    std::vector<Index> loop(inner.size());
-                    for (Index i = 0; i < size_of(inner); ++i) loop[i] = i;
-                    return loop;
-                  }(),
-                  inner)
-                  .count,
-              0);
+    ASSERT_TRUE(is_simple(inner));
     ASSERT_GT(area(inner), 0);
     for (const int count : {8, 100}) expect_all(inner, circle_around(inner, 1.5, count));
   }
@@ -379,7 +379,7 @@ TEST(Ring, takes_numbers_of_any_size) {
     return polygon;
   };
   const RingTriangulation ring = expect_all(inner, outer);
-  for (const int power : {-300, -40, -1, 1, 40, 300, 1000}) {
+  for (const int power : {-1000, -300, -40, -1, 1, 40, 300, 1000}) {
     const double factor = std::ldexp(1.0, power);
     EXPECT_EQ(triangulate_ring(scaled(inner, factor), scaled(outer, factor)).faces, ring.faces)
         << power;
@@ -424,14 +424,12 @@ TEST(Ring, exists_exactly_if_the_inner_polygon_is_simple_and_counter_clockwise) 
   for (std::uint32_t seed = 0; seed < 20'000; ++seed) {
     Random random(seed);
     Polygon inner;
-    std::vector<Index> loop;
     for (int i = 3 + random.below(6); i > 0; --i) {
       const int x = random.below(6);
       inner.emplace_back(x, random.below(6));
-      loop.push_back(size_of(loop));
     }
     const Polygon outer = {{-1, -2}, {8, -1}, {6, 7}, {-2, 6}};
-    if (count_crossings(loop, inner).count == 0 && area(inner) > 0) {
+    if (is_simple(inner) && area(inner) > 0) {
       ++valid;
       expect_all(inner, outer);
     } else {

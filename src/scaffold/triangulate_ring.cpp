@@ -6,8 +6,8 @@
 // order of Amenta, Choi and Rote 2003, "Incremental constructions con BRIO", and located by the
 // visibility walk (Devillers, Pion, Teillaud 2002, "Walking in a triangulation"). All predicates
 // are exact, so the walk ends and no flip inverts a face. A missing edge is inserted by emptying
-// and refilling the faces it crosses; the missing edges are taken in random order, which bounds the
-// expected work (Shewchuk, Brown 2015, "Fast segment insertion and incremental construction of
+// and refilling the faces it crosses; the missing edges are taken in random order too, which bounds
+// the expected work (Shewchuk, Brown 2015, "Fast segment insertion and incremental construction of
 // constrained Delaunay triangulations").
 #include "scaffold/triangulate_ring.h"
 
@@ -84,8 +84,8 @@ std::uint64_t hilbert_number(std::uint32_t x, std::uint32_t y) {
   return number;
 }
 
-/// `chosen` points in rounds that double in size, each round along a Hilbert curve: random enough
-/// for few flips, local enough for short walks.
+/// `chosen` points, or the edges that start there, in rounds that double in size, each round along
+/// a Hilbert curve: random enough for few flips, local enough for short walks.
 std::vector<Index> insertion_order(const std::vector<Vec2>& points,
                                    const std::vector<Index>& chosen) {
   struct Place {
@@ -168,9 +168,7 @@ class RingBuilder {
     for (Index i = 0; i < inner_count_; ++i) {
       if (!fix_if_present(i, after(i))) missing.push_back(i);
     }
-    std::sort(missing.begin(), missing.end(),
-              [](Index i, Index j) { return random_bits(i) < random_bits(j); });
-    for (const Index i : missing) {
+    for (const Index i : insertion_order(points_, missing)) {
       // The edges inserted before may have made this one Delaunay.
       if (!fix_if_present(i, after(i))) insert_edge(i, after(i));
     }
