@@ -1,24 +1,15 @@
 #include "fullspace/scaffold.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "distortion/symmetric_dirichlet.h"
 #include "exact/certificate.h"
 #include "fullspace/newton_step.h"
-#include "scaffold/triangulate_ring.h"
+#include "scaffold/ring_faces.h"
 
 namespace beltrami {
 namespace {
 
-/// Weight of the whole scaffold against the mesh: a barrier, not a shape. 0.01 costs 0.05% to 0.7%
-/// in energy where parts of the boundary touch.
-constexpr double kScaffoldWeight = 0.01;
-constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
-constexpr int kCirclePoints = 48;
-/// Scaffold faces flatter than this (height over longest edge) weigh less in proportion: boundary
-/// vertices in a line would be frozen by slivers that resist any relative move.
-constexpr double kSliver = 0.05;
 constexpr double kFullStep = 0.5;
 constexpr int kPatience = 5;  // short steps with little gain before it ends
 
@@ -31,47 +22,27 @@ struct Surrounded {
   std::vector<Vec2> uvs;
 };
 
-RestTriangle lay_flat(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const Vec2 e1 = b - a, e2 = c - a;
-  const double x1 = e1.norm();
-  return {x1, e1.dot(e2) / x1, (e1.x() * e2.y() - e1.y() * e2.x()) / x1};
-}
-
 Surrounded surround(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     const std::vector<Vec2>& uvs) {
-  std::vector<Vec2> inner;
-  for (const Index v : mesh.boundary) inner.push_back(uvs[v]);
-  const auto outer = circle_around(inner, kCircleFactor, kCirclePoints);
-  const RingTriangulation ring = triangulate_ring(inner, outer);
-
+  std::vector<Vec2> polygon;
+  for (const Index v : mesh.boundary) polygon.push_back(uvs[v]);
   Surrounded all{mesh.faces, rest, {}, std::vector<bool>(uvs.size(), false), uvs};
   double mesh_area = 0;
   for (const RestTriangle& r : rest) {
     all.weights.push_back(r.area());
     mesh_area += r.area();
   }
-  all.uvs.insert(all.uvs.end(), outer.begin(), outer.end());
+  const RingFaces ring = ring_faces(polygon, mesh_area);
+  all.uvs.insert(all.uvs.end(), ring.circle.begin(), ring.circle.end());
   all.fixed.resize(all.uvs.size(), true);
   const auto vertex = [&](Index i) {
-    return i < size_of(inner) ? mesh.boundary[i] : size_of(uvs) + i - size_of(inner);
+    return i < size_of(polygon) ? mesh.boundary[i] : size_of(uvs) + i - size_of(polygon);
   };
-  double ring_area = 0;
   for (const Triangle& t : ring.faces) {
-    const RestTriangle r =
-        lay_flat(ring.points[t[0]], ring.points[t[1]], ring.points[t[2]]);
-    // A face without area in floating point, though positive exactly, cannot serve as a shape.
-    if (!(r.y2 > 0) || !(r.x1 > 0) || !std::isfinite(r.y2)) continue;
     all.faces.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
-    all.rest.push_back(r);
-    ring_area += r.area();
   }
-  for (std::size_t f = rest.size(); f < all.rest.size(); ++f) {
-    const RestTriangle& r = all.rest[f];
-    const double longest = std::max({r.x1, std::abs(r.corner(2)), std::abs(r.corner(2) - r.x1)});
-    const double flatness = 2 * r.area() / (longest * longest);
-    all.weights.push_back(kScaffoldWeight * mesh_area * r.area() / ring_area *
-                          std::min(1.0, flatness / kSliver));
-  }
+  all.rest.insert(all.rest.end(), ring.rest.begin(), ring.rest.end());
+  all.weights.insert(all.weights.end(), ring.weights.begin(), ring.weights.end());
   return all;
 }
 

@@ -1,5 +1,6 @@
 #include <cholmod.h>
 
+#include <algorithm>
 #include <new>
 
 #include "base/error.h"
@@ -58,6 +59,21 @@ class CholmodSolver final : public SpdSolver {
     return result;
   }
 
+  /// Whole solves in blocks of columns, gathered: the supernodal factor hides its columns.
+  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
+                         int /*threads*/) const override {
+    constexpr Eigen::Index kBlock = 32;
+    DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
+    for (Eigen::Index first = 0; first < rhs.cols(); first += kBlock) {
+      const Eigen::Index count = std::min(kBlock, rhs.cols() - first);
+      const DenseMatrix block = solve(DenseMatrix(rhs.middleCols(first, count)));
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        result.row(static_cast<Eigen::Index>(i)).segment(first, count) = block.row(rows[i]);
+      }
+    }
+    return result;
+  }
+
  private:
   static cholmod_sparse view_of(const SparseMatrix& lower) {
     cholmod_sparse view{};
@@ -89,8 +105,12 @@ class CholmodSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver() { return std::make_unique<CholmodSolver>(); }
+std::unique_ptr<SpdSolver> make_spd_solver() {
+  return std::make_unique<CholmodSolver>();
+}
 
-const char* spd_solver_name() { return "cholmod"; }
+const char* spd_solver_name() {
+  return "cholmod";
+}
 
 }  // namespace beltrami

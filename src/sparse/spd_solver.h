@@ -4,6 +4,7 @@
 
 #include <Eigen/SparseCore>
 #include <memory>
+#include <vector>
 
 namespace beltrami {
 
@@ -24,6 +25,12 @@ class SpdSolver {
   [[nodiscard]] virtual bool factorize(const SparseMatrix& lower) = 0;
   /// Solves for every column of `rhs` with the last factor.
   virtual DenseMatrix solve(const DenseMatrix& rhs) const = 0;
+  /// The given rows of the solution alone, in the order of `rows`: rows(A^-1 rhs). A back end may
+  /// skip the parts of the factor that neither the right-hand sides nor the rows reach;
+  /// neighbouring columns should have their nonzeros close together. Same bits at any number of
+  /// threads.
+  virtual DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
+                                 int threads) const = 0;
 };
 
 std::unique_ptr<SpdSolver> make_spd_solver();

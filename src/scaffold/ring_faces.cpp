@@ -1,0 +1,50 @@
+#include "scaffold/ring_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scaffold/triangulate_ring.h"
+
+namespace beltrami {
+namespace {
+
+/// Weight of the whole scaffold against the mesh: a barrier, not a shape. 0.01 costs 0.05% to 0.7%
+/// in energy where parts of the boundary touch.
+constexpr double kScaffoldWeight = 0.01;
+constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
+constexpr int kCirclePoints = 48;
+/// Scaffold faces flatter than this (height over longest edge) weigh less in proportion: boundary
+/// vertices in a line would be frozen by slivers that resist any relative move.
+constexpr double kSliver = 0.05;
+
+RestTriangle lay_flat(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 e1 = b - a, e2 = c - a;
+  const double x1 = e1.norm();
+  return {x1, e1.dot(e2) / x1, (e1.x() * e2.y() - e1.y() * e2.x()) / x1};
+}
+
+}  // namespace
+
+RingFaces ring_faces(const std::vector<Vec2>& polygon, double mesh_area) {
+  RingFaces result;
+  result.circle = circle_around(polygon, kCircleFactor, kCirclePoints);
+  const RingTriangulation ring = triangulate_ring(polygon, result.circle);
+  double ring_area = 0;
+  for (const Triangle& t : ring.faces) {
+    const RestTriangle r = lay_flat(ring.points[t[0]], ring.points[t[1]], ring.points[t[2]]);
+    // A face without area in floating point, though positive exactly, cannot serve as a shape.
+    if (!(r.y2 > 0) || !(r.x1 > 0) || !std::isfinite(r.y2)) continue;
+    result.faces.push_back(t);
+    result.rest.push_back(r);
+    ring_area += r.area();
+  }
+  for (const RestTriangle& r : result.rest) {
+    const double longest = std::max({r.x1, std::abs(r.corner(2)), std::abs(r.corner(2) - r.x1)});
+    const double flatness = 2 * r.area() / (longest * longest);
+    result.weights.push_back(kScaffoldWeight * mesh_area * r.area() / ring_area *
+                             std::min(1.0, flatness / kSliver));
+  }
+  return result;
+}
+
+}  // namespace beltrami

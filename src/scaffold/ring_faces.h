@@ -1,0 +1,26 @@
+// The scaffold as faces of an energy: the ring between a polygon and a circle, with rest shapes and
+// weights.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+/// Corners are numbered through the polygon, then through the circle.
+struct RingFaces {
+  std::vector<Vec2> circle;        ///< the outer polygon, to be held fixed
+  std::vector<Triangle> faces;     ///< counter-clockwise
+  std::vector<RestTriangle> rest;  ///< each face at rest as it lies
+  std::vector<double> weights;  ///< of the faces in an energy in which the mesh weighs `mesh_area`
+};
+
+/// Triangulates the ring between a simple counter-clockwise polygon and a circle around it. Joined
+/// to an energy that is infinite for flipped faces, it keeps the polygon from crossing itself
+/// (Jiang et al. 2017, SCAF; paper section 3.5). Throws Error INTERNAL if the polygon is not as
+/// described.
+RingFaces ring_faces(const std::vector<Vec2>& polygon, double mesh_area);
+
+}  // namespace beltrami
