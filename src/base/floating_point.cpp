@@ -38,7 +38,8 @@ StandardFloatingPoint::StandardFloatingPoint()
 }
 
 StandardFloatingPoint::~StandardFloatingPoint() {
-  if (saved_rounding_ != FE_TONEAREST) std::fesetround(saved_rounding_);
+  // Asked again, since a callback of the host may have changed the mode in between.
+  if (std::fegetround() != saved_rounding_) std::fesetround(saved_rounding_);
   write_mode(saved_);
 }
 
