@@ -238,6 +238,21 @@ TEST(Flatten, NamesTheFileThatAFullDiskCutShort) {
   EXPECT_EQ(outcome.err.rfind("beltrami: " + out, 0), 0u) << outcome.err;
 }
 
+TEST(Flatten, SaysWhenMemoryRunsOut) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
+#endif
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquare);
+  std::filesystem::resize_file(in, std::uintmax_t{4} << 30);  // sparse: it takes no room
+  Program program({"flatten", in, directory.path("out.obj"), "--report", directory.path("r.json")},
+                  rlim_t{1} << 30);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_EQ(outcome.err_lines(), 1) << outcome.err;
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["status"], "BELTRAMI_E_OUT_OF_MEMORY");
+}
+
 TEST(CommandLine, ErrorsAreOneLineAndHelpIsNone) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquare), out = directory.path("out.obj");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +24,8 @@ struct Outcome {
 /// Starts the program with its output in the files "out" and "err" of a directory of its own.
 class Program {
  public:
-  explicit Program(std::vector<std::string> arguments) {
+  /// `memory_limit`: bytes of address space, 0 for no limit.
+  explicit Program(std::vector<std::string> arguments, rlim_t memory_limit = 0) {
     arguments.insert(arguments.begin(), BELTRAMI_PROGRAM);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -33,6 +35,8 @@ class Program {
     if (child_ != 0) return;
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
+    const rlimit limit = {memory_limit, memory_limit};
+    if (memory_limit > 0) setrlimit(RLIMIT_AS, &limit);
     execv(pointers[0], pointers.data());
     _exit(127);
   }
