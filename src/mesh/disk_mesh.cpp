@@ -58,9 +58,9 @@ std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle
         }
         // A third face on the edge makes it non-manifold, whichever way it runs.
         const bool third = std::any_of(bucket.begin() + i + 1, bucket.begin() + start[v + 1],
-                                       [&](Index g) {
+                                       [&, larger = std::max(from, to)](Index g) {
                                          const auto [a, b] = ends(g);
-                                         return std::max(a, b) == std::max(from, to);
+                                         return std::max(a, b) == larger;
                                        });
         if (third) {
           throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
