@@ -133,11 +133,11 @@ TEST_P(DensityAt, ClampsTheTwistAndNothingElse) {
 
 TEST_P(DensityAt, HasAProxyOfTheSameValueAndGradientWithAPositiveHessian) {
   const DensityModel exact = SymmetricDirichlet::model(s1, s2);
-  const DensityModel proxy = SymmetricDirichletProxy::model(s1, s2);
+  const DensityModel proxy = SymmetricDirichlet::Proxy::model(s1, s2);
   EXPECT_EQ(proxy.value, exact.value);
   EXPECT_LE(std::abs(proxy.coupling), std::sqrt(proxy.twist * proxy.flip));
   const Vector6 x = corners_of(s1, s2);
-  const FaceModel model = model_of(x, SymmetricDirichletProxy{});
+  const FaceModel model = model_of(x, SymmetricDirichlet::Proxy{});
   EXPECT_EQ(model.gradient, model_of(x, SymmetricDirichlet{}).gradient);
   EXPECT_GE(least_eigenvalue(model.hessian), -1e-12 * model.hessian.norm());
 }
@@ -151,7 +151,7 @@ TEST_P(DensityAt, HasAProxyWhoseMinimumIsTheClosestRotation) {
     const Complex w = fz / std::abs(fz) * kRest.corner(k);
     rotated.segment<2>(2 * k) << w.real(), w.imag();
   }
-  const FaceModel model = model_of(x, SymmetricDirichletProxy{});
+  const FaceModel model = model_of(x, SymmetricDirichlet::Proxy{});
   const Vector6 product = model.hessian * (x - rotated);
   EXPECT_LE((product - model.gradient).norm(), 1e-9 * (1 + model.hessian.norm()));
 }

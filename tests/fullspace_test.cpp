@@ -57,7 +57,8 @@ std::vector<Vec2> scaled(std::vector<Vec2> uvs, double factor) {
 /// Tutte's embedding at its best scale.
 std::vector<Vec2> start_of(const DiskMesh& mesh) {
   const std::vector<Vec2> uvs = tutte_embedding(mesh);
-  return scaled(uvs, best_scale(mesh.faces, disks::rest_of(mesh), uvs));
+  return scaled(
+      uvs, best_scale(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, disks::rest_of(mesh), uvs));
 }
 
 struct Minimum {
@@ -153,14 +154,17 @@ TEST(BestScale, UndoesAScale) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   for (const double s : {1e-6, 0.3, 1e5}) {
     const std::vector<Vec2> uvs = scaled(disks::flat_uvs(mesh), s);
-    EXPECT_NEAR(best_scale(mesh.faces, disks::rest_of(mesh), uvs) * s, 1, 1e-12);
+    EXPECT_NEAR(
+        best_scale(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, disks::rest_of(mesh), uvs) * s,
+        1, 1e-12);
   }
 }
 
 TEST(BestScale, IsOneWhereAFaceIsFlipped) {
   const DiskMesh mesh = disks::disk(meshes::quad());
   const std::vector<Vec2> uvs = {{0, 0}, {3, 0}, {3, 3}, {2, 1}};
-  EXPECT_EQ(best_scale(mesh.faces, disks::rest_of(mesh), uvs), 1);
+  EXPECT_EQ(best_scale(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, disks::rest_of(mesh), uvs),
+            1);
 }
 
 // ---- Line search ----------------------------------------------------------------------------

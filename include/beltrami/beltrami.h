@@ -186,7 +186,9 @@ enum {
 enum {
   BELTRAMI_ENERGY_FORCE_SIGNED_ = -1,
   /* 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2. */
-  BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET = 0
+  BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET = 0,
+  /* (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0. */
+  BELTRAMI_ENERGY_SYMMETRIC_ARAP = 1
 };
 
 /* How an option's value is given. */

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kMethods[] = {"beltrami", "cm", "tutte"};
 constexpr const char* kFlattens[] = {"metric", "dirichlet"};
 constexpr const char* kInjectivities[] = {"global", "local"};
-constexpr const char* kEnergies[] = {"symmetric-dirichlet"};
+constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
 template <auto Member>
 double get(const Options& options) {

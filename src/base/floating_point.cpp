@@ -11,8 +11,12 @@ namespace {
 
 #if defined(__SSE2__) || defined(_M_X64)
 constexpr unsigned kDefaultMxcsr = 0x1f80;  // all exceptions masked, nearest, no FTZ, no DAZ
-unsigned long long read_mode() { return _mm_getcsr(); }
-void write_mode(unsigned long long mode) { _mm_setcsr(static_cast<unsigned>(mode)); }
+unsigned long long read_mode() {
+  return _mm_getcsr();
+}
+void write_mode(unsigned long long mode) {
+  _mm_setcsr(static_cast<unsigned>(mode));
+}
 constexpr unsigned long long kDefaultMode = kDefaultMxcsr;
 #elif defined(__aarch64__)
 unsigned long long read_mode() {
@@ -20,10 +24,14 @@ unsigned long long read_mode() {
   asm volatile("mrs %0, fpcr" : "=r"(mode));
   return mode;
 }
-void write_mode(unsigned long long mode) { asm volatile("msr fpcr, %0" : : "r"(mode)); }
+void write_mode(unsigned long long mode) {
+  asm volatile("msr fpcr, %0" : : "r"(mode));
+}
 constexpr unsigned long long kDefaultMode = 0;
 #else
-unsigned long long read_mode() { return 0; }
+unsigned long long read_mode() {
+  return 0;
+}
 void write_mode(unsigned long long) {}
 constexpr unsigned long long kDefaultMode = 0;
 #endif

@@ -22,8 +22,12 @@ using Complex = std::complex<double>;
 using Triangle = std::array<Index, 3>;
 
 /// The corner after / before corner `k` of a triangle.
-constexpr int next_corner(int k) { return k == 2 ? 0 : k + 1; }
-constexpr int previous_corner(int k) { return k == 0 ? 2 : k - 1; }
+constexpr int next_corner(int k) {
+  return k == 2 ? 0 : k + 1;
+}
+constexpr int previous_corner(int k) {
+  return k == 0 ? 2 : k - 1;
+}
 
 template <class T>
 Index size_of(const std::vector<T>& items) {

@@ -10,7 +10,9 @@ namespace {
 constexpr Index kLeafFaces = 4;
 
 /// a / (a + b) for non-negative a and b, of which one at least should not be zero.
-double share(double a, double b) { return a + b > 0 ? a / (a + b) : 0.0; }
+double share(double a, double b) {
+  return a + b > 0 ? a / (a + b) : 0.0;
+}
 
 }  // namespace
 
@@ -49,7 +51,8 @@ ClosestPoint::ClosestPoint(const std::vector<Vec3>& positions, const std::vector
     : positions_(positions), faces_(faces), normals_(faces.size()), order_(faces.size()) {
   std::vector<Vec3> centroids(faces.size());
   for (Index f = 0; f < size_of(faces); ++f) {
-    const Vec3 &a = positions[faces[f][0]], &b = positions[faces[f][1]], &c = positions[faces[f][2]];
+    const Vec3 &a = positions[faces[f][0]], &b = positions[faces[f][1]],
+               &c = positions[faces[f][2]];
     centroids[f] = (a + b + c) / 3;
     normals_[f] = (b - a).cross(c - a);
   }

@@ -33,7 +33,9 @@ void normalise_phase(FaceMetric& metric) {
   metric.phase = length > 0 ? metric.phase / length : Complex(1);
 }
 
-constexpr FaceMetric zero_metric() { return {0, 0, 0}; }
+constexpr FaceMetric zero_metric() {
+  return {0, 0, 0};
+}
 
 struct FrameOfFace {
   Frame frame;
@@ -100,8 +102,7 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
                                      const std::vector<Vec2>& uvs) {
   std::vector<FaceMetric> metrics(faces.size());
   for (Index f = 0; f < size_of(faces); ++f) {
-    const LinearMap map =
-        linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
+    const LinearMap map = linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
     const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
     if (!(area_factor > 0)) continue;
     metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / std::abs(map.fz)};
@@ -110,9 +111,8 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 }
 
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
-                                       const std::vector<FaceMetric>& metrics,
-                                       const DiskMesh& fine, int threads,
-                                       const Checkpoint& checkpoint) {
+                                       const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
+                                       int threads, const Checkpoint& checkpoint) {
   std::vector<FrameOfFace> coarse_frames(coarse.face_count());
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);

@@ -31,8 +31,7 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 /// and transported into the frame of the fine face. A convex combination throughout: |mu| never
 /// exceeds the greatest coarse one. Faces without a normal get mu = 0.
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
-                                       const std::vector<FaceMetric>& metrics,
-                                       const DiskMesh& fine, int threads,
-                                       const Checkpoint& checkpoint = no_checkpoint);
+                                       const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
+                                       int threads, const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -2,24 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+
+#include "distortion/density.h"
 
 namespace beltrami {
 
-/// Value, derivatives and a positive semi-definite model of the Hessian of an energy density in the
-/// signed singular values s1 >= |s2|. With fz = a e^{i alpha}, fzbar = b e^{i beta}: s1 = a + b,
-/// s2 = a - b. The Hessian in (fz, fzbar) is block diagonal: a radial 2x2 block, and one eigenvalue
-/// for each of the two angular directions, "twist" (d/da / a) and "flip" (d/db / b).
-struct DensityModel {
-  double value;
-  double d1, d2;         ///< derivatives by s1 and s2
-  double h11, h12, h22;  ///< radial block, positive semi-definite
-  double twist, flip;    ///< >= 0
-  double coupling = 0;   ///< between twist and flip, at most sqrt(twist * flip)
-};
-
-/// The energy density that the full-space optimisation minimises. Defined for s2 > 0.
+/// Defined for s2 > 0; minimum 2 at the isometries.
 struct SymmetricDirichlet {
-  static constexpr bool kBarrier = true;  // infinite at s2 = 0
+  static constexpr bool kBarrier = true;
+  static constexpr double kCurvature = 4;
 
   static double value(double s1, double s2) {
     return 0.5 * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2));
@@ -39,21 +31,28 @@ struct SymmetricDirichlet {
     m.flip = 2 * (1 + (s1 * s1 + det + s2 * s2) / (det * det * det));
     return m;
   }
-};
 
-/// The same energy with the quadratic model of SLIM (Rabinovich et al. 2017): 1/2 |W (J - R)|^2 with
-/// weights w_i^2 = Psi'(s_i) / (s_i - 1). Its minimum is a rotation, not a small move: where a face
-/// is nearly singular its curvature is far below Newton's, so that it does not block the others.
-struct SymmetricDirichletProxy {
-  static DensityModel model(double s1, double s2) {
-    const auto weight = [](double s) { return (s + 1) * (s * s + 1) / (s * s * s); };
-    DensityModel m = SymmetricDirichlet::model(s1, s2);
-    m.h11 = weight(s1);
-    m.h12 = 0;
-    m.h22 = weight(s2);
-    m.twist = m.flip = m.h11 + m.h22;
-    m.coupling = m.h22 - m.h11;
-    return m;
+  /// w_i = Psi'(s_i) / (s_i - 1).
+  struct Proxy {
+    static DensityModel model(double s1, double s2) {
+      const auto weight = [](double s) { return (s + 1) * (s * s + 1) / (s * s * s); };
+      DensityModel m = SymmetricDirichlet::model(s1, s2);
+      use_weighted_rotation_model(weight(s1), weight(s2), m);
+      return m;
+    }
+  };
+
+  /// (|fz|^2 + |fzbar|^2) (1 + det^-2) with det = |fz|^2 - |fzbar|^2: no square root.
+  static DensitySlopes slopes(const LinearMap& map) {
+    const double x = std::norm(map.fz), y = std::norm(map.fzbar), det = x - y;
+    const double inverse_sq = 1 / (det * det);
+    const double by_norm = 2 * (1 + inverse_sq), by_det = -4 * (x + y) * inverse_sq / det;
+    return {0.5 * (x + y) * by_norm, by_norm + by_det, by_norm - by_det};
+  }
+
+  /// s^4 = sum(A / sigma^2) / sum(A sigma^2) over both singular values.
+  static double best_scale(const ScaleMoments& sum) {
+    return std::sqrt(std::sqrt(sum.inverse_norm_sq / sum.norm_sq));
   }
 };
 

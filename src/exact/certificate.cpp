@@ -78,7 +78,9 @@ class PolygonCrossings {
   static bool folds_back(const Vec2& a, const Vec2& b, const Vec2& c) {
     if (orientation(a, b, c) != 0) return false;
     // Collinear: b must lie strictly between a and c. Comparing coordinates is exact.
-    const auto between = [](double p, double q, double r) { return (p < q && q < r) || (p > q && q > r); };
+    const auto between = [](double p, double q, double r) {
+      return (p < q && q < r) || (p > q && q > r);
+    };
     const bool x_straight = between(a.x(), b.x(), c.x()) || (a.x() == b.x() && b.x() == c.x());
     const bool y_straight = between(a.y(), b.y(), c.y()) || (a.y() == b.y() && b.y() == c.y());
     return !(x_straight && y_straight) || a == b || b == c;
@@ -102,9 +104,8 @@ class PolygonCrossings {
 }  // namespace
 
 int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return static_cast<int>(CGAL::orientation(Kernel::Point_2(a.x(), a.y()),
-                                            Kernel::Point_2(b.x(), b.y()),
-                                            Kernel::Point_2(c.x(), c.y())));
+  return static_cast<int>(CGAL::orientation(
+      Kernel::Point_2(a.x(), a.y()), Kernel::Point_2(b.x(), b.y()), Kernel::Point_2(c.x(), c.y())));
 }
 
 std::vector<Index> non_positive_faces(const std::vector<Triangle>& faces,

@@ -19,8 +19,8 @@ struct Orientations {
 };
 
 struct Crossings {
-  std::int64_t count = 0;                           ///< pairs of edges that meet illegally
-  std::array<Index, 2> first_pair = {kNone, kNone}; ///< start vertices of the first such pair
+  std::int64_t count = 0;                            ///< pairs of edges that meet illegally
+  std::array<Index, 2> first_pair = {kNone, kNone};  ///< start vertices of the first such pair
 };
 
 struct Certificate {

@@ -32,8 +32,7 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
     double along = 0;
     for (Index i = begin + 1; i < end; ++i) {
       along += (fine.positions[at(i)] - fine.positions[at(i - 1)]).norm();
-      const double t = length > 0 ? along / length
-                                  : static_cast<double>(i - begin) / (end - begin);
+      const double t = length > 0 ? along / length : static_cast<double>(i - begin) / (end - begin);
       uvs[at(i)] = (1 - t) * from + t * to;
     }
     begin = end;

@@ -23,10 +23,10 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
 /// q = (v1 + mu conj(v1)) conj(v2 + mu conj(v2)).)
 std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu);
 
-/// Solves for the interior vertices, harmonic in the conformal class of `metric` (its mu alone), with
-/// the boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand sides.
-/// Negative weights are kept; the matrix is definite all the same, being the stiffness matrix of a
-/// metric. Throws Error SOLVER.
+/// Solves for the interior vertices, harmonic in the conformal class of `metric` (its mu alone),
+/// with the boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand
+/// sides. Negative weights are kept; the matrix is definite all the same, being the stiffness
+/// matrix of a metric. Throws Error SOLVER.
 void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs);
 

@@ -71,9 +71,10 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
   if (free_count_ == 0) return;
   solver_->analyze(laplacian.matrix());
   if (!solver_->factorize(laplacian.matrix())) {
-    throw Error(BELTRAMI_E_SOLVER,
-                "the Laplacian of the prolonged metric is not definite in floating point: the faces "
-                "of the mesh are too degenerate; try the method cm");
+    throw Error(
+        BELTRAMI_E_SOLVER,
+        "the Laplacian of the prolonged metric is not definite in floating point: the faces "
+        "of the mesh are too degenerate; try the method cm");
   }
 }
 

@@ -1,6 +1,6 @@
-// The fine map from the whole prolonged metric: one Poisson solve, rotations re-fitted with the same
-// factor. Free boundary: nothing is taken from the coarse map but its metric, and the places of
-// vertices that are held on purpose.
+// The fine map from the whole prolonged metric: one Poisson solve, rotations re-fitted with the
+// same factor. Free boundary: nothing is taken from the coarse map but its metric, and the places
+// of vertices that are held on purpose.
 #pragma once
 
 #include <memory>
@@ -16,9 +16,10 @@
 
 namespace beltrami {
 
-/// The Laplacian of a prolonged metric, weighted by 3D area, with some vertices held, and its factor.
-/// 1/4 of the inverse times the total area approximates the inverse Hessian of the mean symmetric
-/// Dirichlet energy at a map that has the metric, so the same factor preconditions the polish.
+/// The Laplacian of a prolonged metric, weighted by 3D area, with some vertices held, and its
+/// factor. 1/4 of the inverse times the total area approximates the inverse Hessian of the mean
+/// symmetric Dirichlet energy at a map that has the metric, so the same factor preconditions the
+/// polish.
 class MetricLaplacian {
  public:
   /// Assembles and factorizes. `held`: per vertex; at least one must be. Throws Error SOLVER.

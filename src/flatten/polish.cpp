@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "distortion/symmetric_dirichlet.h"
 #include "fullspace/assembly.h"
 #include "fullspace/line_search.h"
 
@@ -18,9 +17,10 @@ constexpr std::size_t kHistory = 6;
 constexpr double kSingularShare = 0.8;
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
-constexpr double kFullStep = 0.5;     // shorter steps say nothing about convergence
+constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
 constexpr double kBlockedStep = 0.1;
 
+template <class Density>
 class Polish {
  public:
   Polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest, int threads)
@@ -34,9 +34,10 @@ class Polish {
       for (std::int64_t f = begin; f < end; ++f) {
         const Triangle& t = faces_[f];
         const LinearMap map = linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-        const double x = std::norm(map.fz), y = std::norm(map.fzbar), det = x - y;
-        if (!(det > 0)) return std::numeric_limits<double>::infinity();
-        sum += rest_[f].area() * (x + y) * (1 + 1 / (det * det));
+        if (!(std::norm(map.fz) > std::norm(map.fzbar))) {
+          return std::numeric_limits<double>::infinity();
+        }
+        sum += rest_[f].area() * Density::slopes(map).value;
       }
       return sum;
     };
@@ -61,17 +62,14 @@ class Polish {
   }
 
  private:
-  /// d/dw of (|fz|^2 + |fzbar|^2) (1 + det^-2), det = |fz|^2 - |fzbar|^2, through
-  /// fz = sum conj(G_k) w_k / 2 and fzbar = sum G_k w_k / 2.
+  /// Through fz = sum conj(G_k) w_k / 2 and fzbar = sum G_k w_k / 2.
   std::array<Vec2, 3> face_gradient(Index f, const std::vector<Vec2>& uvs) const {
     const Triangle& t = faces_[f];
     const LinearMap map = linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-    const double x = std::norm(map.fz), y = std::norm(map.fzbar), det = x - y;
-    const double inverse_sq = 1 / (det * det);
-    const double by_norm = 1 + inverse_sq, by_det = -2 * (x + y) * inverse_sq / det;
-    const double weight = rest_[f].area() / total_area_;
-    const Complex dx = weight * (by_norm + by_det) * map.fz;
-    const Complex dy = weight * (by_norm - by_det) * map.fzbar;
+    const DensitySlopes slopes = Density::slopes(map);
+    const double weight = 0.5 * rest_[f].area() / total_area_;
+    const Complex dx = weight * slopes.by_fz * map.fz;
+    const Complex dy = weight * slopes.by_fzbar * map.fzbar;
     std::array<Vec2, 3> result;
     for (int k = 0; k < 3; ++k) {
       const Complex hat = rest_[f].hat_gradient(k);
@@ -88,7 +86,9 @@ class Polish {
   std::vector<std::array<Vec2, 3>> corner_gradients_;
 };
 
-double dot(const DenseMatrix& a, const DenseMatrix& b) { return a.cwiseProduct(b).sum(); }
+double dot(const DenseMatrix& a, const DenseMatrix& b) {
+  return a.cwiseProduct(b).sum();
+}
 
 /// The pairs of the last steps, and the two-loop recursion over them.
 class History {
@@ -126,13 +126,12 @@ class History {
   std::deque<Pair> pairs_;
 };
 
-}  // namespace
-
-PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                    const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
-                    std::vector<Vec2>& uvs, const PolishOptions& options,
-                    const Checkpoint& checkpoint) {
-  Polish problem(faces, rest, options.threads);
+template <class Density>
+PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                     const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
+                     std::vector<Vec2>& uvs, const PolishOptions& options,
+                     const Checkpoint& checkpoint) {
+  Polish<Density> problem(faces, rest, options.threads);
   PolishResult result;
   result.energies.push_back(problem.energy(uvs));
   if (!std::isfinite(result.energies.front())) return result;
@@ -151,8 +150,8 @@ PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTr
     }
     if (!(slope < 0)) break;
     for (Index v = 0; v < size_of(uvs); ++v) direction[v] = flat.row(v).transpose();
-    double length = std::min(
-        1.0, kSingularShare * first_singular_step(faces, uvs, direction, options.threads));
+    double length =
+        std::min(1.0, kSingularShare * first_singular_step(faces, uvs, direction, options.threads));
     double after = std::numeric_limits<double>::infinity();
     for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
       for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
@@ -173,6 +172,17 @@ PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTr
     if (result.blocked || result.converged) break;
   }
   return result;
+}
+
+}  // namespace
+
+PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                    const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
+                    std::vector<Vec2>& uvs, const PolishOptions& options,
+                    const Checkpoint& checkpoint) {
+  return with_density(options.energy, [&]<class Density>(Density) {
+    return descend<Density>(faces, rest, precondition, uvs, options, checkpoint);
+  });
 }
 
 }  // namespace beltrami

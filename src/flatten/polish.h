@@ -6,12 +6,14 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
+#include "distortion/energy.h"
 #include "mesh/rest_shape.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
 
 struct PolishOptions {
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
   double tolerance = 1e-5;  ///< relative energy decrease of a step that ends it
   int max_iterations = 20;
   int threads = 1;
@@ -24,7 +26,7 @@ struct PolishResult {
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 
-/// Minimises the mean symmetric Dirichlet energy by L-BFGS (Nocedal 1980; history 6) with
+/// Minimises the mean energy by L-BFGS (Nocedal 1980; history 6) with
 /// `precondition` for the initial inverse Hessian (one row per vertex in and out). No face ever
 /// flips. It ends early where faces that are nearly singular block the steps: clean_outliers mends
 /// those. Precondition: all faces of `uvs` are positively oriented.

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
-#include "distortion/symmetric_dirichlet.h"
+#include "distortion/density.h"
 #include "mesh/rest_shape.h"
 #include "sparse/mesh_matrix.h"
 
@@ -92,9 +92,8 @@ void assemble(const std::vector<Triangle>& faces, const std::vector<RestTriangle
         const Index row = hessian.row(t[k]);
         if (row != kNone) gradient.segment<2>(2 * row) += models[i].gradient.segment<2>(2 * k);
         for (int l = k; l < 3; ++l) {
-          hessian.add(first + i, t, k, l, [&](int r, int c) {
-            return models[i].hessian(2 * k + r, 2 * l + c);
-          });
+          hessian.add(first + i, t, k, l,
+                      [&](int r, int c) { return models[i].hessian(2 * k + r, 2 * l + c); });
         }
       }
     }

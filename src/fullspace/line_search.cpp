@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::int64_t kGrain = 8192;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// Smallest positive root of c0 + c1 t + c2 t^2 for c0 > 0.
 double smallest_positive_root(double c0, double c1, double c2) {
@@ -34,8 +36,8 @@ double first_singular_step(const std::vector<Triangle>& faces, const std::vector
       const Triangle& t = faces[f];
       const Vec2 e1 = uvs[t[1]] - uvs[t[0]], e2 = uvs[t[2]] - uvs[t[0]];
       const Vec2 p1 = direction[t[1]] - direction[t[0]], p2 = direction[t[2]] - direction[t[0]];
-      least = std::min(least, smallest_positive_root(
-                                  cross(e1, e2), cross(e1, p2) + cross(p1, e2), cross(p1, p2)));
+      least = std::min(least, smallest_positive_root(cross(e1, e2), cross(e1, p2) + cross(p1, e2),
+                                                     cross(p1, p2)));
     }
   });
   return *std::min_element(smallest.begin(), smallest.end());

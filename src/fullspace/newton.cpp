@@ -1,6 +1,5 @@
 #include "fullspace/newton.h"
 
-#include "distortion/symmetric_dirichlet.h"
 #include "fullspace/newton_step.h"
 
 namespace beltrami {
@@ -10,31 +9,36 @@ namespace {
 /// energy hardly falls, long before the minimum.
 constexpr double kFullStep = 0.5;
 
+/// Unless there are many of them: energies that are not smooth (symmetric ARAP at s1 = s2) creep
+/// towards their minimum in shortened steps.
+constexpr int kPatience = 5;
+
 /// Steps below this length are blocked by faces that are nearly singular.
 constexpr double kBlockedStep = 0.02;
 
 /// The number of steps is not known beforehand; ordinary meshes take about twelve.
-double guessed_progress(int iterations) { return iterations / (iterations + 12.0); }
+double guessed_progress(int iterations) {
+  return iterations / (iterations + 12.0);
+}
 
-}  // namespace
-
-NewtonResult minimise_energy(const std::vector<Triangle>& faces,
-                             const std::vector<RestTriangle>& rest,
-                             const std::vector<bool>& fixed, std::vector<Vec2>& uvs,
-                             const NewtonOptions& options, const Checkpoint& checkpoint) {
-  NewtonStepper<SymmetricDirichlet> stepper(faces, rest, fixed, options.threads);
+template <class Density>
+NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                      const std::vector<bool>& fixed, std::vector<Vec2>& uvs,
+                      const NewtonOptions& options, const Checkpoint& checkpoint) {
+  NewtonStepper<Density> stepper(faces, rest, fixed, options.threads);
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
   int proxy_steps = options.proxy_steps;
   std::vector<Vec2> admitted;
+  int little_gains = 0;
   while (!result.converged && result.iterations() < options.max_iterations) {
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
     if (options.admissible) admitted = uvs;
-    const NewtonStep step =
-        proxy ? stepper.step_with(SymmetricDirichletProxy{}, uvs, before) : stepper.step(uvs, before);
+    const NewtonStep step = proxy ? stepper.step_with(typename Density::Proxy{}, uvs, before)
+                                  : stepper.step(uvs, before);
     if (step.length > 0 && options.admissible && !options.admissible(uvs)) {
       uvs.swap(admitted);
       result.refused = true;
@@ -51,9 +55,22 @@ NewtonResult minimise_energy(const std::vector<Triangle>& faces,
       break;
     }
     if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;
-    result.converged = step.length >= kFullStep && before - step.energy <= options.tolerance * before;
+    const bool little = before - step.energy <= options.tolerance * before;
+    little_gains = little && step.length >= kBlockedStep ? little_gains + 1 : 0;
+    result.converged = (little && step.length >= kFullStep) || little_gains >= kPatience;
   }
   return result;
+}
+
+}  // namespace
+
+NewtonResult minimise_energy(const std::vector<Triangle>& faces,
+                             const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
+                             std::vector<Vec2>& uvs, const NewtonOptions& options,
+                             const Checkpoint& checkpoint) {
+  return with_density(options.energy, [&]<class Density>(Density) {
+    return minimise<Density>(faces, rest, fixed, uvs, options, checkpoint);
+  });
 }
 
 }  // namespace beltrami

@@ -1,6 +1,5 @@
-// Projected Newton in the space of all piecewise linear maps: composite majorization for the
-// symmetric Dirichlet energy (Shtengel et al. 2017; paper section 3.2), started by a few steps of
-// SLIM (Rabinovich et al. 2017).
+// Projected Newton in the space of all piecewise linear maps: composite majorization (Shtengel et
+// al. 2017; paper section 3.2), started by a few steps of SLIM (Rabinovich et al. 2017).
 #pragma once
 
 #include <functional>
@@ -8,12 +7,14 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
+#include "distortion/energy.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
 
 struct NewtonOptions {
-  double tolerance = 1e-4;   ///< relative energy decrease of a step of at least 1/2 that ends it
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
   int threads = 1;
   /// SLIM steps at the start, and again whenever a step is blocked by nearly singular faces: five
@@ -28,21 +29,20 @@ struct NewtonOptions {
 struct NewtonResult {
   std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
   bool converged = false;
-  bool refused = false;          ///< ended by a step that was not admissible
+  bool refused = false;  ///< ended by a step that was not admissible
 
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 
-/// Minimises the mean symmetric Dirichlet energy (weighted by rest area) over the vertices that are
+/// Minimises the mean energy (weighted by rest area) over the vertices that are
 /// not `fixed`, from `uvs`, in place. No face ever flips: the step is bounded by the first
 /// singular face, then halved until the energy falls sufficiently (Armijo).
 /// Preconditions: every face is positively oriented in `uvs`; at least one vertex is fixed if the
 /// faces are connected (a free map drifts otherwise).
 /// Throws Error SOLVER if no shift makes a system definite.
 NewtonResult minimise_energy(const std::vector<Triangle>& faces,
-                             const std::vector<RestTriangle>& rest,
-                             const std::vector<bool>& fixed, std::vector<Vec2>& uvs,
-                             const NewtonOptions& options,
+                             const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
+                             std::vector<Vec2>& uvs, const NewtonOptions& options,
                              const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -24,10 +24,10 @@ struct NewtonStep {
   double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model
 };
 
-/// Newton's method on the weighted mean of a density over `faces`: by rest area, or by `weights`, one
-/// per face, divided by the sum of the first `counted` of them. A Density has
-/// value(s1, s2), model(s1, s2) and `kBarrier`: whether it is infinite at s2 = 0, so that steps must
-/// stop short of singular faces. Keeps references to `faces` and `rest`.
+/// Newton's method on the weighted mean of a density over `faces`: by rest area, or by `weights`,
+/// one per face, divided by the sum of the first `counted` of them. A Density has value(s1, s2),
+/// model(s1, s2) and `kBarrier`: whether it is infinite at s2 = 0, so that steps must stop short of
+/// singular faces. Keeps references to `faces` and `rest`.
 template <class Density>
 class NewtonStepper {
  public:
@@ -64,7 +64,9 @@ class NewtonStepper {
   /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
   /// A step that is not accepted is halved further, like one that does not lower the energy.
   /// Throws Error SOLVER if no shift makes the system definite.
-  NewtonStep step(std::vector<Vec2>& uvs, double energy) { return step_with(density_, uvs, energy); }
+  NewtonStep step(std::vector<Vec2>& uvs, double energy) {
+    return step_with(density_, uvs, energy);
+  }
 
   /// The same with the Hessian model of another density that has the same value and gradient.
   template <class Model>
@@ -134,7 +136,8 @@ template <class Model>
 NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
                                              double energy) {
   assemble(
-      faces_, rest_, uvs, model, [&](Index f) { return weights_[f]; }, threads_, hessian_, gradient_);
+      faces_, rest_, uvs, model, [&](Index f) { return weights_[f]; }, threads_, hessian_,
+      gradient_);
   factorize();
   const Eigen::VectorXd flat = solver_->solve(-gradient_);
   NewtonStep result;
@@ -148,7 +151,8 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   }
   double length = 1;
   if (Density::kBarrier) {
-    length = std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
+    length =
+        std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
   }
   std::vector<Vec2> trial(uvs.size());
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {

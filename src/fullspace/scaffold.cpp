@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "distortion/symmetric_dirichlet.h"
 #include "exact/certificate.h"
 #include "fullspace/newton_step.h"
 #include "scaffold/ring_faces.h"
@@ -46,31 +45,31 @@ Surrounded surround(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   return all;
 }
 
+template <class Density>
 double mesh_energy(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                    const std::vector<Vec2>& uvs) {
   double sum = 0, area = 0;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triangle& t = mesh.faces[f];
     const SingularValues s = singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-    sum += rest[f].area() * SymmetricDirichlet::value(s.s1, s.s2);
+    sum += rest[f].area() * Density::value(s.s1, s.s2);
     area += rest[f].area();
   }
   return sum / area;
 }
 
-}  // namespace
-
-NewtonResult minimise_with_scaffold(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                    std::vector<Vec2>& uvs, const NewtonOptions& options,
-                                    const Checkpoint& checkpoint) {
+template <class Density>
+NewtonResult minimise(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                      std::vector<Vec2>& uvs, const NewtonOptions& options,
+                      const Checkpoint& checkpoint) {
   NewtonResult result;
-  result.energies.push_back(mesh_energy(mesh, rest, uvs));
+  result.energies.push_back(mesh_energy<Density>(mesh, rest, uvs));
   int little_gain = 0;
   while (!result.converged && result.iterations() < options.max_iterations) {
     checkpoint(result.iterations() / (result.iterations() + 12.0));
     Surrounded all = surround(mesh, rest, uvs);
-    NewtonStepper<SymmetricDirichlet> stepper(all.faces, all.rest, all.weights, mesh.face_count(),
-                                              all.fixed, options.threads);
+    NewtonStepper<Density> stepper(all.faces, all.rest, all.weights, mesh.face_count(), all.fixed,
+                                   options.threads);
     stepper.set_accept([&](const std::vector<Vec2>& trial) {
       return count_crossings(mesh.boundary, trial).count == 0;
     });
@@ -78,12 +77,22 @@ NewtonResult minimise_with_scaffold(const DiskMesh& mesh, const std::vector<Rest
     if (step.length == 0) break;
     std::copy_n(all.uvs.begin(), uvs.size(), uvs.begin());
     const double before = result.energies.back();
-    result.energies.push_back(mesh_energy(mesh, rest, uvs));
+    result.energies.push_back(mesh_energy<Density>(mesh, rest, uvs));
     const bool little = before - result.energies.back() <= options.tolerance * before;
     little_gain = little ? little_gain + 1 : 0;
     result.converged = (little && step.length >= kFullStep) || little_gain >= kPatience;
   }
   return result;
+}
+
+}  // namespace
+
+NewtonResult minimise_with_scaffold(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                                    std::vector<Vec2>& uvs, const NewtonOptions& options,
+                                    const Checkpoint& checkpoint) {
+  return with_density(options.energy, [&]<class Density>(Density) {
+    return minimise<Density>(mesh, rest, uvs, options, checkpoint);
+  });
 }
 
 }  // namespace beltrami

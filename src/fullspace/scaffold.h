@@ -12,10 +12,10 @@
 
 namespace beltrami {
 
-/// Minimises the mean symmetric Dirichlet energy like minimise_energy, and never lets the boundary
-/// meet itself: before each step the ring between the boundary and a circle around it is triangulated
-/// anew, its faces, at rest as they lie, joining the energy with a small weight. `energies` are the
-/// mesh's alone. `options.admissible` and `options.proxy_steps` are not used.
+/// Minimises the mean energy like minimise_energy, and never lets the boundary
+/// meet itself: before each step the ring between the boundary and a circle around it is
+/// triangulated anew, its faces, at rest as they lie, joining the energy with a small weight.
+/// `energies` are the mesh's alone. `options.admissible` and `options.proxy_steps` are not used.
 /// Precondition: `uvs` is injective. Throws Error SOLVER.
 NewtonResult minimise_with_scaffold(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                     std::vector<Vec2>& uvs, const NewtonOptions& options,

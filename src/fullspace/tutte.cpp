@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "fullspace/assembly.h"
 #include "sparse/mesh_matrix.h"
 #include "sparse/spd_solver.h"
 
@@ -72,19 +73,22 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
   return uvs;
 }
 
-double best_scale(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                  const std::vector<Vec2>& uvs) {
-  double stretch = 0, shrink = 0;
+double best_scale(Energy energy, const std::vector<Triangle>& faces,
+                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
+  ScaleMoments sum;
   for (Index f = 0; f < size_of(faces); ++f) {
-    const LinearMap map =
-        linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
-    const double norm_sq = 2 * (std::norm(map.fz) + std::norm(map.fzbar));
-    const double det = std::norm(map.fz) - std::norm(map.fzbar);
-    if (!(det > 0)) return 1;
-    stretch += rest[f].area() * norm_sq;
-    shrink += rest[f].area() * norm_sq / (det * det);
+    const SingularValues s =
+        singular_values(linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]));
+    if (!(s.s2 > 0)) return 1;
+    const double area = rest[f].area();
+    sum.s1 += area * s.s1;
+    sum.s1_sq += area * s.s1 * s.s1;
+    sum.norm_sq += area * (s.s1 * s.s1 + s.s2 * s.s2);
+    sum.inverse_s2 += area / s.s2;
+    sum.inverse_s2_sq += area / (s.s2 * s.s2);
+    sum.inverse_norm_sq += area / (s.s1 * s.s1) + area / (s.s2 * s.s2);
   }
-  const double scale = std::sqrt(std::sqrt(shrink / stretch));
+  const double scale = with_density(energy, [&](auto density) { return density.best_scale(sum); });
   return std::isfinite(scale) && scale > 0 ? scale : 1;
 }
 

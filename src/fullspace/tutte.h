@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "distortion/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
@@ -15,10 +16,9 @@ namespace beltrami {
 /// Throws Error SOLVER if the system cannot be solved.
 std::vector<Vec2> tutte_embedding(const DiskMesh& mesh);
 
-/// The global scale that minimises the mean symmetric Dirichlet energy of a map:
-/// s^4 = sum(A / sigma^2) / sum(A sigma^2) over both singular values of all faces. 1 if a face is
-/// flipped or degenerate.
-double best_scale(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                  const std::vector<Vec2>& uvs);
+/// The global scale at which the mean energy of a map is least; 1 if a face is flipped or
+/// degenerate.
+double best_scale(Energy energy, const std::vector<Triangle>& faces,
+                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
 
 }  // namespace beltrami

@@ -9,7 +9,9 @@
 namespace beltrami {
 namespace {
 
-std::string quoted(Index index) { return std::to_string(index); }
+std::string quoted(Index index) {
+  return std::to_string(index);
+}
 
 /// Pairs half-edges by counting sort over the smaller end vertex: no hash map, no comparison sort.
 /// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned.
@@ -124,10 +126,10 @@ void require_one_component(const DiskMesh& mesh) {
   const auto outside = std::find(reached.begin(), reached.end(), false);
   if (outside == reached.end()) return;
   const auto face = static_cast<Index>(outside - reached.begin());
-  throw Error(BELTRAMI_E_COMPONENTS,
-              "face " + quoted(face) +
-                  " is not connected to face 0: flatten each component on its own",
-              Element::face(face));
+  throw Error(
+      BELTRAMI_E_COMPONENTS,
+      "face " + quoted(face) + " is not connected to face 0: flatten each component on its own",
+      Element::face(face));
 }
 
 /// Walks the boundary; throws CLOSED, BOUNDARIES or GENUS.
@@ -156,10 +158,11 @@ void trace_boundary(DiskMesh& mesh) {
   if (size_of(mesh.boundary) != boundary_edges) {
     Index other = 0;
     while (!mesh.on_boundary[other] || visited[other]) ++other;
-    throw Error(BELTRAMI_E_BOUNDARIES,
-                "vertex " + quoted(other) +
-                    " lies on a second boundary loop: fill the hole, or cut from it to the boundary",
-                Element::vertex(other));
+    throw Error(
+        BELTRAMI_E_BOUNDARIES,
+        "vertex " + quoted(other) +
+            " lies on a second boundary loop: fill the hole, or cut from it to the boundary",
+        Element::vertex(other));
   }
   const std::int64_t edges = (std::int64_t{3} * mesh.face_count() + boundary_edges) / 2;
   const std::int64_t euler = mesh.vertex_count() - edges + mesh.face_count();
@@ -240,8 +243,8 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 double surface_area(const DiskMesh& mesh) {
   double area = 0;
   for (const Triangle& face : mesh.faces) {
-    area += triangle_area(mesh.positions[face[0]], mesh.positions[face[1]],
-                          mesh.positions[face[2]]);
+    area +=
+        triangle_area(mesh.positions[face[0]], mesh.positions[face[1]], mesh.positions[face[2]]);
   }
   return area;
 }

@@ -11,13 +11,13 @@ namespace beltrami {
 /// Invariants (kept by build_disk): consistently oriented, edge- and vertex-manifold, connected,
 /// one boundary loop, Euler characteristic 1, every vertex used by a face, positions finite.
 struct DiskMesh {
-  std::vector<Vec3> positions;   ///< one per vertex
-  std::vector<Triangle> faces;   ///< corners counter-clockwise
-  std::vector<Index> twin;       ///< per half-edge: the opposite one, or kNone on the boundary
-  std::vector<Index> outgoing;   ///< per vertex: an outgoing half-edge; on the boundary the first
-                                 ///< in counter-clockwise order (its own edge is a boundary edge)
-  std::vector<Index> boundary;   ///< the boundary loop, the surface on its left
-  std::vector<bool> on_boundary; ///< per vertex
+  std::vector<Vec3> positions;    ///< one per vertex
+  std::vector<Triangle> faces;    ///< corners counter-clockwise
+  std::vector<Index> twin;        ///< per half-edge: the opposite one, or kNone on the boundary
+  std::vector<Index> outgoing;    ///< per vertex: an outgoing half-edge; on the boundary the first
+                                  ///< in counter-clockwise order (its own edge is a boundary edge)
+  std::vector<Index> boundary;    ///< the boundary loop, the surface on its left
+  std::vector<bool> on_boundary;  ///< per vertex
 
   Index vertex_count() const { return size_of(positions); }
   Index face_count() const { return size_of(faces); }
@@ -51,8 +51,8 @@ DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces);
 
 /// The vertices that faces use, renumbered in order.
 struct ReferencedVertices {
-  std::vector<Index> original;   ///< per kept vertex: its index before
-  std::vector<Index> renumbered; ///< per old vertex: its index now, or kNone
+  std::vector<Index> original;    ///< per kept vertex: its index before
+  std::vector<Index> renumbered;  ///< per old vertex: its index now, or kNone
 };
 
 /// Finds the vertices that `faces` use and renumbers `faces` in place.

@@ -17,17 +17,16 @@
 #include "repair/repair.h"
 #include "simplify/simplify.h"
 
-
 namespace beltrami {
 namespace {
 
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
-constexpr int kRotations = 2;             // ARAP rounds after the Poisson solve
-constexpr std::size_t kManyFlips = 20;    // beyond which the harmonic map is looked at too
+constexpr int kRotations = 2;           // ARAP rounds after the Poisson solve
+constexpr std::size_t kManyFlips = 20;  // beyond which the harmonic map is looked at too
 constexpr int kPolishIterations = 20;
-constexpr int kPolishRounds = 6;          // each ended by faces that block the steps
-constexpr double kFirstReach = 0.01;      // of the boundary length, held on both sides of a crossing
+constexpr int kPolishRounds = 6;      // each ended by faces that block the steps
+constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
 /// What is known about the fine mesh when the coarse one is done.
@@ -98,9 +97,9 @@ void Run::report(double fraction, const char* name) {
   }
 }
 
-/// Tutte's embedding, then composite majorization; with a scaffold from the first step on that would
-/// make the boundary cross itself. A start that is folded in floating point is mended first; if it
-/// cannot be, it is returned as it is, and the certificate will say so.
+/// Tutte's embedding, then composite majorization; with a scaffold from the first step on that
+/// would make the boundary cross itself. A start that is folded in floating point is mended first;
+/// if it cannot be, it is returned as it is, and the certificate will say so.
 std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until) {
   std::vector<Vec2> uvs;
   stage(name, until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
@@ -108,11 +107,12 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     uvs = tutte_embedding(mesh);
     checkpoint(0.02);
     if (repair(mesh, rest, uvs, options_.threads, checkpoint).flips_after > 0) return;
-    const double scale = best_scale(mesh.faces, rest, uvs);
+    const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
     for (Vec2& w : uvs) w *= scale;
     std::vector<bool> fixed(mesh.vertex_count(), false);
     fixed[mesh.boundary.front()] = true;
     NewtonOptions newton;
+    newton.energy = options_.energy;
     newton.tolerance = options_.tolerance;
     newton.max_iterations = options_.max_iterations;
     newton.threads = options_.threads;
@@ -239,11 +239,14 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   if (global && count_crossings(disk_.boundary, uvs).count > 0) return uvs;
 
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const double quarter_area = 0.25 * surface_area(disk_);
+    const double curvature =
+        with_density(options_.energy, [](auto density) { return density.kCurvature; });
+    const double step = surface_area(disk_) / curvature;
     const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
-      return quarter_area * laplacian->solve(gradient);
+      return step * laplacian->solve(gradient);
     };
     PolishOptions polish_options;
+    polish_options.energy = options_.energy;
     polish_options.threads = options_.threads;
     for (int round = 0; round < kPolishRounds; ++round) {
       polish_options.max_iterations = kPolishIterations - statistics.iterations;
@@ -253,7 +256,7 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
             checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
           });
       statistics.iterations += polished.iterations();
-      clean_outliers(disk_, fine.rest, uvs, options_.threads);
+      clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
       if (!polished.blocked) break;
     }
   });
@@ -268,7 +271,7 @@ bool Run::mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs) {
     result_.flips_before_repair = repaired.flips_before;
     statistics.iterations = static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes);
     positive = repaired.flips_after == 0;
-    if (positive) clean_outliers(disk_, fine.rest, uvs, options_.threads);
+    if (positive) clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
   });
   return positive;
 }
@@ -310,9 +313,8 @@ Flattening Run::flatten(const Normalisation& frame) {
       uvs = run_cm(disk_, "cm", 0.9);
       break;
     case BELTRAMI_METHOD_TUTTE:
-      stage("tutte", 0.9, [&](StageStatistics&, const Checkpoint&) {
-        uvs = tutte_embedding(disk_);
-      });
+      stage("tutte", 0.9,
+            [&](StageStatistics&, const Checkpoint&) { uvs = tutte_embedding(disk_); });
       break;
     default:
       uvs = run_beltrami();

@@ -45,7 +45,7 @@ struct Flattening {
   std::int64_t coarse_faces = 0;         ///< of the mesh that CM ran on
   std::int64_t flips_before_repair = 0;
   double seconds = 0, cpu_seconds = 0;
-  std::uint64_t peak_memory_bytes = 0;   ///< of the process so far
+  std::uint64_t peak_memory_bytes = 0;  ///< of the process so far
 };
 
 /// Called on the calling thread; `fraction` never decreases. Returns true to cancel.

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "distortion/symmetric_dirichlet.h"
 #include "exact/certificate.h"
 #include "fullspace/assembly.h"
 #include "fullspace/newton.h"
@@ -25,17 +24,20 @@ constexpr int kNewtonSteps = 10;
 constexpr double kMostFaces = 0.001;
 
 /// Energy of each face; infinite where it is not positive.
-std::vector<double> face_energies(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+std::vector<double> face_energies(Energy energy, const DiskMesh& mesh,
+                                  const std::vector<RestTriangle>& rest,
                                   const std::vector<Vec2>& uvs, int threads) {
   std::vector<double> energies(mesh.faces.size());
-  parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      const Triangle& t = mesh.faces[f];
-      const SingularValues s =
-          singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-      energies[f] = s.s2 > 0 ? SymmetricDirichlet::value(s.s1, s.s2)
-                             : std::numeric_limits<double>::infinity();
-    }
+  with_density(energy, [&](auto density) {
+    parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t f = begin; f < end; ++f) {
+        const Triangle& t = mesh.faces[f];
+        const SingularValues s =
+            singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+        energies[f] =
+            s.s2 > 0 ? density.value(s.s1, s.s2) : std::numeric_limits<double>::infinity();
+      }
+    });
   });
   return energies;
 }
@@ -66,11 +68,12 @@ std::vector<Index> find_outliers(const std::vector<double>& energies,
 
 }  // namespace
 
-std::int64_t clean_outliers(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            std::vector<Vec2>& uvs, int threads, const Checkpoint& checkpoint) {
+std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
+                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                            int threads, const Checkpoint& checkpoint) {
   std::int64_t crossings = -1, patches = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const auto outliers = find_outliers(face_energies(mesh, rest, uvs, threads), rest);
+    const auto outliers = find_outliers(face_energies(energy, mesh, rest, uvs, threads), rest);
     std::vector<bool> treated(mesh.faces.size(), false);
     std::size_t done = 0;
     for (const Index face : outliers) {
@@ -78,6 +81,7 @@ std::int64_t clean_outliers(const DiskMesh& mesh, const std::vector<RestTriangle
       if (treated[face]) continue;
       Patch patch = cut_patch(mesh, rest, uvs, face, kRings);
       NewtonOptions options;
+      options.energy = energy;
       options.max_iterations = kNewtonSteps;
       minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options);
       if (!non_positive_faces(patch.faces, patch.uvs, 1).empty()) continue;

@@ -6,17 +6,18 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
+#include "distortion/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
 
-/// Minimises the symmetric Dirichlet energy in patches of 3 rings around every face whose energy is
-/// above max(20, 4 x mean), in place, in up to three rounds. A patch that moves boundary vertices is
-/// taken back if it adds boundary crossings. Faces that are not positive are left alone. Returns the
-/// number of patches.
-std::int64_t clean_outliers(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            std::vector<Vec2>& uvs, int threads,
-                            const Checkpoint& checkpoint = no_checkpoint);
+/// Minimises the energy in patches of 3 rings around every face whose energy is
+/// above max(20, 4 x mean), in place, in up to three rounds. A patch that moves boundary vertices
+/// is taken back if it adds boundary crossings. Faces that are not positive are left alone. Returns
+/// the number of patches.
+std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
+                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                            int threads, const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -16,9 +16,9 @@ struct Patch {
   std::vector<Index> mesh_vertices;  ///< per patch vertex: its number in the mesh, increasing
   std::vector<Triangle> faces;
   std::vector<RestTriangle> rest;
-  std::vector<bool> fixed;           ///< per patch vertex; at least one is
+  std::vector<bool> fixed;  ///< per patch vertex; at least one is
   std::vector<Vec2> uvs;
-  bool moves_boundary = false;       ///< a vertex on the boundary of the mesh may move
+  bool moves_boundary = false;  ///< a vertex on the boundary of the mesh may move
 
   /// Swaps the patch's UVs with those of the mesh: once to put them in, twice to undo.
   void exchange(std::vector<Vec2>& mesh_uvs);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "distortion/symmetric_dirichlet.h"
+#include "distortion/density.h"
 #include "exact/certificate.h"
 #include "fullspace/newton.h"
 #include "fullspace/newton_step.h"
@@ -72,8 +72,7 @@ double smallest_determinant(const std::vector<Triangle>& faces,
                             const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
   double least = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < size_of(faces); ++f) {
-    const LinearMap map =
-        linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
+    const LinearMap map = linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
     least = std::min(least, std::norm(map.fz) - std::norm(map.fzbar));
   }
   return least;

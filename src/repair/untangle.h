@@ -1,5 +1,5 @@
-// Injective untangling of a small patch (after Garanzha et al. 2021, "Foldover-free maps in 50 lines
-// of code").
+// Injective untangling of a small patch (after Garanzha et al. 2021, "Foldover-free maps in 50
+// lines of code").
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 namespace beltrami {
 
 /// Moves the vertices that are not `fixed` until every face is positive: Newton on the symmetric
-/// Dirichlet energy with its barrier regularised, finite for flipped faces, while the regularisation
-/// is tightened; then some steps on the energy itself. Returns whether all faces came out exactly
-/// positive; `uvs` is changed only then.
+/// Dirichlet energy with its barrier regularised, finite for flipped faces, while the
+/// regularisation is tightened; then some steps on the energy itself. Returns whether all faces
+/// came out exactly positive; `uvs` is changed only then.
 bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
               const std::vector<bool>& fixed, std::vector<Vec2>& uvs);
 

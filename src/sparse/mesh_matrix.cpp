@@ -36,8 +36,8 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
   slot_.assign(faces.size(), {kNone, kNone, kNone});
   for_each_edge([&](Index f, int k, Index column, Index row) {
     const auto first = rows.begin() + start[column];
-    slot_[f][k] = static_cast<Index>(std::lower_bound(first, first + unique_count[column], row) -
-                                     first);
+    slot_[f][k] =
+        static_cast<Index>(std::lower_bound(first, first + unique_count[column], row) - first);
   });
 
   const Index b = block_size_;

@@ -8,13 +8,13 @@
 
 namespace beltrami {
 
-/// A symmetric matrix of block_size x block_size blocks: one block row per free vertex, blocks where
-/// two free vertices share an edge. Only the lower triangle is stored.
+/// A symmetric matrix of block_size x block_size blocks: one block row per free vertex, blocks
+/// where two free vertices share an edge. Only the lower triangle is stored.
 class MeshMatrix {
  public:
   /// `fixed`: per vertex, whether it is left out of the system.
-  MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
-             const std::vector<bool>& fixed, int block_size);
+  MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces, const std::vector<bool>& fixed,
+             int block_size);
 
   /// Block row of a vertex, or kNone if it is fixed.
   Index row(Index vertex) const { return row_[vertex]; }
@@ -34,8 +34,9 @@ class MeshMatrix {
  private:
   int block_size_;
   Index free_count_ = 0;
-  std::vector<Index> row_;                    // per vertex
-  std::vector<std::array<Index, 3>> slot_;    // per face and edge k: rank of its block below the diagonal
+  std::vector<Index> row_;  // per vertex
+  std::vector<std::array<Index, 3>>
+      slot_;  // per face and edge k: rank of its block below the diagonal
   SparseMatrix matrix_;
 };
 

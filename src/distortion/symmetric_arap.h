@@ -1,0 +1,70 @@
+// The symmetric ARAP energy: (s1 - 1)^2 + (1/s2 - 1)^2.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "distortion/density.h"
+
+namespace beltrami {
+
+/// Defined for s2 > 0; minimum 0 at the isometries. It is not symmetric in s1 and s2, hence has a
+/// ridge at s1 = s2: its derivative by |fzbar| does not vanish there.
+struct SymmetricArap {
+  static constexpr bool kBarrier = true;
+  static constexpr double kCurvature = 2;
+
+  static double value(double s1, double s2) {
+    const double stretch = s1 - 1, shrink = 1 / s2 - 1;
+    return stretch * stretch + shrink * shrink;
+  }
+
+  static DensityModel model(double s1, double s2) {
+    const double i2 = 1 / s2;
+    DensityModel m;
+    m.value = value(s1, s2);
+    m.d1 = 2 * (s1 - 1);
+    m.d2 = -2 * (i2 - 1) * i2 * i2;
+    m.h11 = 2;
+    m.h12 = 0;
+    // Concave for s2 > 1.5, where the proxy's weight takes over; it is the smaller one below 1.
+    m.h22 = std::max(i2 * i2 * i2 * (6 * i2 - 4), 0.1 * i2 * i2 * i2);
+    m.twist = std::max(0.0, 2 * (m.d1 + m.d2) / (s1 + s2));
+    m.flip = std::max(0.0, (m.d1 - m.d2) / std::max(0.5 * (s1 - s2), kRidge * (s1 + s2)));
+    return m;
+  }
+
+  struct Proxy {
+    static DensityModel model(double s1, double s2) {
+      DensityModel m = SymmetricArap::model(s1, s2);
+      use_weighted_rotation_model(2, 2 / (s2 * s2 * s2), m);
+      return m;
+    }
+  };
+
+  static DensitySlopes slopes(const LinearMap& map) {
+    const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+    const double s1 = a + b, s2 = (a - b) * (a + b) / s1;
+    const double d1 = 2 * (s1 - 1), d2 = -2 * (1 / s2 - 1) / (s2 * s2);
+    // On the ridge 0 is a subgradient, by symmetry the right one; beside it the slope is smoothed
+    // over the width that the model has too.
+    return {value(s1, s2), (d1 + d2) / a, (d1 - d2) / std::max(b, kRidge * a)};
+  }
+
+  /// The root of a s^4 - b s^3 + d s - c = 0, by bisection of the derivative's sign in log s.
+  static double best_scale(const ScaleMoments& sum) {
+    double low = -60, high = 60;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (low + high), s = std::exp(middle);
+      const double slope =
+          s * sum.s1_sq - sum.s1 - sum.inverse_s2_sq / (s * s * s) + sum.inverse_s2 / (s * s);
+      (slope > 0 ? high : low) = middle;
+    }
+    return std::exp(0.5 * (low + high));
+  }
+
+ private:
+  static constexpr double kRidge = 0.01;  // half-width of the ridge, relative to |fz|
+};
+
+}  // namespace beltrami
