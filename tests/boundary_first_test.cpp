@@ -190,6 +190,18 @@ TEST(BoundaryFirst, StaysFiniteWhereNoLengthsWouldClose) {
   for (const Vec2& w : result.uvs) EXPECT_TRUE(w.allFinite());
 }
 
+TEST(BoundaryFirst, KeepsAnEarOpenWhereTheMetricJumps) {
+  // The mean length of the diagonal is longer than both other edges of the second face together.
+  Problem problem(meshes::quad());
+  problem.metric[0].log_area = 4;
+  const BoundaryFirstResult result = problem.flatten();
+  for (Index f = 0; f < 2; ++f) {
+    const Triangle& t = problem.mesh.faces[f];
+    const Vec2 a = result.uvs[t[1]] - result.uvs[t[0]], b = result.uvs[t[2]] - result.uvs[t[0]];
+    EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0.1) << "face " << f;
+  }
+}
+
 TEST(BoundaryFirst, ScalesWithTheLengthsAndNotWithTheMesh) {
   const TriangleList list = meshes::bumps(8, 8);
   const Problem problem(list);

@@ -18,8 +18,9 @@ namespace beltrami {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kClosingSteps = 60;  // Newton in two unknowns: 3 to 6 on curves that nearly close
-constexpr double kClosed = 1e-14;  // of the length; the rest is spread over the vertices
+constexpr int kClosingSteps = 60;   // Newton in two unknowns: 3 to 6 on curves that nearly close
+constexpr double kClosed = 1e-14;   // of the length; the rest is spread over the vertices
+constexpr double kLeastArea = 0.2;  // of an ear by itself, below which mean lengths are not used
 constexpr double kGreatestSlope = 8.0;  // of the logarithms: beyond it edges differ by e^16
 
 /// Squared length of a half-edge under the full linear map of its face.
@@ -67,17 +68,35 @@ DenseMatrix laplacian_times(const DiskMesh& mesh, const std::vector<RestTriangle
   return product;
 }
 
-/// Angles of the triangle with these squared edge lengths, edge k from corner k to k + 1. Where the
-/// triangle inequality fails: pi opposite to the longest edge and 0, as in the limit, so that the
-/// sum is always pi.
-std::array<double, 3> angles(const std::array<double, 3>& length_sq) {
+/// 16 times the squared area of the triangle with these squared edge lengths; not positive where
+/// the triangle inequality fails. (Kahan's order of operations: needles keep their area to
+/// roundoff.)
+double area_sq_16(const std::array<double, 3>& length_sq) {
   std::array<double, 3> length;
   for (int k = 0; k < 3; ++k) length[k] = std::sqrt(length_sq[k]);
   std::sort(length.begin(), length.end(), std::greater<>());
   const auto [a, b, c] = length;
-  // Kahan's order of operations: needles keep their area to roundoff.
-  const double area_sq_16 = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
-  const double area_4 = std::sqrt(std::max(area_sq_16, 0.0));
+  return (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+}
+
+/// Angles of a face from the one length of each edge; where these make no triangle, pi opposite to
+/// the longest edge and 0, as in the limit. A face with all corners on the boundary (an ear) would
+/// then be laid out collinear with nothing to open it again: it keeps the angles it has by itself.
+/// Each way they sum to pi.
+std::array<double, 3> angles(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                             const std::vector<FaceMetric>& metric, Index face) {
+  std::array<double, 3> mean, own;  // squared lengths, edge k from corner k to k + 1
+  for (int k = 0; k < 3; ++k) {
+    mean[k] = edge_length_sq(mesh, rest, metric, 3 * face + k);
+    own[k] = mapped_length_sq(rest, metric, 3 * face + k);
+  }
+  const Triangle& t = mesh.faces[face];
+  const bool ear = mesh.on_boundary[t[0]] && mesh.on_boundary[t[1]] && mesh.on_boundary[t[2]];
+  const double own_area = std::max(area_sq_16(own), 0.0);
+  const double mean_area = std::max(area_sq_16(mean), 0.0);
+  const bool proper = !ear || mean_area > kLeastArea * kLeastArea * own_area;
+  const std::array<double, 3>& length_sq = proper ? mean : own;
+  const double area_4 = std::sqrt(proper ? mean_area : own_area);
   std::array<double, 3> result;
   for (int k = 0; k < 3; ++k) {
     const int next = next_corner(k), previous = previous_corner(k);
@@ -98,9 +117,7 @@ DenseMatrix curvatures(const DiskMesh& mesh, const std::vector<RestTriangle>& re
     curvature(v, 0) = mesh.on_boundary[v] ? kPi : 2 * kPi;
   }
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    std::array<double, 3> length_sq;
-    for (int k = 0; k < 3; ++k) length_sq[k] = edge_length_sq(mesh, rest, metric, 3 * f + k);
-    const auto angle = angles(length_sq);
+    const auto angle = angles(mesh, rest, metric, f);
     for (int k = 0; k < 3; ++k) curvature(mesh.faces[f][k], 0) -= angle[k];
   }
   return curvature;
