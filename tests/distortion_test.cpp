@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "distortion/measure.h"
+#include "distortion/symmetric_arap.h"
 #include "distortion/symmetric_dirichlet.h"
 #include "fullspace/assembly.h"
 #include "support/disks.h"
@@ -169,6 +170,72 @@ TEST(SymmetricDirichlet, IsLeastAtAnIsometry) {
   for (int i = 0; i < 100; ++i) {
     EXPECT_GE(SymmetricDirichlet::value(random.between(0.1, 5), random.between(0.1, 5)), 2);
   }
+}
+
+TEST_P(DensityAt, HasSlopesThatAreItsGradientByFzAndFzbar) {
+  const DensityModel m = SymmetricDirichlet::model(s1, s2);
+  const LinearMap map = map_of(corners_of(s1, s2));
+  const DensitySlopes slopes = SymmetricDirichlet::slopes(map);
+  const double scale = 1e-9 * (std::abs(m.d1) + std::abs(m.d2) + m.value);
+  EXPECT_NEAR(slopes.value, m.value, scale);
+  EXPECT_NEAR(slopes.by_fz * std::abs(map.fz), m.d1 + m.d2, scale);
+  EXPECT_NEAR(slopes.by_fzbar * std::abs(map.fzbar), m.d1 - m.d2, scale);
+}
+
+// ---- Symmetric ARAP, which has a ridge at s1 = s2 -------------------------------------------
+
+class ArapAt : public DensityAt {};
+
+double arap_of(const Vector6& x) {
+  const SingularValues s = singular_values(map_of(x));
+  return SymmetricArap::value(s.s1, s.s2);
+}
+
+TEST_P(ArapAt, HasTheFaceGradientOfItsEnergy) {
+  const Vector6 x = corners_of(s1, s2);
+  const Vector6 gradient = model_of(x, SymmetricArap{}).gradient;
+  const double h = 1e-5 * s2;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6 step = h * Vector6::Unit(i);
+    EXPECT_NEAR(gradient[i], (arap_of(x + step) - arap_of(x - step)) / (2 * h),
+                1e-7 * (gradient.norm() + arap_of(x)))
+        << i;
+  }
+}
+
+TEST_P(ArapAt, HasSlopesThatAreItsGradientByFzAndFzbar) {
+  const DensityModel m = SymmetricArap::model(s1, s2);
+  const LinearMap map = map_of(corners_of(s1, s2));
+  const DensitySlopes slopes = SymmetricArap::slopes(map);
+  const double scale = 1e-9 * (std::abs(m.d1) + std::abs(m.d2) + m.value);
+  EXPECT_NEAR(slopes.value, m.value, scale);
+  EXPECT_NEAR(slopes.by_fz * std::abs(map.fz), m.d1 + m.d2, scale);
+  EXPECT_NEAR(slopes.by_fzbar * std::abs(map.fzbar), m.d1 - m.d2, scale);
+}
+
+INSTANTIATE_TEST_SUITE_P(SingularValues, ArapAt,
+                         testing::Values(std::pair(3.0, 2.0), std::pair(1.2, 0.7),
+                                         std::pair(1.0, 0.5), std::pair(0.1, 0.01),
+                                         std::pair(50.0, 0.02)));
+
+TEST(SymmetricArap, HasFinitePositiveModelsOfOneGradientEverywhere) {
+  for (const double a : {0.01, 0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 50.0}) {
+    for (const double ratio : {1.0, 1 - 1e-12, 0.999, 0.7, 0.1}) {
+      const Vector6 x = corners_of(a, a * ratio);
+      const FaceModel newton = model_of(x, SymmetricArap{});
+      const FaceModel proxy = model_of(x, SymmetricArap::Proxy{});
+      for (const FaceModel& model : {newton, proxy}) {
+        ASSERT_TRUE(model.hessian.allFinite()) << a << ' ' << ratio;
+        EXPECT_GE(least_eigenvalue(model.hessian), -1e-12 * model.hessian.norm());
+      }
+      EXPECT_EQ(newton.gradient, proxy.gradient);
+    }
+  }
+}
+
+TEST(SymmetricArap, IsLeastAtAnIsometry) {
+  EXPECT_EQ(SymmetricArap::value(1, 1), 0);
+  EXPECT_LE(model_of(corners_of(1, 1), SymmetricArap{}).gradient.norm(), 1e-14);
 }
 
 // ---- The measure ----------------------------------------------------------------------------

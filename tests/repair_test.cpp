@@ -1,0 +1,194 @@
+// Mending fold-overs without making new ones, near-zero areas or boundary crossings.
+#include <beltrami/beltrami.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "distortion/measure.h"
+#include "exact/certificate.h"
+#include "repair/outliers.h"
+#include "repair/repair.h"
+#include "support/disks.h"
+
+namespace beltrami {
+namespace {
+
+using disks::Random;
+
+RepairResult mend(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
+  return repair(mesh, disks::rest_of(mesh), uvs, 1);
+}
+
+bool injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  return certify(mesh.faces, mesh.boundary, uvs, 1).injective();
+}
+
+double least_area(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Vec2 p = uvs[b] - uvs[a], q = uvs[c] - uvs[a];
+    least = std::min(least, 0.5 * (p.x() * q.y() - p.y() * q.x()));
+  }
+  return least;
+}
+
+TEST(Repair, LeavesAGoodMapBitForBit) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(6, 6));
+  const std::vector<Vec2> before = disks::flat_uvs(mesh);
+  std::vector<Vec2> after = before;
+  const RepairResult result = mend(mesh, after);
+  EXPECT_EQ(after, before);
+  EXPECT_EQ(result.flips_before, 0);
+  EXPECT_EQ(result.flips_after, 0);
+  EXPECT_EQ(result.kernel_fixes + result.patch_fixes, 0);
+}
+
+TEST(Repair, MendsOneDraggedVertexByMovingItIntoTheKernel) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  const std::vector<Vec2> before = disks::flat_uvs(mesh);
+  std::vector<Vec2> after = before;
+  after[24] += Vec2(0.4, 0.1);
+  const RepairResult result = mend(mesh, after);
+  EXPECT_GT(result.flips_before, 0);
+  EXPECT_EQ(result.flips_after, 0);
+  EXPECT_GE(result.kernel_fixes, 1);
+  EXPECT_EQ(result.patch_fixes, 0);
+  EXPECT_TRUE(injective(mesh, after));
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.on_boundary[v]) {
+      EXPECT_EQ(after[v], before[v]);
+    }
+  }
+}
+
+TEST(Repair, LeavesNoNearZeroAreas) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  const double face_area = 0.5 / 36;
+  for (const double drag : {0.17, 0.1666666, 1.0 / 6, 0.3, 2.0}) {
+    std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+    uvs[24] += Vec2(drag, 0);
+    if (injective(mesh, uvs)) continue;  // nothing to mend
+    mend(mesh, uvs);
+    EXPECT_TRUE(injective(mesh, uvs)) << drag;
+    EXPECT_GT(least_area(mesh, uvs), 1e-3 * face_area) << drag;
+  }
+}
+
+TEST(Repair, MendsFacesThatAreExactlyCollinear) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[24] = uvs[25];
+  EXPECT_GT(mend(mesh, uvs).flips_before, 0);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(Repair, MendsSeveralFoldsAtOnce) {
+  const DiskMesh mesh = disks::disk(meshes::grid(12, 12));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[3 * 13 + 3] += Vec2(0.2, 0);
+  uvs[8 * 13 + 3] += Vec2(-0.1, -0.2);
+  uvs[8 * 13 + 9] += Vec2(0, 0.3);
+  uvs[8 * 13 + 10] += Vec2(0.02, 0.3);
+  EXPECT_EQ(mend(mesh, uvs).flips_after, 0);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+// An ear whose tip lies on the line of its base, as a straight coarse boundary edge makes it. No
+// interior vertex can mend it.
+TEST(Repair, MendsACollinearEarByMovingTheBoundary) {
+  const DiskMesh mesh = disks::disk(meshes::grid(5, 5));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[5] = 0.5 * (uvs[4] + uvs[11]);  // the lower right corner is the tip of an ear
+  const RepairResult result = mend(mesh, uvs);
+  EXPECT_EQ(result.flips_before, 1);
+  EXPECT_EQ(result.flips_after, 0);
+  EXPECT_GE(result.patch_fixes, 1);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(Repair, MendsAnEarThatIsFoldedInwards) {
+  const DiskMesh mesh = disks::disk(meshes::grid(5, 5));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[5] = {0.82, 0.18};
+  mend(mesh, uvs);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(Repair, MendsMeshesThatAreOnePatch) {
+  const std::vector<Vec2> flipped = {{0, 0}, {0, 1}, {1, 0}};
+  const DiskMesh triangle = disks::disk(meshes::triangle());
+  std::vector<Vec2> uvs = flipped;
+  EXPECT_EQ(mend(triangle, uvs).flips_after, 0);
+  EXPECT_TRUE(injective(triangle, uvs));
+
+  const DiskMesh quad = disks::disk(meshes::quad());
+  uvs = {{0, 0}, {1, 0}, {1, 1}, {0.8, 0.2}};
+  EXPECT_EQ(mend(quad, uvs).flips_after, 0);
+  EXPECT_TRUE(injective(quad, uvs));
+}
+
+TEST(Repair, NeverAddsFlipsOrCrossings) {
+  const DiskMesh mesh = disks::disk(meshes::grid(8, 8));
+  for (int seed = 0; seed < 30; ++seed) {
+    Random random(100 + seed);
+    std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+    const double noise = 0.02 * (1 + seed % 10);
+    for (Vec2& w : uvs) w += noise * random.vec2();
+    const Certificate before = certify(mesh.faces, mesh.boundary, uvs, 1);
+    const RepairResult result = mend(mesh, uvs);
+    const Certificate after = certify(mesh.faces, mesh.boundary, uvs, 1);
+    EXPECT_EQ(result.flips_before, before.orientations.negative + before.orientations.degenerate);
+    EXPECT_EQ(result.flips_after, after.orientations.negative + after.orientations.degenerate);
+    EXPECT_LE(result.flips_after, result.flips_before) << seed;
+    EXPECT_LE(after.crossings.count, before.crossings.count) << seed;
+  }
+}
+
+TEST(Repair, HasTheSameBitsOnTwoThreads) {
+  Random random(1);
+  const DiskMesh mesh = disks::disk(meshes::grid(70, 70));
+  std::vector<Vec2> one = disks::flat_uvs(mesh);
+  for (int i = 0; i < 20; ++i) one[random.below(mesh.vertex_count())] += 0.03 * random.vec2();
+  std::vector<Vec2> two = one;
+  const auto rest = disks::rest_of(mesh);
+  repair(mesh, rest, one, 1);
+  repair(mesh, rest, two, 2);
+  EXPECT_EQ(one, two);
+}
+
+// ---- Outliers -------------------------------------------------------------------------------
+
+/// A flat grid with a face squeezed to nearly nothing.
+std::vector<Vec2> squeezed(const DiskMesh& mesh) {
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[24] += (1 - 1e-9) * (uvs[25] - uvs[24]);
+  return uvs;
+}
+
+double energy_of(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet;
+}
+
+TEST(CleanOutliers, MendsAFaceOfEnormousEnergy) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  std::vector<Vec2> uvs = squeezed(mesh);
+  EXPECT_GT(energy_of(mesh, uvs), 1e10);
+  EXPECT_GE(clean_outliers(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, disks::rest_of(mesh), uvs, 1),
+            1);
+  EXPECT_LT(energy_of(mesh, uvs), 20);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(CleanOutliers, LeavesAMapWithoutOutliersBitForBit) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(6, 6));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  EXPECT_EQ(clean_outliers(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, disks::rest_of(mesh), uvs, 1),
+            0);
+  EXPECT_EQ(uvs, disks::flat_uvs(mesh));
+}
+
+}  // namespace
+}  // namespace beltrami
