@@ -151,7 +151,10 @@ enum {
   BELTRAMI_OPTION_THREADS = 5,        /* int: threads to use; the result does not depend on it */
   BELTRAMI_OPTION_UNIT_SQUARE = 6,    /* int: 1 scales and shifts the UVs into [0,1]^2 */
   BELTRAMI_OPTION_FLATTEN = 7,        /* choice: BELTRAMI_FLATTEN_ */
-  BELTRAMI_OPTION_INJECTIVITY = 8     /* choice: BELTRAMI_INJECTIVITY_ */
+  BELTRAMI_OPTION_INJECTIVITY = 8,    /* choice: BELTRAMI_INJECTIVITY_ */
+  BELTRAMI_OPTION_REFINE = 9,         /* int: 1 goes on with CM on the fine mesh */
+  BELTRAMI_OPTION_REFINE_ITERATIONS = 10, /* int: limit of its iterations; 0: CM's stopping rule */
+  BELTRAMI_OPTION_TIME_LIMIT = 11     /* float: wall seconds after which it stops; 0: none */
 };
 
 enum {
@@ -161,7 +164,13 @@ enum {
   /* Composite majorization on the full mesh: the slow reference. */
   BELTRAMI_METHOD_CM = 1,
   /* Tutte's embedding into a circle: injective, fast, highly distorted. */
-  BELTRAMI_METHOD_TUTTE = 2
+  BELTRAMI_METHOD_TUTTE = 2,
+  /* Baseline: globally injective flattening in the harmonic subspace of the surface's own metric. */
+  BELTRAMI_METHOD_GIF = 3,
+  /* Baseline: boundary first flattening, conformal. May flip and overlap. */
+  BELTRAMI_METHOD_BFF = 4,
+  /* Baseline: the UVs of the coarse mesh carried over by closest points. Flips. */
+  BELTRAMI_METHOD_UV_PROLONGATION = 5
 };
 
 /* How the method BELTRAMI flattens the fine mesh. */
@@ -171,7 +180,13 @@ enum {
   BELTRAMI_FLATTEN_METRIC = 0,
   /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster, and
    * 0.3% to 3% higher in energy. */
-  BELTRAMI_FLATTEN_DIRICHLET = 1
+  BELTRAMI_FLATTEN_DIRICHLET = 1,
+  /* The paper's: the harmonic subspace of a few boundary vertices, with a scaffold. */
+  BELTRAMI_FLATTEN_GIF = 2,
+  /* The same without a scaffold: no flips, but the boundary may overlap itself. */
+  BELTRAMI_FLATTEN_FLIM = 3,
+  /* Conformal with the boundary lengths that the coarse map asks for. May flip and overlap. */
+  BELTRAMI_FLATTEN_BFF = 4
 };
 
 /* What the optimisation sees to. The certificate always judges global injectivity. */

@@ -8,8 +8,8 @@
 namespace beltrami {
 namespace {
 
-constexpr const char* kMethods[] = {"beltrami", "cm", "tutte"};
-constexpr const char* kFlattens[] = {"metric", "dirichlet"};
+constexpr const char* kMethods[] = {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"};
+constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"};
 constexpr const char* kInjectivities[] = {"global", "local"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
@@ -27,7 +27,10 @@ void set(Options& options, double value) {
 const OptionEntry kOptions[] = {
     {BELTRAMI_OPTION_METHOD, BELTRAMI_TYPE_CHOICE, "method",
      "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization "
-     "on the full mesh, the slow reference) or tutte (into a circle, highly distorted).",
+     "on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a "
+     "baseline "
+     "to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs "
+     "(bff and uv-prolongation may flip).",
      0, std::size(kMethods) - 1, kMethods, get<&Options::method>, set<&Options::method>},
     {BELTRAMI_OPTION_ENERGY, BELTRAMI_TYPE_CHOICE, "energy", "The distortion that is minimised.", 0,
      std::size(kEnergies) - 1, kEnergies, get<&Options::energy>, set<&Options::energy>},
@@ -78,15 +81,47 @@ const OptionEntry kOptions[] = {
      get<&Options::unit_square>,
      set<&Options::unit_square>},
     {BELTRAMI_OPTION_FLATTEN, BELTRAMI_TYPE_CHOICE, "flatten",
-     "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and "
-     "a polish) or dirichlet (harmonic, boundary from the coarse map: faster, energy a little "
-     "higher).",
+     "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary "
+     "and "
+     "a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little "
+     "higher), "
+     "gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local "
+     "injectivity only) or bff (conformal, may flip).",
      0, std::size(kFlattens) - 1, kFlattens, get<&Options::flatten>, set<&Options::flatten>},
     {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_TYPE_CHOICE, "injectivity",
      "What the optimisation sees to: global (no flips, no boundary crossings) or local (no flips: "
      "parts may overlap, at a slightly lower energy).",
      0, std::size(kInjectivities) - 1, kInjectivities, get<&Options::injectivity>,
      set<&Options::injectivity>},
+    {BELTRAMI_OPTION_REFINE,
+     BELTRAMI_TYPE_INT,
+     "refine",
+     "1 goes on with composite majorization on the fine mesh from the result, to a little less "
+     "energy in much more time.",
+     0,
+     1,
+     {},
+     get<&Options::refine>,
+     set<&Options::refine>},
+    {BELTRAMI_OPTION_REFINE_ITERATIONS,
+     BELTRAMI_TYPE_INT,
+     "refine-iterations",
+     "Iterations after which the refinement stops; 0 leaves it to the tolerance.",
+     0,
+     1e6,
+     {},
+     get<&Options::refine_iterations>,
+     set<&Options::refine_iterations>},
+    {BELTRAMI_OPTION_TIME_LIMIT,
+     BELTRAMI_TYPE_FLOAT,
+     "time-limit",
+     "Seconds since the start of the run after which the refinement stops with what it has; 0 sets "
+     "no limit.",
+     0,
+     1e9,
+     {},
+     get<&Options::time_limit>,
+     set<&Options::time_limit>},
 };
 
 std::string number(double value) {

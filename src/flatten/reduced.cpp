@@ -38,9 +38,7 @@ std::vector<Vec2> metas_on_circle(const MetaVertices& metas, double area) {
 /// The sampled faces' edges as rows of H. Faces that share vertices share the work.
 ReducedProblem sampled_problem(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const ReducedBasis& basis, int threads) {
-  std::vector<Index> meta_vertices;
-  for (const Index at : basis.metas().loop) meta_vertices.push_back(mesh.boundary[at]);
-  const SampledFaces samples = sample_faces(mesh, rest, meta_vertices, kStrata);
+  const SampledFaces samples = sample_faces(mesh, rest, basis.metas(), kStrata);
 
   std::vector<Index> vertices;
   for (const Index f : samples.faces) {

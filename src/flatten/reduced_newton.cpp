@@ -325,18 +325,15 @@ ReducedDescent minimise_reduced(const ReducedProblem& problem, bool scaffold, do
     const bool proxy = proxy_steps > 0;
     const auto [length, exhausted] = descent.step(proxy, tolerance);
     if (length > 0) result.energies.push_back(descent.sample_energy());
-    if (proxy) {
-      proxy_steps = length > 0 ? proxy_steps - 1 : 0;
-      continue;
-    }
-    if (length == 0) {
+    if (!proxy && length == 0) {
       result.converged = exhausted;
       break;
     }
-    if (length < kBlockedStep) proxy_steps = kProxySteps;
+    if (proxy) proxy_steps = length > 0 ? proxy_steps - 1 : 0;
+    if (!proxy && length < kBlockedStep) proxy_steps = kProxySteps;
     const bool little = before - result.energies.back() <= tolerance * before;
     little_gain = little ? little_gain + 1 : 0;
-    result.converged = (little && length >= kFullStep) || little_gain >= kPatience;
+    result.converged = (little && !proxy && length >= kFullStep) || little_gain >= kPatience;
   }
   return result;
 }

@@ -1,13 +1,23 @@
 #include "flatten/samples.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
 #include <utility>
 
 namespace beltrami {
 namespace {
 
 constexpr double kCells = 1024;  // of the curve along each axis: 10 bits
+/// The boundary layer, in lengths of the straight piece at hand: a face at distance d has the extra
+/// importance kLayer * area / (d + kInner * length)^2 up to d = kOuter * length. That makes about
+/// kLayer / kInner samples for each piece.
+constexpr double kInner = 0.25, kOuter = 2;
+constexpr double kLayer = 3;
 
 /// Spreads the low 10 bits of `x`, two zeros between each.
 std::uint32_t spread(std::uint32_t x) {
@@ -46,13 +56,58 @@ std::vector<Index> along_curve(const DiskMesh& mesh, const std::vector<bool>& ta
   return order;
 }
 
+/// What is near a vertex: how far the boundary is, along edges, and how long its straight piece
+/// there.
+struct Near {
+  double distance = std::numeric_limits<double>::infinity();
+  double length = 0;
+};
+
+/// For all vertices within the boundary layer (Dijkstra's algorithm from the whole boundary).
+std::vector<Near> boundary_layer(const DiskMesh& mesh, const MetaVertices& metas) {
+  using Entry = std::pair<double, Index>;
+  std::vector<Near> near(mesh.vertex_count());
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (Index i = 0; i < size_of(mesh.boundary); ++i) {
+    near[mesh.boundary[i]] = {0, metas.arc[metas.piece[i]]};
+    queue.emplace(0, mesh.boundary[i]);
+  }
+  while (!queue.empty()) {
+    const auto [distance, v] = queue.top();
+    queue.pop();
+    if (distance > near[v].distance) continue;
+    const double length = near[v].length;
+    mesh.for_each_outgoing(v, [&](Index h) {
+      // On the boundary one neighbour has no outgoing half-edge from here; it is a source itself.
+      const Index w = mesh.target(h);
+      const double reached = distance + (mesh.positions[w] - mesh.positions[v]).norm();
+      if (!(reached < near[w].distance) || reached > kOuter * length) return;
+      near[w] = {reached, length};
+      queue.emplace(reached, w);
+    });
+  }
+  return near;
+}
+
+/// Samples per area at a face, on top of the uniform ones.
+double layer_density(const Triangle& face, const std::vector<Near>& near) {
+  double distance = 0, length = 0;
+  for (const Index v : face) {
+    distance += near[v].distance / 3;
+    length += near[v].length / 3;
+  }
+  if (!(distance <= kOuter * length)) return 0;
+  const double graded = distance + kInner * length;
+  return kLayer / (graded * graded);
+}
+
 }  // namespace
 
 SampledFaces sample_faces(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                          const std::vector<Index>& vertices, Index strata) {
+                          const MetaVertices& metas, Index strata) {
   std::vector<bool> taken(mesh.face_count(), false);
-  for (const Index v : vertices) {
-    mesh.for_each_outgoing(v, [&](Index h) { taken[h / 3] = true; });
+  for (const Index at : metas.loop) {
+    mesh.for_each_outgoing(mesh.boundary[at], [&](Index h) { taken[h / 3] = true; });
   }
   SampledFaces samples;
   for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -60,31 +115,32 @@ SampledFaces sample_faces(const DiskMesh& mesh, const std::vector<RestTriangle>&
     samples.faces.push_back(f);
     samples.weights.push_back(rest[f].area());
   }
+  const auto fans = static_cast<std::ptrdiff_t>(samples.faces.size());
   const std::vector<Index> others = along_curve(mesh, taken);
-  if (size_of(others) <= strata) {
-    for (const Index f : others) {
-      samples.faces.push_back(f);
-      samples.weights.push_back(rest[f].area());
-    }
-    return samples;
-  }
   double total = 0;
   for (const Index f : others) total += rest[f].area();
-  // Run r covers the area [r, r + 1) * stride. A face larger than a run stands for several.
-  const double stride = total / strata;
-  double before = 0;
-  Index run = 0;
-  for (const Index f : others) {
-    before += rest[f].area();
-    Index runs = 0;
-    while (run < strata && (run + 0.5) * stride < before) {
-      ++runs;
-      ++run;
-    }
-    if (runs == 0) continue;
-    samples.faces.push_back(f);
-    samples.weights.push_back(runs * stride);
+  if (size_of(others) <= strata) {
+    samples.faces.insert(samples.faces.end(), others.begin(), others.end());
+    for (const Index f : others) samples.weights.push_back(rest[f].area());
+    return samples;
   }
+  const std::vector<Near> near = boundary_layer(mesh, metas);
+  // Run r covers the importance [r, r + 1). A face worth several runs is taken once.
+  double before = 0, run = 0.5;
+  for (const Index f : others) {
+    const double density = strata / total + layer_density(mesh.faces[f], near);
+    before += density * rest[f].area();
+    if (before <= run) continue;
+    const double runs = std::ceil(before - run);
+    run += runs;
+    samples.faces.push_back(f);
+    // A face worth less than a run stands for the others of its kind, too.
+    samples.weights.push_back(runs / density);
+  }
+  const double sampled =
+      std::accumulate(samples.weights.begin() + fans, samples.weights.end(), 0.0);
+  for (auto w = samples.weights.begin() + fans; w != samples.weights.end(); ++w)
+    *w *= total / sampled;
   return samples;
 }
 

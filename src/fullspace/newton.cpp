@@ -33,6 +33,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   std::vector<Vec2> admitted;
   int little_gains = 0;
   while (!result.converged && result.iterations() < options.max_iterations) {
+    if (options.out_of_time && options.out_of_time()) break;
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;

@@ -24,6 +24,8 @@ struct NewtonOptions {
   /// Judges the map after each step; a refused step is taken back and ends the run. For instance:
   /// the boundary is still simple. Anything goes by default.
   std::function<bool(const std::vector<Vec2>& uvs)> admissible;
+  /// Asked before each step; true ends the run with what there is. Never by default.
+  std::function<bool()> out_of_time;
 };
 
 struct NewtonResult {

@@ -66,6 +66,7 @@ NewtonResult minimise(const DiskMesh& mesh, const std::vector<RestTriangle>& res
   result.energies.push_back(mesh_energy<Density>(mesh, rest, uvs));
   int little_gain = 0;
   while (!result.converged && result.iterations() < options.max_iterations) {
+    if (options.out_of_time && options.out_of_time()) break;
     checkpoint(result.iterations() / (result.iterations() + 12.0));
     Surrounded all = surround(mesh, rest, uvs);
     NewtonStepper<Density> stepper(all.faces, all.rest, all.weights, mesh.face_count(), all.fixed,

@@ -26,6 +26,9 @@ struct Options {
   bool unit_square = false;
   std::int32_t flatten = BELTRAMI_FLATTEN_METRIC;
   std::int32_t injectivity = BELTRAMI_INJECTIVITY_GLOBAL;
+  bool refine = false;
+  int refine_iterations = 0;  ///< 0: to the stopping rule of CM
+  double time_limit = 0;      ///< wall seconds after which refinement stops; 0: none
 };
 
 struct StageStatistics {

@@ -1,0 +1,244 @@
+// From the coarse map to the fine one: prolongation and the ways to flatten.
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "flatten/boundary_first.h"
+#include "flatten/dirichlet.h"
+#include "flatten/metric.h"
+#include "flatten/polish.h"
+#include "flatten/reduced.h"
+#include "flatten/uv_prolongation.h"
+#include "fullspace/tutte.h"
+#include "pipeline/run.h"
+#include "repair/outliers.h"
+#include "repair/repair.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kLeastCoarseFaces = 10000;
+constexpr double kCoarseShare = 0.01;
+constexpr int kRotations = 2;           // ARAP rounds after the Poisson solve
+constexpr std::size_t kManyFlips = 20;  // beyond which the harmonic map is looked at too
+constexpr int kPolishIterations = 20;
+constexpr int kPolishRounds = 6;      // each ended by faces that block the steps
+constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
+constexpr double kReachGrowth = 3;
+
+}  // namespace
+
+Index Run::coarse_target() const {
+  const double share = kCoarseShare * disk_.face_count();
+  const auto target = options_.coarse_faces > 0
+                          ? options_.coarse_faces
+                          : std::max(kLeastCoarseFaces, static_cast<std::int64_t>(share));
+  return static_cast<Index>(std::min<std::int64_t>(target, disk_.face_count()));
+}
+
+void Run::solve_coarse(FineProblem& fine) {
+  stage("simplify", 0.12, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    fine.coarse = simplify(disk_, coarse_target(), checkpoint);
+  });
+  result_.coarse_faces = fine.coarse.mesh.face_count();
+  fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
+}
+
+std::vector<Vec2> Run::run_beltrami() {
+  if (coarse_target() >= disk_.face_count()) {
+    result_.coarse_faces = disk_.face_count();
+    return run_cm(disk_, "coarse", 0.9);
+  }
+  FineProblem fine;
+  solve_coarse(fine);
+  stage("prolong", 0.37, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    const DiskMesh& mesh = fine.coarse.mesh;
+    const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
+    fine.metric = prolong_metric(mesh, face_metrics(mesh.faces, rest, fine.coarse_uvs), disk_,
+                                 options_.threads, checkpoint);
+    fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
+  });
+  switch (options_.flatten) {
+    case BELTRAMI_FLATTEN_DIRICHLET:
+      return flatten_dirichlet(fine);
+    case BELTRAMI_FLATTEN_GIF:
+      return flatten_reduced(fine, true);
+    case BELTRAMI_FLATTEN_FLIM:
+      return flatten_reduced(fine, false);
+    case BELTRAMI_FLATTEN_BFF:
+      return flatten_boundary_first(fine);
+    default:
+      return flatten_metric(fine);
+  }
+}
+
+/// GIF and BFF on the metric of the surface itself: the baselines.
+std::vector<Vec2> Run::run_plain() {
+  FineProblem fine;
+  fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
+  fine.metric.resize(disk_.faces.size());
+  return options_.method == BELTRAMI_METHOD_GIF ? flatten_reduced(fine, true)
+                                                : flatten_boundary_first(fine);
+}
+
+std::vector<Vec2> Run::run_uv_prolongation() {
+  FineProblem fine;
+  solve_coarse(fine);
+  std::vector<Vec2> uvs;
+  stage("prolong", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    uvs = prolong_uvs(fine.coarse.mesh, fine.coarse_uvs, disk_, options_.threads, checkpoint);
+  });
+  count_flips(uvs);
+  return uvs;
+}
+
+void Run::count_flips(const std::vector<Vec2>& uvs) {
+  result_.flips_before_repair = size_of(non_positive_faces(disk_.faces, uvs, options_.threads));
+}
+
+std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
+  std::vector<Vec2> uvs;
+  stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
+    uvs = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+    solve_harmonic(disk_, fine.rest, fine.metric, uvs);
+  });
+  mend(fine, 0.95, uvs);
+  return uvs;
+}
+
+std::vector<Vec2> Run::flatten_reduced(const FineProblem& fine, bool scaffold) {
+  std::vector<Vec2> uvs;
+  stage("flatten", 0.85, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    ReducedOptions reduced;
+    reduced.scaffold = scaffold;
+    reduced.threads = options_.threads;
+    ReducedResult map =
+        beltrami::flatten_reduced(disk_, fine.rest, fine.metric, reduced, checkpoint);
+    statistics.iterations = static_cast<int>(map.energies.size()) - 1;
+    uvs = std::move(map.uvs);
+  });
+  mend(fine, 0.95, uvs);
+  return uvs;
+}
+
+/// No guarantee, so nothing is mended: its flips are what it is judged by.
+std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
+  std::vector<Vec2> uvs;
+  stage("flatten", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    const auto lengths = metric_boundary_lengths(disk_, fine.rest, fine.metric);
+    uvs = beltrami::flatten_boundary_first(disk_, fine.rest, fine.metric, lengths, checkpoint).uvs;
+    // A conformal map is as good at any scale; the energies are not.
+    const double scale = best_scale(options_.energy, disk_.faces, fine.rest, uvs);
+    for (Vec2& w : uvs) w *= scale;
+  });
+  count_flips(uvs);
+  return uvs;
+}
+
+/// The metric solve and its polish. A free boundary may cross itself: then the boundary near the
+/// crossings is held where the coarse map has it, further around in each round, up to the whole of
+/// it. (The coarse boundary is simple, or there is nothing to hold on to.)
+std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
+  const std::vector<Vec2> carried = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+  const bool global = options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL &&
+                      count_crossings(disk_.boundary, carried).count == 0;
+  std::vector<bool> held(disk_.vertex_count(), false);
+  held[disk_.boundary.front()] = true;
+  std::vector<Vec2> uvs;
+  for (double reach = kFirstReach;; reach *= kReachGrowth) {
+    uvs = solve_and_polish(fine, carried, held, global);
+    if (!global) return uvs;
+    const auto crossings = find_crossings(disk_.boundary, uvs);
+    if (crossings.empty()) return uvs;
+    if (reach > 1) break;
+    hold_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, held);
+  }
+  return flatten_dirichlet(fine);
+}
+
+/// Holds the boundary vertices within `reach` times the boundary length of the given edges.
+void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                    std::vector<bool>& held) const {
+  const Index count = size_of(disk_.boundary);
+  std::vector<double> along(count + 1, 0);
+  for (Index i = 0; i < count; ++i) {
+    const Index a = disk_.boundary[i], b = disk_.boundary[i + 1 == count ? 0 : i + 1];
+    along[i + 1] = along[i] + (disk_.positions[b] - disk_.positions[a]).norm();
+  }
+  const double length = along[count];
+  for (const auto& pair : edges) {
+    for (const Index edge : pair) {
+      for (Index i = 0; i < count; ++i) {
+        const double apart = std::abs(along[i] - along[edge]);
+        if (std::min(apart, length - apart) <= reach * length) held[disk_.boundary[i]] = true;
+      }
+      held[disk_.boundary[edge]] = held[disk_.boundary[edge + 1 == count ? 0 : edge + 1]] = true;
+    }
+  }
+}
+
+std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
+                                        const std::vector<bool>& held, bool global) {
+  std::vector<Vec2> uvs = carried;
+  std::unique_ptr<MetricLaplacian> laplacian;
+  stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    laplacian = std::make_unique<MetricLaplacian>(disk_, fine.rest, fine.metric, held);
+    checkpoint(0.75);
+    solve_metric(disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
+    const auto flips = non_positive_faces(disk_.faces, uvs, options_.threads).size();
+    if (flips <= kManyFlips) return;
+    // On extreme models the free map flips far more than the harmonic one.
+    std::vector<Vec2> harmonic = carried;
+    solve_harmonic(disk_, fine.rest, fine.metric, harmonic);
+    if (non_positive_faces(disk_.faces, harmonic, options_.threads).size() < flips) {
+      uvs.swap(harmonic);
+    }
+  });
+  if (!mend(fine, 0.66, uvs)) return uvs;
+  // Polishing a map that crosses itself already would be in vain.
+  if (global && count_crossings(disk_.boundary, uvs).count > 0) return uvs;
+
+  polish_map(fine, *laplacian, uvs);
+  return uvs;
+}
+
+void Run::polish_map(const FineProblem& fine, const MetricLaplacian& laplacian,
+                     std::vector<Vec2>& uvs) {
+  stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    const double curvature =
+        with_density(options_.energy, [](auto density) { return density.kCurvature; });
+    const double step = surface_area(disk_) / curvature;
+    const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
+      return step * laplacian.solve(gradient);
+    };
+    PolishOptions polish_options;
+    polish_options.energy = options_.energy;
+    polish_options.threads = options_.threads;
+    for (int round = 0; round < kPolishRounds; ++round) {
+      polish_options.max_iterations = kPolishIterations - statistics.iterations;
+      if (polish_options.max_iterations <= 0) break;
+      const PolishResult polished =
+          polish(disk_.faces, fine.rest, precondition, uvs, polish_options, [&](double) {
+            checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
+          });
+      statistics.iterations += polished.iterations();
+      clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+      if (!polished.blocked) break;
+    }
+  });
+}
+
+/// Mends flips and, where that succeeds, cleans outliers. Returns whether all faces are positive.
+bool Run::mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs) {
+  bool positive = false;
+  stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    const RepairResult repaired = repair(disk_, fine.rest, uvs, options_.threads, checkpoint);
+    result_.flips_before_repair = repaired.flips_before;
+    statistics.iterations = static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes);
+    positive = repaired.flips_after == 0;
+    if (positive) clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+  });
+  return positive;
+}
+
+}  // namespace beltrami

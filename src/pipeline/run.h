@@ -1,0 +1,98 @@
+// One run of the pipeline: times its stages, maps their progress into the whole, cancels them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/resources.h"
+#include "beltrami/prolongation.h"
+#include "flatten/metric.h"
+#include "fullspace/newton.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+#include "pipeline/pipeline.h"
+#include "simplify/simplify.h"
+
+namespace beltrami {
+
+/// What is known about the fine mesh when the coarse one is done.
+struct FineProblem {
+  CoarseDisk coarse;
+  std::vector<Vec2> coarse_uvs;
+  std::vector<RestTriangle> rest;
+  std::vector<FaceMetric> metric;
+};
+
+class Run {
+ public:
+  Run(const DiskMesh& disk, const Options& options, const Progress& progress,
+      const std::atomic<bool>& cancelled)
+      : disk_(disk), options_(options), progress_(progress), cancelled_(cancelled) {}
+
+  Flattening flatten(const Normalisation& frame);
+
+ private:
+  /// Runs `body(statistics, checkpoint)` as the stage `name`, which takes the progress bar up to
+  /// `until`.
+  template <class Body>
+  void stage(const char* name, double until, Body&& body);
+  void report(double fraction, const char* name);
+
+  // pipeline.cpp: the methods, and what comes after them.
+  std::vector<Vec2> run_method();
+  std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
+  void refine(std::vector<Vec2>& uvs);
+  void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
+  NewtonOptions newton_options(const DiskMesh& mesh) const;
+  NewtonResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                       NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
+                       const Checkpoint& checkpoint);
+
+  // fine_map.cpp: from the coarse map to the fine one.
+  std::vector<Vec2> run_beltrami();
+  std::vector<Vec2> run_uv_prolongation();
+  std::vector<Vec2> run_plain();
+  void solve_coarse(FineProblem& fine);
+  Index coarse_target() const;
+  std::vector<Vec2> flatten_metric(const FineProblem& fine);
+  std::vector<Vec2> flatten_dirichlet(const FineProblem& fine);
+  std::vector<Vec2> flatten_reduced(const FineProblem& fine, bool scaffold);
+  std::vector<Vec2> flatten_boundary_first(const FineProblem& fine);
+  std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
+                                     const std::vector<bool>& held, bool global);
+  void polish_map(const FineProblem& fine, const MetricLaplacian& laplacian,
+                  std::vector<Vec2>& uvs);
+  void hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                 std::vector<bool>& held) const;
+  bool mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs);
+  void count_flips(const std::vector<Vec2>& uvs);
+
+  const DiskMesh& disk_;
+  const Options& options_;
+  const Progress& progress_;
+  const std::atomic<bool>& cancelled_;
+  const double started_ = wall_seconds();
+  double fraction_ = 0;
+  Flattening result_;
+};
+
+template <class Body>
+void Run::stage(const char* name, double until, Body&& body) {
+  const double from = fraction_;
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  StageStatistics statistics{name};
+  const Checkpoint checkpoint = [&](double fraction) {
+    report(from + (until - from) * std::clamp(fraction, 0.0, 1.0), name);
+  };
+  checkpoint(0);
+  body(statistics, checkpoint);
+  checkpoint(1);
+  statistics.seconds = wall_seconds() - wall;
+  statistics.cpu_seconds = cpu_seconds() - cpu;
+  result_.stages.push_back(statistics);
+}
+
+}  // namespace beltrami
