@@ -1,6 +1,7 @@
 // Disks that stress the stages, and the little that most stage tests need around them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
