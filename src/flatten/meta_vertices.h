@@ -23,10 +23,10 @@ struct MetaVertices {
   Index next(Index meta) const { return meta + 1 == count() ? 0 : meta + 1; }
 };
 
-/// Chooses them: every s-th boundary vertex; the 0.1% of greatest |Gaussian curvature|; both ends
-/// of every bridge (interior edge that joins two boundary vertices) and one vertex between bridge
-/// ends that follow each other, without which the faces cut off by the bridge would be collinear.
-/// About 250 at most, bridge ends on top.
+/// Chooses them: every s-th boundary vertex, s = 10 or less; the 0.1% of greatest |Gaussian
+/// curvature|; both ends of every bridge (interior edge that joins two boundary vertices) and one
+/// vertex between bridge ends that follow each other, without which the faces cut off by the bridge
+/// would be collinear. About 250 at most, bridge ends on top.
 MetaVertices choose_meta_vertices(const DiskMesh& mesh);
 
 }  // namespace beltrami

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
@@ -17,7 +18,7 @@ namespace {
 
 /// The paper's 50 to 500 uniform samples underestimate the energy by 5% to 15%.
 constexpr Index kStrata = 2000;
-constexpr Index kMostMetas = 2500;  // 5,000 unknowns: 200 MB and some seconds a step
+constexpr Index kMostMetas = 1000;  // beyond, a dense Newton step takes several seconds
 constexpr double kBasisShare = 0.5, kNewtonShare = 0.45;  // of the work
 
 /// On a circle of the area of the mesh, by arc length.
