@@ -30,7 +30,10 @@ struct SymmetricArap {
     // Concave for s2 > 1.5, where the proxy's weight takes over; it is the smaller one below 1.
     m.h22 = std::max(i2 * i2 * i2 * (6 * i2 - 4), 0.1 * i2 * i2 * i2);
     m.twist = std::max(0.0, 2 * (m.d1 + m.d2) / (s1 + s2));
-    m.flip = std::max(0.0, (m.d1 - m.d2) / std::max(0.5 * (s1 - s2), kRidge * (s1 + s2)));
+    const double a = 0.5 * (s1 + s2), b = std::max(0.5 * (s1 - s2), kRidge * a);
+    const double across = m.d1 - m.d2;
+    m.flip = std::max(0.0, across / b);
+    if (s1 - s2 < 2 * b) smooth_ridge(0.5 * (s1 - s2) / b, m);
     return m;
   }
 
@@ -46,8 +49,7 @@ struct SymmetricArap {
     const double a = std::abs(map.fz), b = std::abs(map.fzbar);
     const double s1 = a + b, s2 = (a - b) * (a + b) / s1;
     const double d1 = 2 * (s1 - 1), d2 = -2 * (1 / s2 - 1) / (s2 * s2);
-    // On the ridge 0 is a subgradient, by symmetry the right one; beside it the slope is smoothed
-    // over the width that the model has too.
+    // Smoothed beside the ridge, like the model.
     return {value(s1, s2), (d1 + d2) / a, (d1 - d2) / std::max(b, kRidge * a)};
   }
 
@@ -64,6 +66,14 @@ struct SymmetricArap {
   }
 
  private:
+  /// Beside the ridge the slope across it falls to 0, a subgradient on it: else every step would
+  /// leap over.
+  static void smooth_ridge(double share, DensityModel& m) {
+    const double along = 0.5 * (m.d1 + m.d2), across = 0.5 * share * (m.d1 - m.d2);
+    m.d1 = along + across;
+    m.d2 = along - across;
+  }
+
   static constexpr double kRidge = 0.01;  // half-width of the ridge, relative to |fz|
 };
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "fullspace/assembly.h"
 #include "fullspace/line_search.h"
+#include "fullspace/newton_step.h"
 
 namespace beltrami {
 namespace {
@@ -168,7 +169,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     history.add(length * flat, next - gradient);
     gradient.swap(next);
     result.blocked = length < kBlockedStep;
-    result.converged = length >= kFullStep && before - after <= options.tolerance * before;
+    result.converged =
+        length >= kFullStep && before - after <= options.tolerance * std::max(before, kLeastEnergy);
     if (result.blocked || result.converged) break;
   }
   return result;

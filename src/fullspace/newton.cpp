@@ -1,5 +1,7 @@
 #include "fullspace/newton.h"
 
+#include <algorithm>
+
 #include "fullspace/newton_step.h"
 
 namespace beltrami {
@@ -12,6 +14,7 @@ constexpr double kFullStep = 0.5;
 /// Unless there are many of them: energies that are not smooth (symmetric ARAP at s1 = s2) creep
 /// towards their minimum in shortened steps.
 constexpr int kPatience = 5;
+constexpr double kNothing = 1e-3;  // share of the tolerance that is no gain, however short the step
 
 /// Steps below this length are blocked by faces that are nearly singular.
 constexpr double kBlockedStep = 0.02;
@@ -52,12 +55,15 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     }
     if (step.length == 0) {
       // No representable decrease: at the minimum if little was predicted, stuck otherwise.
-      result.converged = step.predicted <= options.tolerance * before;
+      result.converged = step.predicted <= options.tolerance * std::max(before, kLeastEnergy);
       break;
     }
     if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;
-    const bool little = before - step.energy <= options.tolerance * before;
-    little_gains = little && step.length >= kBlockedStep ? little_gains + 1 : 0;
+    const double gain = (before - step.energy) / std::max(before, kLeastEnergy);
+    const bool little = gain <= options.tolerance;
+    little_gains = little && (step.length >= kBlockedStep || gain <= kNothing * options.tolerance)
+                       ? little_gains + 1
+                       : 0;
     result.converged = (little && step.length >= kFullStep) || little_gains >= kPatience;
   }
   return result;

@@ -17,6 +17,10 @@
 
 namespace beltrami {
 
+/// Energies are compared relative to their value, but not to less than this: the least symmetric
+/// ARAP energy is 0.
+inline constexpr double kLeastEnergy = 0.01;
+
 /// What a step did.
 struct NewtonStep {
   double length = 0;     ///< share of the Newton step taken; 0: no representable decrease
@@ -79,7 +83,7 @@ class NewtonStepper {
   static constexpr double kNoGain = 1e-14;       // relative predicted decrease within the roundoff
   static constexpr double kShift = 1e-13;        // of the diagonal: see factorize
   static constexpr double kLargestShift = 1e-3;
-  static constexpr int kMaxHalvings = 60;
+  static constexpr int kMaxHalvings = 40;
 
   static std::vector<double> area_weights(const std::vector<RestTriangle>& rest) {
     std::vector<double> weights(rest.size());
@@ -143,7 +147,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   NewtonStep result;
   result.energy = energy;
   result.predicted = -gradient_.dot(flat);
-  if (!(result.predicted > kNoGain * energy)) return result;
+  if (!(result.predicted > kNoGain * std::max(energy, kLeastEnergy))) return result;
 
   std::vector<Vec2> direction(uvs.size(), Vec2::Zero());
   for (Index v = 0; v < size_of(uvs); ++v) {
@@ -158,7 +162,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
     const double trial_energy = mean_energy(trial);
-    if (trial_energy <= energy - kArmijo * length * result.predicted &&
+    if (trial_energy < energy && trial_energy <= energy - kArmijo * length * result.predicted &&
         (!accept_ || accept_(trial))) {
       uvs.swap(trial);
       result.length = length;

@@ -79,7 +79,8 @@ NewtonResult minimise(const DiskMesh& mesh, const std::vector<RestTriangle>& res
     std::copy_n(all.uvs.begin(), uvs.size(), uvs.begin());
     const double before = result.energies.back();
     result.energies.push_back(mesh_energy<Density>(mesh, rest, uvs));
-    const bool little = before - result.energies.back() <= options.tolerance * before;
+    const bool little =
+        before - result.energies.back() <= options.tolerance * std::max(before, kLeastEnergy);
     little_gain = little ? little_gain + 1 : 0;
     result.converged = (little && step.length >= kFullStep) || little_gain >= kPatience;
   }
