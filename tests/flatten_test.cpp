@@ -199,6 +199,25 @@ TEST(SolveMetric, ReproducesAnyMapFromItsOwnMetric) {
   }
 }
 
+// The phases of a prolonged metric are only roughly right: the rotations are fitted again.
+TEST(SolveMetric, RecoversTheMapFromPhasesThatAreOff) {
+  Random random(5);
+  const DiskMesh mesh = disks::disk(meshes::grid(8, 8));
+  const auto rest = disks::rest_of(mesh);
+  auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
+  for (FaceMetric& m : metric) m.phase *= std::polar(1.0, random.between(-0.5, 0.5));
+  const MetricLaplacian laplacian(mesh, rest, metric, disks::only_fixed(mesh, 0));
+  const auto energy_after = [&](int rotations) {
+    std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
+    solve_metric(mesh, rest, metric, laplacian, rotations, 1, uvs);
+    return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet - 2;
+  };
+  const double none = energy_after(0);
+  EXPECT_GT(none, 1e-3);
+  EXPECT_LT(energy_after(2), 0.2 * none);
+  EXPECT_LT(energy_after(30), 1e-6);
+}
+
 TEST(SolveMetric, DoesNotMoveHeldVertices) {
   Random random(3);
   const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 1.5));

@@ -77,6 +77,19 @@ TEST(Repair, LeavesNoNearZeroAreas) {
   }
 }
 
+// Two neighbours of the dragged vertex nearly coincide, so that its kernel leaves a face of 1e-9 of
+// the usual area: exactly positive, and not good enough.
+TEST(Repair, RefusesAKernelThatLeavesANearZeroArea) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[25] = uvs[32] - Vec2(0, 1e-10);
+  uvs[24] += Vec2(-0.3, 0.05);
+  ASSERT_FALSE(injective(mesh, uvs));
+  mend(mesh, uvs);
+  EXPECT_TRUE(injective(mesh, uvs));
+  EXPECT_GT(least_area(mesh, uvs), 1e-4 * 0.5 / 36);
+}
+
 TEST(Repair, MendsFacesThatAreExactlyCollinear) {
   const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);

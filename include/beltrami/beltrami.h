@@ -154,7 +154,7 @@ enum {
   BELTRAMI_OPTION_INJECTIVITY = 8,    /* choice: BELTRAMI_INJECTIVITY_ */
   BELTRAMI_OPTION_REFINE = 9,         /* int: 1 goes on with CM on the fine mesh */
   BELTRAMI_OPTION_REFINE_ITERATIONS = 10, /* int: limit of its iterations; 0: CM's stopping rule */
-  BELTRAMI_OPTION_TIME_LIMIT = 11     /* float: wall seconds after which it stops; 0: none */
+  BELTRAMI_OPTION_TIME_LIMIT = 11         /* float: wall seconds after which it stops; 0: none */
 };
 
 enum {
@@ -165,7 +165,7 @@ enum {
   BELTRAMI_METHOD_CM = 1,
   /* Tutte's embedding into a circle: injective, fast, highly distorted. */
   BELTRAMI_METHOD_TUTTE = 2,
-  /* Baseline: globally injective flattening in the harmonic subspace of the surface's own metric. */
+  /* Baseline: globally injective, in the harmonic subspace of the surface's own metric. */
   BELTRAMI_METHOD_GIF = 3,
   /* Baseline: boundary first flattening, conformal. May flip and overlap. */
   BELTRAMI_METHOD_BFF = 4,
@@ -178,8 +178,8 @@ enum {
   BELTRAMI_FLATTEN_FORCE_SIGNED_ = -1,
   /* Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps. */
   BELTRAMI_FLATTEN_METRIC = 0,
-  /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster, and
-   * 0.3% to 3% higher in energy. */
+  /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
+   * and 0.3% to 3% higher in energy. */
   BELTRAMI_FLATTEN_DIRICHLET = 1,
   /* The paper's: the harmonic subspace of a few boundary vertices, with a scaffold. */
   BELTRAMI_FLATTEN_GIF = 2,
@@ -209,21 +209,21 @@ enum {
 /* How an option's value is given. */
 enum {
   BELTRAMI_TYPE_FORCE_SIGNED_ = -1,
-  BELTRAMI_TYPE_INT = 0,    /* beltrami_set_int */
-  BELTRAMI_TYPE_FLOAT = 1,  /* beltrami_set_float */
-  BELTRAMI_TYPE_CHOICE = 2  /* beltrami_set_int with one of the named values */
+  BELTRAMI_TYPE_INT = 0,   /* beltrami_set_int */
+  BELTRAMI_TYPE_FLOAT = 1, /* beltrami_set_float */
+  BELTRAMI_TYPE_CHOICE = 2 /* beltrami_set_int with one of the named values */
 };
 
 typedef struct beltrami_option_info {
   uint32_t struct_size;
-  int32_t key;           /* BELTRAMI_OPTION_ */
-  int32_t type;          /* BELTRAMI_TYPE_ */
-  int32_t reserved;      /* 0 */
-  double minimum;        /* inclusive */
-  double maximum;        /* inclusive */
+  int32_t key;      /* BELTRAMI_OPTION_ */
+  int32_t type;     /* BELTRAMI_TYPE_ */
+  int32_t reserved; /* 0 */
+  double minimum;   /* inclusive */
+  double maximum;   /* inclusive */
   double default_value;
-  const char* name;      /* "coarse-faces": the flag of the program, static */
-  const char* summary;   /* one sentence, static */
+  const char* name;    /* "coarse-faces": the flag of the program, static */
+  const char* summary; /* one sentence, static */
 } beltrami_option_info;
 
 /* Key of the option with this name ("coarse-faces"), or -1. */
@@ -305,16 +305,16 @@ BELTRAMI_API void beltrami_cancel(beltrami_context* context);
  * very floats given. Injective: every face positive, no boundary crossing, on one oriented disk. */
 typedef struct beltrami_certificate {
   uint32_t struct_size;
-  int32_t injective;            /* 1 or 0 */
-  uint64_t positive;            /* faces of positive, negative, zero area in UV */
+  int32_t injective; /* 1 or 0 */
+  uint64_t positive; /* faces of positive, negative, zero area in UV */
   uint64_t negative;
   uint64_t degenerate;
-  uint64_t boundary_crossings;  /* pairs of boundary edges that meet where they should not */
-  uint64_t first_bad_face;      /* first face that is not positive, or BELTRAMI_NO_ELEMENT */
-  uint64_t first_crossing[2];   /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
-  uint64_t error_element;       /* the element of an error status, or BELTRAMI_NO_ELEMENT */
-  int32_t error_element_kind;   /* BELTRAMI_ELEMENT_ */
-  int32_t reserved;             /* 0 */
+  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not */
+  uint64_t first_bad_face;     /* first face that is not positive, or BELTRAMI_NO_ELEMENT */
+  uint64_t first_crossing[2];  /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
+  uint64_t error_element;      /* the element of an error status, or BELTRAMI_NO_ELEMENT */
+  int32_t error_element_kind;  /* BELTRAMI_ELEMENT_ */
+  int32_t reserved;            /* 0 */
 } beltrami_certificate;
 
 /* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given.
@@ -322,18 +322,18 @@ typedef struct beltrami_certificate {
  * finite energy (flipped or degenerate), are left out and counted. */
 typedef struct beltrami_energy {
   uint32_t struct_size;
-  uint32_t reserved;            /* 0 */
-  double symmetric_dirichlet;   /* 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2 */
-  double symmetric_arap;        /* (s1 - 1)^2 + (1/s2 - 1)^2, >= 0 */
-  double max;                   /* greatest symmetric Dirichlet energy of a face */
-  uint64_t worst_face;          /* where, or BELTRAMI_NO_ELEMENT */
-  uint64_t left_out;            /* faces left out */
+  uint32_t reserved;          /* 0 */
+  double symmetric_dirichlet; /* 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2 */
+  double symmetric_arap;      /* (s1 - 1)^2 + (1/s2 - 1)^2, >= 0 */
+  double max;                 /* greatest symmetric Dirichlet energy of a face */
+  uint64_t worst_face;        /* where, or BELTRAMI_NO_ELEMENT */
+  uint64_t left_out;          /* faces left out */
 } beltrami_energy;
 
 typedef struct beltrami_result {
   uint32_t struct_size;
-  beltrami_status status;         /* what beltrami_run returned */
-  uint64_t vertices;              /* of the input */
+  beltrami_status status; /* what beltrami_run returned */
+  uint64_t vertices;      /* of the input */
   uint64_t faces;
   uint64_t boundary_edges;
   uint64_t unreferenced_vertices; /* vertices that no face uses: UV (0, 0) */
@@ -347,10 +347,10 @@ typedef struct beltrami_result {
 
 typedef struct beltrami_stage {
   uint32_t struct_size;
-  int32_t iterations;  /* 0 where a stage does not iterate */
-  double seconds;      /* wall time */
-  double cpu_seconds;  /* of the whole process */
-  const char* name;    /* static: "simplify", "coarse", "prolong", "flatten", "repair", ... */
+  int32_t iterations; /* 0 where a stage does not iterate */
+  double seconds;     /* wall time */
+  double cpu_seconds; /* of the whole process */
+  const char* name;   /* static: "simplify", "coarse", "prolong", "flatten", "repair", ... */
 } beltrami_stage;
 
 /* The functions below fail with INVALID_STATE before the first run with a result, and with
@@ -407,9 +407,8 @@ BELTRAMI_API beltrami_status beltrami_check_injective(const beltrami_mesh* mesh,
 
 /* Distortion of any UVs. `face_energies`: NULL or face_count doubles for the symmetric Dirichlet
  * energy of each face. Errors: INVALID_ARGUMENT, INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
-BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh,
-                                              const beltrami_buffer* uvs, beltrami_energy* out,
-                                              double* face_energies);
+BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                              beltrami_energy* out, double* face_energies);
 
 #ifdef __cplusplus
 }

@@ -57,9 +57,8 @@ Distortion measure_distortion(const std::vector<Vec3>& positions,
     Partial& part = partials[begin / kGrain];
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = faces[f];
-      const FaceDistortion d =
-          face_distortion({positions[t[0]], positions[t[1]], positions[t[2]]},
-                          {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+      const FaceDistortion d = face_distortion({positions[t[0]], positions[t[1]], positions[t[2]]},
+                                               {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
       if (face_energies) face_energies[f] = d.symmetric_dirichlet;
       if (!std::isfinite(d.symmetric_dirichlet)) {
         ++part.sum.left_out;

@@ -73,7 +73,8 @@ std::vector<Near> boundary_layer(const DiskMesh& mesh, const MetaVertices& metas
     queue.emplace(0, mesh.boundary[i]);
   }
   while (!queue.empty()) {
-    const auto [distance, v] = queue.top();
+    const double distance = queue.top().first;
+    const Index v = queue.top().second;
     queue.pop();
     if (distance > near[v].distance) continue;
     const double length = near[v].length;

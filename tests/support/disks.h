@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -83,6 +84,18 @@ meshes::TriangleList cells(Index nx, Index ny, const Keeps& keeps) {
 inline meshes::TriangleList dumbbell(Index n) {
   auto mesh = cells(3 * n, n, [n](Index i, Index j) { return i < n || i >= 2 * n || j == n / 2; });
   for (Vec3& p : mesh.positions) p.z() = 0.05 * p.x() * p.x() / n;
+  return mesh;
+}
+
+/// A tube of radius 1, closed at one end: nested rings around vertex 0, each `height` lower.
+/// Tutte's embedding squeezes it exponentially with its length.
+inline meshes::TriangleList tube(Index rings, Index sectors, double height) {
+  meshes::TriangleList mesh = meshes::cap(rings, sectors, 1);
+  for (Index v = 1; v < size_of(mesh.positions); ++v) {
+    const double azimuth = 2 * std::numbers::pi * ((v - 1) % sectors) / sectors;
+    const double depth = height * (1 + (v - 1) / sectors);
+    mesh.positions[v] = {std::cos(azimuth), std::sin(azimuth), -depth};
+  }
   return mesh;
 }
 
