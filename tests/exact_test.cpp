@@ -173,6 +173,15 @@ TEST(Crossings, AreDecidedExactly) {
   EXPECT_EQ(crossings({{0.5, 0.5}, {24, 24}, {12, 24}, {12, 12}, {0, 24}}), 2);
 }
 
+TEST(FindCrossings, GivesThePairsThatAreCountedByPositionInTheLoop) {
+  const std::vector<Vec2> uvs = {{9, 9}, {0, 1}, {1, 0}, {1, 1}, {0, 0}};
+  const auto pairs = find_crossings({4, 3, 2, 1}, uvs);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(std::min(pairs[0][0], pairs[0][1]), 0);
+  EXPECT_EQ(std::max(pairs[0][0], pairs[0][1]), 2);
+  EXPECT_TRUE(find_crossings({0, 1, 2}, {{0, 0}, {1, 0}, {0, 1}}).empty());
+}
+
 std::vector<Vec2> spiral(int half) {
   std::vector<Vec2> polygon;
   const auto at = [&](int i, double inset) {
