@@ -105,12 +105,15 @@ TEST(Options, NamesTheChoicesWhereNoneWasGiven) {
   const Context context = create();
   EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, 99),
             BELTRAMI_E_INVALID_ARGUMENT);
-  EXPECT_NE(message(context).find("beltrami, cm, tutte"), std::string::npos) << message(context);
+  int32_t value = 0;
+  while (const char* choice = beltrami_option_choice(BELTRAMI_OPTION_METHOD, value++)) {
+    EXPECT_NE(message(context).find(choice), std::string::npos) << message(context);
+  }
 }
 
 TEST(Options, ARefusedValueLeavesTheOldOne) {
   const Context context = loaded(meshes::bumps(4, 4));
-  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, 17),
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, 99),
             BELTRAMI_E_INVALID_ARGUMENT);
   ASSERT_EQ(run(context), BELTRAMI_OK);
   auto stage = sized<beltrami_stage>();
