@@ -81,7 +81,8 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   std::vector<Vec2> x = metas_on_circle(metas, area);
   const ReducedBasis basis(mesh, rest, metric, std::move(metas));
   checkpoint(0.5 * kBasisShare);
-  const ReducedProblem problem = sampled_problem(mesh, rest, basis, options.threads);
+  ReducedProblem problem = sampled_problem(mesh, rest, basis, options.threads);
+  problem.energy = options.energy;
   checkpoint(kBasisShare);
 
   ReducedDescent descent = minimise_reduced(

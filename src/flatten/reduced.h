@@ -7,12 +7,14 @@
 #include "base/checkpoint.h"
 #include "base/types.h"
 #include "beltrami/prolongation.h"
+#include "distortion/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
 
 struct ReducedOptions {
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
   bool scaffold = true;     ///< GIF: the boundary may not cross itself. false: FLIM, no flips alone
   double tolerance = 1e-3;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 200;  ///< Newton steps

@@ -102,12 +102,14 @@ double Descent::energy_of_sample(Index s, const DenseMatrix& edges) const {
       singular_values(linear_map(problem_.rest[s], Vec2::Zero(), edges.row(2 * s).transpose(),
                                  edges.row(2 * s + 1).transpose()));
   if (!(values.s2 > 0)) return std::numeric_limits<double>::infinity();
-  return SymmetricDirichlet::value(values.s1, values.s2);
+  return with_density(problem_.energy,
+                      [&](auto density) { return density.value(values.s1, values.s2); });
 }
 
-/// The best global scale of the positive samples: s^4 = sum(A / sigma^2) / sum(A sigma^2). Samples
-/// that are then worse than a flipped one are left out too, else a few that are nearly collinear
-/// would decide the scale alone: it is taken twice.
+/// The best global scale of the positive samples for the symmetric Dirichlet energy, a good start
+/// for the others too: s^4 = sum(A / sigma^2) / sum(A sigma^2). Samples that are then worse than a
+/// flipped one are left out too, else a few that are nearly collinear would decide the scale alone:
+/// it is taken twice.
 void Descent::scale_and_activate() {
   constexpr double kWorstForScale = 1e4;
   edges_ = edges_of(x_);
@@ -175,7 +177,8 @@ double Descent::energy(const LooseFaces& loose, const std::vector<Vec2>& points)
     const SingularValues s =
         singular_values(linear_map(loose.rest[f], points[t[0]], points[t[1]], points[t[2]]));
     if (!(s.s2 > 0)) return std::numeric_limits<double>::infinity();
-    sum += loose.weights[f] * SymmetricDirichlet::value(s.s1, s.s2);
+    sum += loose.weights[f] *
+           with_density(problem_.energy, [&](auto density) { return density.value(s.s1, s.s2); });
   }
   return sum;
 }
@@ -277,8 +280,10 @@ std::vector<Vec2> Descent::solve() {
 std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
   const LooseFaces loose = gather();
   const double before = energy(loose, loose.points);
-  assemble(loose, proxy ? model_faces(loose, SymmetricDirichlet::Proxy{})
-                        : model_faces(loose, SymmetricDirichlet{}));
+  with_density(problem_.energy, [&]<class Density>(Density density) {
+    assemble(loose,
+             proxy ? model_faces(loose, typename Density::Proxy{}) : model_faces(loose, density));
+  });
   const std::vector<Vec2> direction = solve();
   double predicted = 0;
   for (Index m = 0; m < metas_; ++m) {

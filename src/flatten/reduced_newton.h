@@ -7,13 +7,15 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
+#include "distortion/energy.h"
 #include "mesh/rest_shape.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
 
-/// The mean symmetric Dirichlet energy of sampled faces as a function of the meta vertices.
+/// The mean energy of sampled faces as a function of the meta vertices.
 struct ReducedProblem {
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
   DenseMatrix edges;               ///< rows 2s, 2s + 1: edges of sample s from its corner 0 to its
                                    ///< corners 1 and 2; one column per meta vertex
   std::vector<RestTriangle> rest;  ///< per sample

@@ -112,6 +112,7 @@ std::vector<Vec2> Run::flatten_reduced(const FineProblem& fine, bool scaffold) {
     ReducedOptions reduced;
     reduced.scaffold = scaffold;
     reduced.threads = options_.threads;
+    reduced.energy = options_.energy;
     ReducedResult map =
         beltrami::flatten_reduced(disk_, fine.rest, fine.metric, reduced, checkpoint);
     statistics.iterations = static_cast<int>(map.energies.size()) - 1;
