@@ -387,9 +387,8 @@ TEST(MinimiseEnergy, DoesNotStopOnTheTinyStepsOfABlockedStart) {
   }
 }
 
-// Fails without proxy steps: kPatience takes five blocked steps in a row, at E = 1.8e16, for
-// convergence. (The default of five proxy steps ends at 37.)
-TEST(MinimiseEnergy, DISABLED_DoesNotTakeBlockedStepsForConvergence) {
+// Without proxy steps five blocked steps in a row, at E = 1.8e16, once passed for convergence.
+TEST(MinimiseEnergy, DoesNotTakeBlockedStepsForConvergence) {
   const DiskMesh mesh = disks::disk(disks::tube(60, 8, 0.7));
   NewtonOptions options;
   options.proxy_steps = 0;

@@ -11,10 +11,12 @@ namespace {
 /// energy hardly falls, long before the minimum.
 constexpr double kFullStep = 0.5;
 
-/// Unless there are many of them: energies that are not smooth (symmetric ARAP at s1 = s2) creep
-/// towards their minimum in shortened steps.
+/// Unless there are many of them, and Newton's model sees little to gain either: energies that are
+/// not smooth (symmetric ARAP at s1 = s2) creep towards their minimum in shortened steps.
 constexpr int kPatience = 5;
 constexpr double kNothing = 1e-3;  // share of the tolerance that is no gain, however short the step
+
+constexpr double kLittleLeft = 0.05;  // predicted decrease, relative to the energy
 
 /// Steps below this length are blocked by faces that are nearly singular.
 constexpr double kBlockedStep = 0.02;
@@ -64,7 +66,10 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     little_gains = little && (step.length >= kBlockedStep || gain <= kNothing * options.tolerance)
                        ? little_gains + 1
                        : 0;
-    result.converged = (little && step.length >= kFullStep) || little_gains >= kPatience;
+    const bool stalled = little_gains >= kPatience;
+    const bool little_left = step.predicted <= kLittleLeft * std::max(before, kLeastEnergy);
+    result.converged = (little && step.length >= kFullStep) || (stalled && little_left);
+    if (stalled) break;
   }
   return result;
 }
