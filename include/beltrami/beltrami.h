@@ -192,10 +192,12 @@ enum {
 /* What the optimisation sees to. The certificate always judges global injectivity. */
 enum {
   BELTRAMI_INJECTIVITY_FORCE_SIGNED_ = -1,
+  /* Global, but for the method CM: that is left as the literature has it, the reference. */
+  BELTRAMI_INJECTIVITY_AUTO = 0,
   /* No flips, and no part of the boundary may cross another. */
-  BELTRAMI_INJECTIVITY_GLOBAL = 0,
+  BELTRAMI_INJECTIVITY_GLOBAL = 1,
   /* No flips; the boundary may overlap itself, at a slightly lower energy. */
-  BELTRAMI_INJECTIVITY_LOCAL = 1
+  BELTRAMI_INJECTIVITY_LOCAL = 2
 };
 
 enum {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kMethods[] = {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"};
 constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"};
-constexpr const char* kInjectivities[] = {"global", "local"};
+constexpr const char* kInjectivities[] = {"auto", "global", "local"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
 template <auto Member>
@@ -89,8 +89,9 @@ const OptionEntry kOptions[] = {
      "injectivity only) or bff (conformal, may flip).",
      0, std::size(kFlattens) - 1, kFlattens, get<&Options::flatten>, set<&Options::flatten>},
     {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_TYPE_CHOICE, "injectivity",
-     "What the optimisation sees to: global (no flips, no boundary crossings) or local (no flips: "
-     "parts may overlap, at a slightly lower energy).",
+     "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: "
+     "parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which "
+     "is left as the literature has it).",
      0, std::size(kInjectivities) - 1, kInjectivities, get<&Options::injectivity>,
      set<&Options::injectivity>},
     {BELTRAMI_OPTION_REFINE,

@@ -141,8 +141,8 @@ std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
 /// it. (The coarse boundary is simple, or there is nothing to hold on to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   const std::vector<Vec2> carried = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
-  const bool global = options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL &&
-                      count_crossings(disk_.boundary, carried).count == 0;
+  const bool global =
+      keeps_boundary_simple() && count_crossings(disk_.boundary, carried).count == 0;
   std::vector<bool> held(disk_.vertex_count(), false);
   held[disk_.boundary.front()] = true;
   std::vector<Vec2> uvs;

@@ -20,13 +20,19 @@ void Run::report(double fraction, const char* name) {
   }
 }
 
+bool Run::keeps_boundary_simple() const {
+  const bool reference = options_.method == BELTRAMI_METHOD_CM && !options_.refine;
+  return options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL ||
+         (options_.injectivity == BELTRAMI_INJECTIVITY_AUTO && !reference);
+}
+
 NewtonOptions Run::newton_options(const DiskMesh& mesh) const {
   NewtonOptions newton;
   newton.energy = options_.energy;
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
   newton.threads = options_.threads;
-  if (options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL) {
+  if (keeps_boundary_simple()) {
     newton.admissible = [&mesh](const std::vector<Vec2>& map) {
       return count_crossings(mesh.boundary, map).count == 0;
     };
@@ -74,9 +80,8 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
 /// is kept if it cannot be improved; a map that is not injective is left alone.
 void Run::refine(std::vector<Vec2>& uvs) {
   const Certificate certificate = certify(disk_.faces, disk_.boundary, uvs, options_.threads);
-  const bool global = options_.injectivity == BELTRAMI_INJECTIVITY_GLOBAL;
   if (certificate.orientations.first_bad_face != kNone) return;
-  if (global && certificate.crossings.count > 0) return;
+  if (keeps_boundary_simple() && certificate.crossings.count > 0) return;
   stage("refine", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
     NewtonOptions newton = newton_options(disk_);

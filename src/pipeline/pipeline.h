@@ -25,7 +25,7 @@ struct Options {
   int threads = 1;
   bool unit_square = false;
   std::int32_t flatten = BELTRAMI_FLATTEN_METRIC;
-  std::int32_t injectivity = BELTRAMI_INJECTIVITY_GLOBAL;
+  std::int32_t injectivity = BELTRAMI_INJECTIVITY_AUTO;
   bool refine = false;
   int refine_iterations = 0;  ///< 0: to the stopping rule of CM
   double time_limit = 0;      ///< wall seconds after which refinement stops; 0: none

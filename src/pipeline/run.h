@@ -57,6 +57,7 @@ class Run {
   std::vector<Vec2> run_plain();
   void solve_coarse(FineProblem& fine);
   Index coarse_target() const;
+  bool keeps_boundary_simple() const;
   std::vector<Vec2> flatten_metric(const FineProblem& fine);
   std::vector<Vec2> flatten_dirichlet(const FineProblem& fine);
   std::vector<Vec2> flatten_reduced(const FineProblem& fine, bool scaffold);
