@@ -56,8 +56,9 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
       continue;
     }
     if (step.length == 0) {
-      // No representable decrease: at the minimum if little was predicted, stuck otherwise.
-      result.converged = step.predicted <= options.tolerance * std::max(before, kLeastEnergy);
+      // No representable decrease: at the minimum (or on a ridge) if little was predicted, stuck
+      // otherwise.
+      result.converged = step.predicted <= kLittleLeft * std::max(before, kLeastEnergy);
       break;
     }
     if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;

@@ -18,6 +18,7 @@ class CholmodSolver final : public SpdSolver {
     common_.method[0].ordering = CHOLMOD_AMD;
     common_.postorder = 1;
     common_.supernodal = CHOLMOD_AUTO;
+    common_.final_ll = 1;  // L L^T: L D L^T would take an indefinite matrix for a definite one
     common_.quick_return_if_not_posdef = 1;
   }
   ~CholmodSolver() override {
