@@ -277,10 +277,10 @@ typedef struct beltrami_mesh {
   beltrami_buffer indices;   /* face_count items of 3: U32 or U64, counter-clockwise */
 } beltrami_mesh;
 
-/* Copies and validates a mesh; the caller's memory is free to go afterwards. An invalid mesh
- * leaves the context with its old mesh and results. A request to cancel that is pending is dropped.
- * Errors: INVALID_ARGUMENT, INVALID_STATE, OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with
- * their element. */
+/* Copies and validates a mesh; the caller's memory is free to go afterwards. A valid mesh drops the
+ * results of the old one; an invalid mesh leaves the context with its old mesh and results. A
+ * request to cancel that is pending is dropped. Errors: INVALID_ARGUMENT, INVALID_STATE,
+ * OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element. */
 BELTRAMI_API beltrami_status beltrami_set_mesh(beltrami_context* context,
                                                const beltrami_mesh* mesh);
 
@@ -392,12 +392,14 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
  * beltrami_measure. Each returns OK, or NOT_INJECTIVE where it found something, or an error with
  * out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
 
-/* Orientation of every face. Needs no topology: any list of triangles will do. */
+/* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
+ * that, so out->injective stays 0. */
 BELTRAMI_API beltrami_status beltrami_check_triangles(const beltrami_mesh* mesh,
                                                       const beltrami_buffer* uvs,
                                                       beltrami_certificate* out);
 
-/* Simplicity of the boundary loop. Verifies that the mesh is one oriented disk. */
+/* Simplicity of the boundary loop. Verifies that the mesh is one oriented disk. Proves no more than
+ * that, so out->injective stays 0. */
 BELTRAMI_API beltrami_status beltrami_check_boundary(const beltrami_mesh* mesh,
                                                      const beltrami_buffer* uvs,
                                                      beltrami_certificate* out);

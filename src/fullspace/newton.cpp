@@ -15,7 +15,6 @@ constexpr double kFullStep = 0.5;
 /// not smooth (symmetric ARAP at s1 = s2) creep towards their minimum in shortened steps.
 constexpr int kPatience = 5;
 constexpr double kNothing = 1e-3;  // share of the tolerance that is no gain, however short the step
-
 constexpr double kLittleLeft = 0.05;  // predicted decrease, relative to the energy
 
 /// Steps below this length are blocked by faces that are nearly singular.

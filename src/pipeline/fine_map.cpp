@@ -1,7 +1,6 @@
 // From the coarse map to the fine one: prolongation and the ways to flatten.
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 #include "flatten/boundary_first.h"
 #include "flatten/dirichlet.h"
