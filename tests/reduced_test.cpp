@@ -44,8 +44,12 @@ Problem with_smooth_metric(Problem problem) {
   return problem;
 }
 
+std::vector<Cotangents> cotangents_of(const Problem& problem) {
+  return modified_cotangents(problem.rest, problem.metric, 1);
+}
+
 ReducedResult flatten(const Problem& problem, const ReducedOptions& options = {}) {
-  return flatten_reduced(problem.mesh, problem.rest, problem.metric, options);
+  return flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), options);
 }
 
 /// n cells in a row, joined to a square by one edge, which is a bridge, and ears at the corners.
@@ -74,7 +78,7 @@ void expect_never_rising(const std::vector<double>& energies) {
 }
 
 std::int64_t flips_after_repair(const Problem& problem, std::vector<Vec2> uvs) {
-  repair(problem.mesh, problem.rest, uvs, 1);
+  repair(problem.mesh, problem.rest, uvs, {});
   const auto counted = count_orientations(problem.mesh.faces, uvs, 1);
   return counted.negative + counted.degenerate;
 }
@@ -181,7 +185,7 @@ TEST(Samples, AreAllFacesOfASmallMesh) {
 
 TEST(ReducedBasis, RowsExpandToTheWholeMap) {
   const Problem problem = with_smooth_metric(problem_of(meshes::bumps(30, 40)));
-  const ReducedBasis basis(problem.mesh, problem.rest, problem.metric,
+  const ReducedBasis basis(problem.mesh, cotangents_of(problem),
                            choose_meta_vertices(problem.mesh));
   std::vector<Vec2> x;
   DenseMatrix places(basis.metas().count(), 2);
@@ -296,7 +300,7 @@ TEST(FlattenReduced, CanBeCancelledAtEveryCheckpoint) {
   const Problem problem = problem_of(meshes::bumps(16, 16));
   int checkpoints = 0;
   double last = 0;
-  flatten_reduced(problem.mesh, problem.rest, problem.metric, {}, [&](double fraction) {
+  flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), {}, [&](double fraction) {
     ++checkpoints;
     EXPECT_GE(fraction, last);
     EXPECT_LE(fraction, 1);
@@ -305,7 +309,7 @@ TEST(FlattenReduced, CanBeCancelledAtEveryCheckpoint) {
   EXPECT_GT(checkpoints, 4);
   for (int stop = 1; stop <= checkpoints; ++stop) {
     int seen = 0;
-    EXPECT_THROW(flatten_reduced(problem.mesh, problem.rest, problem.metric, {},
+    EXPECT_THROW(flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), {},
                                  [&](double) {
                                    if (++seen == stop) throw Cancelled();
                                  }),

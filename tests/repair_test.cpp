@@ -19,7 +19,7 @@ namespace {
 using disks::Random;
 
 RepairResult mend(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
-  return repair(mesh, disks::rest_of(mesh), uvs, 1);
+  return repair(mesh, disks::rest_of(mesh), uvs, {});
 }
 
 bool injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
@@ -167,8 +167,8 @@ TEST(Repair, HasTheSameBitsOnTwoThreads) {
   for (int i = 0; i < 20; ++i) one[random.below(mesh.vertex_count())] += 0.03 * random.vec2();
   std::vector<Vec2> two = one;
   const auto rest = disks::rest_of(mesh);
-  repair(mesh, rest, one, 1);
-  repair(mesh, rest, two, 2);
+  repair(mesh, rest, one, {.threads = 1});
+  repair(mesh, rest, two, {.threads = 2});
   EXPECT_EQ(one, two);
 }
 

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "exact/certificate.h"
+#include "scaffold/ring_faces.h"
 #include "scaffold/triangulate_ring.h"
 
 namespace beltrami {

@@ -11,6 +11,7 @@
 #include "abi/option_table.h"
 #include "abi/reports.h"
 #include "abi/status.h"
+#include "scaffold/triangulate_ring.h"
 #include "sparse/spd_solver.h"
 
 #define BELTRAMI_TEXT_(x) #x
@@ -19,14 +20,21 @@
   BELTRAMI_TEXT(BELTRAMI_VERSION_MAJOR) \
   "." BELTRAMI_TEXT(BELTRAMI_VERSION_MINOR) "." BELTRAMI_TEXT(BELTRAMI_VERSION_PATCH)
 
-#define BELTRAMI_BUILD_TEXT "beltrami " BELTRAMI_VERSION_TEXT ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI)
+#define BELTRAMI_BUILD_TEXT                                              \
+  "beltrami " BELTRAMI_VERSION_TEXT                                      \
+  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER \
+                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD
 
 namespace beltrami {
 namespace {
 
-/// Whether what this build links is under the GPL: CHOLMOD's Supernodal module is.
+constexpr std::string_view kSolver = "solver:", kScaffold = "scaffold:";
+
+/// Whether what this build links is under the GPL: CHOLMOD's Supernodal module is, and CGAL's
+/// package of triangulations.
 bool has_gpl() {
-  return std::string_view(spd_solver_name()) == "cholmod";
+  return std::string_view(spd_solver_name()) == "cholmod" ||
+         std::string_view(ring_triangulation_name()) == "cgal";
 }
 
 /// The wrapper of every entry point with a context: refuses NULL, and calls during a run.
@@ -94,17 +102,19 @@ uint32_t beltrami_version(void) {
 }
 
 const char* beltrami_build_info(void) {
-  return beltrami::has_gpl() ? BELTRAMI_BUILD_TEXT
-             ", solver cholmod, links GPL code: distribute under the GPL only"
-                             : BELTRAMI_BUILD_TEXT ", solver eigen, links no GPL code";
+  return beltrami::has_gpl() ? BELTRAMI_BUILD_TEXT ", links GPL code: distribute under the GPL only"
+                             : BELTRAMI_BUILD_TEXT ", links no GPL code";
 }
 
 int32_t beltrami_has(const char* feature) {
   if (feature == nullptr) return 0;
   const std::string_view name(feature);
   if (name == "gpl") return beltrami::has_gpl() ? 1 : 0;
-  constexpr std::string_view prefix = "solver:";
-  return name.starts_with(prefix) && name.substr(prefix.size()) == beltrami::spd_solver_name();
+  const auto is = [&](std::string_view prefix, const char* value) {
+    return name.starts_with(prefix) && name.substr(prefix.size()) == value;
+  };
+  return is(beltrami::kSolver, beltrami::spd_solver_name()) ||
+         is(beltrami::kScaffold, beltrami::ring_triangulation_name());
 }
 
 const char* beltrami_status_name(beltrami_status status) {

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 
 namespace beltrami {

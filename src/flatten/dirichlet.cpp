@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "sparse/mesh_matrix.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
@@ -40,44 +38,17 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
   return uvs;
 }
 
-std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu) {
-  std::array<double, 3> cotangents;
-  for (int k = 0; k < 3; ++k) {
-    const Complex v1 = rest.corner(next_corner(k)) - rest.corner(k);
-    const Complex v2 = rest.corner(previous_corner(k)) - rest.corner(k);
-    const Complex q = (v1 + mu * std::conj(v1)) * std::conj(v2 + mu * std::conj(v2));
-    cotangents[k] = -q.real() / q.imag();
-  }
-  return cotangents;
-}
-
-void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs) {
-  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
+                    std::vector<Vec2>& uvs) {
+  DenseMatrix rhs = DenseMatrix::Zero(mesh.vertex_count(), 2);
+  MeshMatrix laplacian =
+      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
+                         [&](Index row, Index vertex, double weight) {
+                           rhs.row(row) += weight * uvs[vertex].transpose();
+                         });
   if (laplacian.free_count() == 0) return;
-  DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triangle& face = mesh.faces[f];
-    const auto cotangents = modified_cotangents(rest[f], metric[f].mu);
-    for (int k = 0; k < 3; ++k) {
-      const int i = next_corner(k), j = previous_corner(k);
-      const double weight = 0.5 * cotangents[k];
-      laplacian.add(f, face, i, i, [=](int, int) { return weight; });
-      laplacian.add(f, face, j, j, [=](int, int) { return weight; });
-      laplacian.add(f, face, i, j, [=](int, int) { return -weight; });
-      const Index ri = laplacian.row(face[i]), rj = laplacian.row(face[j]);
-      if (ri != kNone && rj == kNone) rhs.row(ri) += weight * uvs[face[j]].transpose();
-      if (rj != kNone && ri == kNone) rhs.row(rj) += weight * uvs[face[i]].transpose();
-    }
-  }
-  const auto solver = make_spd_solver();
-  solver->analyze(laplacian.matrix());
-  if (!solver->factorize(laplacian.matrix())) {
-    throw Error(BELTRAMI_E_SOLVER,
-                "the Laplacian of the fine mesh is not definite in floating point: its faces are "
-                "too degenerate; try the method cm");
-  }
-  const DenseMatrix solution = solver->solve(rhs);
+  const DenseMatrix solution =
+      factorize_laplacian(laplacian)->solve(rhs.topRows(laplacian.free_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (laplacian.row(v) != kNone) uvs[v] = solution.row(laplacian.row(v)).transpose();
   }

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "base/types.h"
-#include "beltrami/prolongation.h"
+#include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
-#include "mesh/rest_shape.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {
@@ -18,16 +17,10 @@ namespace beltrami {
 std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
                                  const std::vector<Vec2>& coarse_uvs);
 
-/// Cotangents at the three corners of a face in the metric |dz + mu conj(dz)|^2.
-/// Precondition: |mu| < 1. (Paper section 3.4: cot = -Re q / Im q with
-/// q = (v1 + mu conj(v1)) conj(v2 + mu conj(v2)).)
-std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu);
-
-/// Solves for the interior vertices, harmonic in the conformal class of `metric` (its mu alone),
-/// with the boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand
-/// sides. Negative weights are kept; the matrix is definite all the same, being the stiffness
-/// matrix of a metric. Throws Error SOLVER.
-void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs);
+/// Solves for the interior vertices, harmonic in the metric of the corner `cotangents`, with the
+/// boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand sides. Throws
+/// Error SOLVER.
+void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
+                    std::vector<Vec2>& uvs);
 
 }  // namespace beltrami

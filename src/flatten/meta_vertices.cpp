@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/boundary.h"
+
 namespace beltrami {
 namespace {
 
@@ -18,23 +20,6 @@ constexpr Index kShortBoundary = 100;
 /// more energy).
 constexpr double kLongestPiece = 0.05;
 constexpr double kCurvedShare = 0.001;
-/// Boundary edges of no length get this share of the mean edge, so that no two vertices coincide.
-constexpr double kShortestArc = 1e-3;
-
-/// Length of the boundary edge that starts at each position.
-std::vector<double> edge_lengths(const DiskMesh& mesh) {
-  const Index count = size_of(mesh.boundary);
-  std::vector<double> lengths(count);
-  double total = 0;
-  for (Index i = 0; i < count; ++i) {
-    const Index a = mesh.boundary[i], b = mesh.boundary[i + 1 == count ? 0 : i + 1];
-    lengths[i] = (mesh.positions[b] - mesh.positions[a]).norm();
-    total += lengths[i];
-  }
-  const double shortest = total > 0 ? kShortestArc * total / count : 1.0;
-  for (double& length : lengths) length = std::max(length, shortest);
-  return lengths;
-}
 
 Index stride_along(const DiskMesh& mesh, const std::vector<double>& lengths) {
   const Index count = size_of(mesh.boundary);
@@ -133,7 +118,7 @@ MetaVertices connect(const std::vector<bool>& chosen, const std::vector<double>&
 
 MetaVertices choose_meta_vertices(const DiskMesh& mesh) {
   const Index count = size_of(mesh.boundary);
-  const std::vector<double> lengths = edge_lengths(mesh);
+  const std::vector<double> lengths = boundary_lengths(mesh);
   const Index stride = stride_along(mesh, lengths);
   std::vector<bool> chosen(count, false);
   for (Index i = 0; i < count; i += stride) chosen[i] = true;

@@ -1,10 +1,10 @@
 #include "flatten/metric.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 
 namespace beltrami {
 namespace {
@@ -27,6 +27,24 @@ std::array<Complex, 3> target_corners(const RestTriangle& rest, const FaceMetric
     corners[k] = fz * z + fzbar * std::conj(z);
   }
   return corners;
+}
+
+/// Weights of the edges of a face whose stiffness along each singular direction is the mean of the
+/// density's radial curvature there and of its angular ones.
+template <class Density>
+std::array<double, 3> stiffness_weights(const RestTriangle& rest, const LinearMap& map) {
+  const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+  if (!(a > b)) return modified_cotangents(rest, 0);
+  const DensityModel model = Density::model(a + b, a - b);
+  // Beside a ridge of the density the angular curvature is without bounds.
+  const double angular = std::min(0.5 * (model.twist + model.flip), model.h11 + model.h22);
+  const double along = 0.5 * (model.h11 + angular), across = 0.5 * (model.h22 + angular);
+  // The metric whose Laplacian has this stiffness: lengths go with the inverse roots.
+  const double ratio = std::sqrt(across / along), modulus = (ratio - 1) / (ratio + 1);
+  const Complex direction = b > 0 ? map.fzbar / map.fz * (a / b) : Complex(1);
+  auto weights = modified_cotangents(rest, modulus * direction);
+  for (double& w : weights) w *= 0.5 * std::sqrt(along * across);
+  return weights;
 }
 
 /// The unit complex per face that turns its target closest to the present map.
@@ -54,40 +72,45 @@ void fit_rotations(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const std::vector<FaceMetric>& metric,
                                  const std::vector<bool>& held)
-    : solver_(make_spd_solver()) {
-  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, held, 1);
+    : matrix_(mesh.vertex_count(), mesh.faces, held, 1) {
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const auto weights = edge_weights(rest[f], metric[f]);
-    for (int k = 0; k < 3; ++k) {
-      const int i = next_corner(k), j = previous_corner(k);
-      const double w = weights[k];
-      laplacian.add(f, mesh.faces[f], i, i, [=](int, int) { return w; });
-      laplacian.add(f, mesh.faces[f], j, j, [=](int, int) { return w; });
-      laplacian.add(f, mesh.faces[f], i, j, [=](int, int) { return -w; });
-    }
+    add_stiffness(matrix_, f, mesh.faces[f], edge_weights(rest[f], metric[f]));
   }
-  row_ = laplacian.rows();
-  free_count_ = laplacian.free_count();
-  if (free_count_ == 0) return;
-  solver_->analyze(laplacian.matrix());
-  if (!solver_->factorize(laplacian.matrix())) {
-    throw Error(
-        BELTRAMI_E_SOLVER,
-        "the Laplacian of the prolonged metric is not definite in floating point: the faces "
-        "of the mesh are too degenerate; try the method cm");
+  if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_);
+}
+
+void MetricLaplacian::refit(Energy energy, const DiskMesh& mesh,
+                            const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                            int threads) {
+  if (matrix_.free_count() == 0) return;
+  std::vector<std::array<double, 3>> weights(mesh.faces.size());
+  with_density(energy, [&]<class Density>(Density) {
+    parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t f = begin; f < end; ++f) {
+        const Triangle& t = mesh.faces[f];
+        weights[f] = stiffness_weights<Density>(
+            rest[f], linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      }
+    });
+  });
+  matrix_.set_zero();
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    add_stiffness(matrix_, f, mesh.faces[f], weights[f]);
   }
+  refactorize_laplacian(*solver_, matrix_);
 }
 
 DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
-  if (free_count_ == 0) return DenseMatrix::Zero(rhs.rows(), rhs.cols());
-  DenseMatrix packed(free_count_, rhs.cols());
-  for (Index v = 0; v < size_of(row_); ++v) {
-    if (row_[v] != kNone) packed.row(row_[v]) = rhs.row(v);
+  DenseMatrix result = DenseMatrix::Zero(rhs.rows(), rhs.cols());
+  if (matrix_.free_count() == 0) return result;
+  const std::vector<Index>& row = matrix_.rows();
+  DenseMatrix packed(matrix_.free_count(), rhs.cols());
+  for (Index v = 0; v < size_of(row); ++v) {
+    if (row[v] != kNone) packed.row(row[v]) = rhs.row(v);
   }
   packed = solver_->solve(packed);
-  DenseMatrix result = DenseMatrix::Zero(rhs.rows(), rhs.cols());
-  for (Index v = 0; v < size_of(row_); ++v) {
-    if (row_[v] != kNone) result.row(v) = packed.row(row_[v]);
+  for (Index v = 0; v < size_of(row); ++v) {
+    if (row[v] != kNone) result.row(v) = packed.row(row[v]);
   }
   return result;
 }

@@ -67,8 +67,8 @@ ReducedProblem sampled_problem(const DiskMesh& mesh, const std::vector<RestTrian
 }  // namespace
 
 ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                              const std::vector<FaceMetric>& metric, const ReducedOptions& options,
-                              const Checkpoint& checkpoint) {
+                              const std::vector<Cotangents>& cotangents,
+                              const ReducedOptions& options, const Checkpoint& checkpoint) {
   checkpoint(0);
   MetaVertices metas = choose_meta_vertices(mesh);
   if (metas.count() > kMostMetas) {
@@ -79,7 +79,7 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   double area = 0;
   for (const RestTriangle& r : rest) area += r.area();
   std::vector<Vec2> x = metas_on_circle(metas, area);
-  const ReducedBasis basis(mesh, rest, metric, std::move(metas));
+  const ReducedBasis basis(mesh, cotangents, std::move(metas));
   checkpoint(0.5 * kBasisShare);
   ReducedProblem problem = sampled_problem(mesh, rest, basis, options.threads);
   problem.energy = options.energy;

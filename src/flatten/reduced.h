@@ -6,8 +6,8 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
-#include "beltrami/prolongation.h"
 #include "distortion/energy.h"
+#include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
@@ -32,12 +32,13 @@ struct ReducedResult {
 };
 
 /// Flattens a disk. Boundary vertices lie on straight pieces between meta vertices, the interior is
-/// harmonic in the conformal class of `metric` (its mu alone; all zero: plain GIF or FLIM on the
-/// metric of the surface). Starts from the meta vertices on a circle. The same bits at any number
-/// of threads. Throws Error SOLVER where a system cannot be solved, or where bridges call for more
-/// meta vertices than dense algebra can serve.
+/// harmonic in the metric of the corner `cotangents` (those of the surface: plain GIF or FLIM).
+/// Starts from the meta vertices on a circle. The same bits at any number of threads. Throws Error
+/// SOLVER where a system cannot be solved, or where bridges call for more meta vertices than dense
+/// algebra can serve.
 ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                              const std::vector<FaceMetric>& metric, const ReducedOptions& options,
+                              const std::vector<Cotangents>& cotangents,
+                              const ReducedOptions& options,
                               const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -2,51 +2,25 @@
 
 #include <utility>
 
-#include "base/error.h"
-#include "flatten/dirichlet.h"
-#include "sparse/mesh_matrix.h"
-
 namespace beltrami {
 
-ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                           const std::vector<FaceMetric>& metric, MetaVertices metas)
-    : mesh_(mesh),
-      metas_(std::move(metas)),
-      position_(mesh.vertex_count(), kNone),
-      solver_(make_spd_solver()) {
+ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
+                           MetaVertices metas)
+    : mesh_(mesh), metas_(std::move(metas)), position_(mesh.vertex_count(), kNone) {
   for (Index i = 0; i < size_of(mesh.boundary); ++i) position_[mesh.boundary[i]] = i;
-  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
-  row_ = laplacian.rows();
   std::vector<Eigen::Triplet<double>> pull;
-  const auto pull_towards = [&](Index row, Index boundary_vertex, double weight) {
-    const Index at = position_[boundary_vertex], meta = metas_.piece[at];
-    const double share = metas_.share[at];
-    pull.emplace_back(row, meta, weight * (1 - share));
-    if (share > 0) pull.emplace_back(row, metas_.next(meta), weight * share);
-  };
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triangle& face = mesh.faces[f];
-    const auto cotangents = modified_cotangents(rest[f], metric[f].mu);
-    for (int k = 0; k < 3; ++k) {
-      const int i = next_corner(k), j = previous_corner(k);
-      const double weight = 0.5 * cotangents[k];
-      laplacian.add(f, face, i, i, [=](int, int) { return weight; });
-      laplacian.add(f, face, j, j, [=](int, int) { return weight; });
-      laplacian.add(f, face, i, j, [=](int, int) { return -weight; });
-      const Index ri = row_[face[i]], rj = row_[face[j]];
-      if (ri != kNone && rj == kNone) pull_towards(ri, face[j], weight);
-      if (rj != kNone && ri == kNone) pull_towards(rj, face[i], weight);
-    }
-  }
+  MeshMatrix laplacian =
+      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
+                         [&](Index row, Index vertex, double weight) {
+                           const Index at = position_[vertex], meta = metas_.piece[at];
+                           const double share = metas_.share[at];
+                           pull.emplace_back(row, meta, weight * (1 - share));
+                           if (share > 0) pull.emplace_back(row, metas_.next(meta), weight * share);
+                         });
+  row_ = laplacian.rows();
   pull_.resize(laplacian.free_count(), metas_.count());
   pull_.setFromTriplets(pull.begin(), pull.end());
-  if (laplacian.free_count() == 0) return;
-  solver_->analyze(laplacian.matrix());
-  if (!solver_->factorize(laplacian.matrix())) {
-    throw Error(BELTRAMI_E_SOLVER,
-                "the Laplacian of the fine mesh is not definite in floating point: its faces are "
-                "too degenerate; try the method cm");
-  }
+  if (laplacian.free_count() > 0) solver_ = factorize_laplacian(laplacian);
 }
 
 DenseMatrix ReducedBasis::rows(const std::vector<Index>& vertices, int threads) const {

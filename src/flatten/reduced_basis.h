@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "base/types.h"
-#include "beltrami/prolongation.h"
+#include "flatten/laplacian.h"
 #include "flatten/meta_vertices.h"
 #include "mesh/disk_mesh.h"
-#include "mesh/rest_shape.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
@@ -17,10 +16,9 @@ namespace beltrami {
 /// Factorizes once; then gives single rows of H, and whole maps. Keeps a reference to the mesh.
 class ReducedBasis {
  public:
-  /// Harmonic in the conformal class of `metric` (its mu alone). Throws Error SOLVER if the
-  /// Laplacian is not definite in floating point.
-  ReducedBasis(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-               const std::vector<FaceMetric>& metric, MetaVertices metas);
+  /// Harmonic in the metric of the corner `cotangents`. Throws Error SOLVER if the Laplacian is not
+  /// definite in floating point.
+  ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents, MetaVertices metas);
 
   const MetaVertices& metas() const { return metas_; }
 

@@ -4,6 +4,7 @@
 
 #include "exact/certificate.h"
 #include "fullspace/newton_step.h"
+#include "mesh/boundary.h"
 #include "scaffold/ring_faces.h"
 
 namespace beltrami {
@@ -23,8 +24,7 @@ struct Surrounded {
 
 Surrounded surround(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     const std::vector<Vec2>& uvs) {
-  std::vector<Vec2> polygon;
-  for (const Index v : mesh.boundary) polygon.push_back(uvs[v]);
+  const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   Surrounded all{mesh.faces, rest, {}, std::vector<bool>(uvs.size(), false), uvs};
   double mesh_area = 0;
   for (const RestTriangle& r : rest) {

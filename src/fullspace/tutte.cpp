@@ -1,48 +1,18 @@
 #include "fullspace/tutte.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
 #include "fullspace/assembly.h"
+#include "mesh/boundary.h"
 #include "sparse/mesh_matrix.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
-namespace {
-
-/// Boundary edges of no length get this share of the mean edge, so that no two vertices coincide.
-constexpr double kShortestArc = 1e-3;
-
-void place_boundary(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
-  const Index count = size_of(mesh.boundary);
-  std::vector<double> arc(count);
-  double length = 0;
-  for (Index i = 0; i < count; ++i) {
-    const Index a = mesh.boundary[i], b = mesh.boundary[i + 1 == count ? 0 : i + 1];
-    arc[i] = (mesh.positions[b] - mesh.positions[a]).norm();
-    length += arc[i];
-  }
-  const double shortest = length > 0 ? kShortestArc * length / count : 1.0;
-  length = 0;
-  for (double& a : arc) {
-    a = std::max(a, shortest);
-    length += a;
-  }
-  const double radius = std::sqrt(surface_area(mesh) / std::numbers::pi);
-  double along = 0;
-  for (Index i = 0; i < count; ++i) {
-    const double angle = 2 * std::numbers::pi * along / length;
-    uvs[mesh.boundary[i]] = radius * Vec2(std::cos(angle), std::sin(angle));
-    along += arc[i];
-  }
-}
-
-}  // namespace
-
 std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
   std::vector<Vec2> uvs(mesh.vertex_count(), Vec2::Zero());
-  place_boundary(mesh, uvs);
+  const std::vector<Vec2> circle = boundary_on_circle(mesh);
+  for (std::size_t i = 0; i < circle.size(); ++i) uvs[mesh.boundary[i]] = circle[i];
 
   MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
   if (laplacian.free_count() == 0) return uvs;

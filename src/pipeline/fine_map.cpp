@@ -20,8 +20,8 @@ constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
 constexpr int kRotations = 2;           // ARAP rounds after the Poisson solve
 constexpr std::size_t kManyFlips = 20;  // beyond which the harmonic map is looked at too
-constexpr int kPolishIterations = 20;
-constexpr int kPolishRounds = 6;      // each ended by faces that block the steps
+constexpr int kPolishIterations = 30;
+constexpr int kPolishRounds = 10;     // more, each after faces that blocked the steps
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -99,9 +99,9 @@ std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
   std::vector<Vec2> uvs;
   stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
     uvs = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
-    solve_harmonic(disk_, fine.rest, fine.metric, uvs);
+    solve_harmonic(disk_, fine.cotangents(options_.threads), uvs);
   });
-  mend(fine, 0.95, uvs);
+  mend(fine, keeps_boundary_simple(), 0.95, uvs);
   return uvs;
 }
 
@@ -112,12 +112,12 @@ std::vector<Vec2> Run::flatten_reduced(const FineProblem& fine, bool scaffold) {
     reduced.scaffold = scaffold;
     reduced.threads = options_.threads;
     reduced.energy = options_.energy;
-    ReducedResult map =
-        beltrami::flatten_reduced(disk_, fine.rest, fine.metric, reduced, checkpoint);
+    ReducedResult map = beltrami::flatten_reduced(
+        disk_, fine.rest, fine.cotangents(options_.threads), reduced, checkpoint);
     statistics.iterations = static_cast<int>(map.energies.size()) - 1;
     uvs = std::move(map.uvs);
   });
-  mend(fine, 0.95, uvs);
+  mend(fine, scaffold, 0.95, uvs);
   return uvs;
 }
 
@@ -189,12 +189,12 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
     if (flips <= kManyFlips) return;
     // On extreme models the free map flips far more than the harmonic one.
     std::vector<Vec2> harmonic = carried;
-    solve_harmonic(disk_, fine.rest, fine.metric, harmonic);
+    solve_harmonic(disk_, fine.cotangents(options_.threads), harmonic);
     if (non_positive_faces(disk_.faces, harmonic, options_.threads).size() < flips) {
       uvs.swap(harmonic);
     }
   });
-  if (!mend(fine, 0.66, uvs)) return uvs;
+  if (!mend(fine, false, 0.66, uvs)) return uvs;
   // Polishing a map that crosses itself already would be in vain.
   if (global && count_crossings(disk_.boundary, uvs).count > 0) return uvs;
 
@@ -202,41 +202,58 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   return uvs;
 }
 
-void Run::polish_map(const FineProblem& fine, const MetricLaplacian& laplacian,
-                     std::vector<Vec2>& uvs) {
+/// L-BFGS with the factor of the flattening at first. Where nearly singular faces block its steps,
+/// these are cleaned and the factor is fitted to the map as it is by then.
+void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const double curvature =
-        with_density(options_.energy, [](auto density) { return density.kCurvature; });
-    const double step = surface_area(disk_) / curvature;
+    const double area = surface_area(disk_);
+    double step =
+        area / with_density(options_.energy, [](auto density) { return density.kCurvature; });
     const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
       return step * laplacian.solve(gradient);
     };
     PolishOptions polish_options;
     polish_options.energy = options_.energy;
     polish_options.threads = options_.threads;
-    for (int round = 0; round < kPolishRounds; ++round) {
+    for (int round = 0;; ++round) {
       polish_options.max_iterations = kPolishIterations - statistics.iterations;
-      if (polish_options.max_iterations <= 0) break;
       const PolishResult polished =
           polish(disk_.faces, fine.rest, precondition, uvs, polish_options, [&](double) {
             checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
           });
       statistics.iterations += polished.iterations();
-      clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
-      if (!polished.blocked) break;
+      result_.cleaned_patches +=
+          clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+      if (!polished.blocked || round == kPolishRounds ||
+          statistics.iterations >= kPolishIterations) {
+        break;
+      }
+      checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
+      laplacian.refit(options_.energy, disk_, fine.rest, uvs, options_.threads);
+      step = area;
     }
   });
 }
 
-/// Mends flips and, where that succeeds, cleans outliers. Returns whether all faces are positive.
-bool Run::mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs) {
+/// Mends flips and, on demand, crossings of the boundary; where that succeeds, cleans outliers.
+/// Returns whether all faces are positive.
+bool Run::mend(const FineProblem& fine, bool simple_boundary, double until,
+               std::vector<Vec2>& uvs) {
   bool positive = false;
   stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const RepairResult repaired = repair(disk_, fine.rest, uvs, options_.threads, checkpoint);
+    const RepairOptions options{.simple_boundary = simple_boundary, .threads = options_.threads};
+    const RepairResult repaired = repair(disk_, fine.rest, uvs, options, checkpoint);
     result_.flips_before_repair = repaired.flips_before;
-    statistics.iterations = static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes);
+    result_.kernel_fixes += repaired.kernel_fixes;
+    result_.patch_fixes += repaired.patch_fixes;
+    result_.global_fixes += repaired.global_fixes;
+    statistics.iterations =
+        static_cast<int>(repaired.kernel_fixes + repaired.patch_fixes + repaired.global_fixes);
     positive = repaired.flips_after == 0;
-    if (positive) clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+    if (positive) {
+      result_.cleaned_patches +=
+          clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+    }
   });
   return positive;
 }

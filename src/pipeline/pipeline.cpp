@@ -66,7 +66,7 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
     uvs = tutte_embedding(mesh);
     checkpoint(0.02);
-    if (repair(mesh, rest, uvs, options_.threads, checkpoint).flips_after > 0) return;
+    if (repair(mesh, rest, uvs, {.threads = options_.threads}, checkpoint).flips_after > 0) return;
     const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
     for (Vec2& w : uvs) w *= scale;
     const NewtonResult done =

@@ -47,6 +47,8 @@ struct Flattening {
   std::vector<StageStatistics> stages;   ///< in the order in which they ran
   std::int64_t coarse_faces = 0;         ///< of the mesh that CM ran on
   std::int64_t flips_before_repair = 0;
+  std::int64_t kernel_fixes = 0, patch_fixes = 0, global_fixes = 0;  ///< see repair.h
+  std::int64_t cleaned_patches = 0;                                  ///< see outliers.h
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process so far
 };

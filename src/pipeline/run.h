@@ -9,6 +9,7 @@
 #include "base/checkpoint.h"
 #include "base/resources.h"
 #include "beltrami/prolongation.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "fullspace/newton.h"
 #include "mesh/disk_mesh.h"
@@ -24,6 +25,10 @@ struct FineProblem {
   std::vector<Vec2> coarse_uvs;
   std::vector<RestTriangle> rest;
   std::vector<FaceMetric> metric;
+
+  std::vector<Cotangents> cotangents(int threads) const {
+    return modified_cotangents(rest, metric, threads);
+  }
 };
 
 class Run {
@@ -64,11 +69,10 @@ class Run {
   std::vector<Vec2> flatten_boundary_first(const FineProblem& fine);
   std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
                                      const std::vector<bool>& held, bool global);
-  void polish_map(const FineProblem& fine, const MetricLaplacian& laplacian,
-                  std::vector<Vec2>& uvs);
+  void polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
   void hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                  std::vector<bool>& held) const;
-  bool mend(const FineProblem& fine, double until, std::vector<Vec2>& uvs);
+  bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
   void count_flips(const std::vector<Vec2>& uvs);
 
   const DiskMesh& disk_;

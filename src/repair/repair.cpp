@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "exact/certificate.h"
+#include "repair/global_fix.h"
 #include "repair/patch.h"
 #include "repair/untangle.h"
 
@@ -14,6 +16,8 @@ namespace {
 /// positive areas pass the exact test and give energies of 1e25.
 constexpr double kLeastAreaShare = 1e-3;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
+constexpr std::size_t kMostPatches = 1000;  // beyond, the global fix is cheaper
+constexpr double kLocalShare = 0.6;         // of the work, if the global fix is needed
 
 double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -62,34 +66,82 @@ bool centroid(const std::vector<Vec2>& polygon, Vec2& result) {
 class Repair {
  public:
   Repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-         int threads)
-      : mesh_(mesh), rest_(rest), uvs_(uvs), threads_(threads) {}
+         const RepairOptions& options, const Checkpoint& checkpoint)
+      : mesh_(mesh), rest_(rest), uvs_(uvs), options_(options), checkpoint_(checkpoint) {}
 
-  RepairResult run(const Checkpoint& checkpoint) {
-    RepairResult result;
-    std::vector<Index> bad = non_positive_faces(mesh_.faces, uvs_, threads_);
-    result.flips_before = size_of(bad);
-    for (const Index face : bad) {
-      for (const Index v : mesh_.faces[face]) {
-        if (!positive(face) && move_to_kernel(v)) ++result.kernel_fixes;
-      }
+  RepairResult run() {
+    std::vector<Index> bad = find_bad();
+    result_.flips_before = size_of(bad);
+    const bool all_local = mend_locally(bad, 0, kLocalShare);
+    if (!all_local || (options_.simple_boundary && crossings() > 0)) {
+      checkpoint_(kLocalShare);
+      mend_globally();
     }
-    if (!bad.empty()) bad = non_positive_faces(mesh_.faces, uvs_, threads_);
-    if (!bad.empty()) crossings_ = count_crossings(mesh_.boundary, uvs_).count;
-    for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
-      std::size_t done = 0;
-      for (const Index face : bad) {
-        checkpoint((static_cast<double>(level) + static_cast<double>(done++) / bad.size()) /
-                   kPatchRings.size());
-        if (!positive(face) && fix_patch(face, kPatchRings[level])) ++result.patch_fixes;
-      }
-      bad = non_positive_faces(mesh_.faces, uvs_, threads_);
-    }
-    result.flips_after = size_of(bad);
-    return result;
+    result_.flips_after = size_of(find_bad());
+    return result_;
   }
 
  private:
+  std::vector<Index> find_bad() const {
+    return non_positive_faces(mesh_.faces, uvs_, options_.threads);
+  }
+
+  std::int64_t crossings() const { return count_crossings(mesh_.boundary, uvs_).count; }
+
+  /// Kernel and patch fixes; returns whether all faces are positive.
+  bool mend_locally(std::vector<Index> bad, double from, double until) {
+    if (bad.empty()) return true;
+    for (const bool neighbours_first : {false, true}) {
+      for (const Index face : bad) {
+        for (const Index v : mesh_.faces[face]) {
+          if (positive(face)) break;
+          if (neighbours_first) move_ring_to_kernels(v);
+          if (move_to_kernel(v)) ++result_.kernel_fixes;
+        }
+      }
+      bad = find_bad();
+      if (bad.empty()) return true;
+    }
+    if (bad.size() > kMostPatches) return false;
+    crossings_ = crossings();
+    for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
+      std::size_t done = 0;
+      for (const Index face : bad) {
+        const double share = (static_cast<double>(level) +
+                              static_cast<double>(done++) / static_cast<double>(bad.size())) /
+                             kPatchRings.size();
+        checkpoint_(from + (until - from) * share);
+        if (!positive(face) && fix_patch(face, kPatchRings[level])) ++result_.patch_fixes;
+      }
+      bad = find_bad();
+    }
+    return bad.empty();
+  }
+
+  void mend_globally() {
+    const std::vector<Vec2> before = uvs_;
+    const std::size_t bad_before = find_bad().size();
+    const std::int64_t crossings_before = crossings();
+    if (!embed_with_scaffold(mesh_, uvs_)) return;
+    result_.global_fixes = 1;
+    const std::vector<Index> folded = find_bad();
+    // More than it came from: rounding has eaten it, and there is nothing to build on.
+    if (folded.size() <= bad_before || bad_before == 0) mend_locally(folded, kLocalShare, 1);
+    const std::size_t bad = find_bad().size();
+    const bool better = options_.simple_boundary
+                            ? std::pair(bad, crossings()) < std::pair(bad_before, crossings_before)
+                            : bad < bad_before;
+    if (better) return;
+    uvs_ = before;
+    result_.global_fixes = 0;
+  }
+
+  void move_ring_to_kernels(Index vertex) {
+    mesh_.for_each_outgoing(vertex, [&](Index h) {
+      if (move_to_kernel(mesh_.target(h))) ++result_.kernel_fixes;
+    });
+  }
+
   bool positive(Index face) const {
     const Triangle& t = mesh_.faces[face];
     return orientation(uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]) > 0;
@@ -120,27 +172,30 @@ class Repair {
     if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return false;
     patch.exchange(uvs_);
     if (!patch.moves_boundary) return true;
-    const std::int64_t crossings = count_crossings(mesh_.boundary, uvs_).count;
-    if (crossings > crossings_) {
+    const std::int64_t now = crossings();
+    if (now > crossings_) {
       patch.exchange(uvs_);
       return false;
     }
-    crossings_ = crossings;
+    crossings_ = now;
     return true;
   }
 
   const DiskMesh& mesh_;
   const std::vector<RestTriangle>& rest_;
   std::vector<Vec2>& uvs_;
-  const int threads_;
+  const RepairOptions options_;
+  const Checkpoint& checkpoint_;
+  RepairResult result_;
   std::int64_t crossings_ = 0;
 };
 
 }  // namespace
 
 RepairResult repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    std::vector<Vec2>& uvs, int threads, const Checkpoint& checkpoint) {
-  return Repair(mesh, rest, uvs, threads).run(checkpoint);
+                    std::vector<Vec2>& uvs, const RepairOptions& options,
+                    const Checkpoint& checkpoint) {
+  return Repair(mesh, rest, uvs, options, checkpoint).run();
 }
 
 }  // namespace beltrami

@@ -1,4 +1,4 @@
-// Mending fold-overs: kernel fix, then patch fix (paper section 3.5.1).
+// Mending fold-overs: kernel fix, patch fix, global fix (paper section 3.5.1).
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,36 @@
 
 namespace beltrami {
 
+struct RepairOptions {
+  /// Whether a boundary that crosses itself is to be mended too.
+  bool simple_boundary = false;
+  int threads = 1;
+};
+
 struct RepairResult {
   std::int64_t flips_before = 0;  ///< faces that were not positive, by exact predicates
   std::int64_t flips_after = 0;
   std::int64_t kernel_fixes = 0;  ///< vertices moved into the kernel of their one-ring
   std::int64_t patch_fixes = 0;   ///< patches untangled
+  std::int64_t global_fixes = 0;  ///< 1 if the whole layout was embedded anew
 };
 
-/// Mends every face of `uvs` that is not exactly positive, in place. First the kernel fix: an
-/// interior vertex of the face moves to the centroid of the kernel of its one-ring polygon, if that
-/// leaves no near-zero area. What remains is mended in patches of 2, 4, 6, 8 rings by injective
-/// untangling, in which boundary vertices may move too (an ear that became collinear cannot be
-/// mended otherwise); a patch is taken only if all its faces are then positive and the boundary has
-/// no more crossings than before. Never adds a flip.
+/// Mends every face of `uvs` that is not exactly positive, in place, by the paper's ladder: each
+/// rung only where the one before failed.
+///
+/// 1. Kernel fix: an interior vertex of the face moves to the centroid of the kernel of its
+///    one-ring polygon, if that leaves no near-zero area; in a second pass its neighbours move
+///    first.
+/// 2. Patch fix: injective untangling of 2, 4, 6, 8 rings, in which boundary vertices may move too
+///    (an ear that became collinear cannot be mended otherwise); a patch is taken only if all its
+///    faces are then positive and the boundary has no more crossings than before.
+/// 3. Global fix: see global_fix.h; taken if it leaves fewer faces that are not positive, or no
+///    crossing where a simple boundary was asked for. What rounding folded in it goes through 1 and
+///    2 again.
+///
+/// Never adds a flip, and a crossing only in 3 if no simple boundary was asked for.
 RepairResult repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    std::vector<Vec2>& uvs, int threads,
+                    std::vector<Vec2>& uvs, const RepairOptions& options,
                     const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scaffold/triangulate_ring.h"
 
@@ -25,6 +26,19 @@ RestTriangle lay_flat(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 }  // namespace
+
+std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& p : inner) box.extend(p);
+  const double radius = factor * 0.5 * box.diagonal().norm();
+  std::vector<Vec2> circle;
+  circle.reserve(count);
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    circle.push_back(box.center() + radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return circle;
+}
 
 RingFaces ring_faces(const std::vector<Vec2>& polygon, double mesh_area) {
   RingFaces result;

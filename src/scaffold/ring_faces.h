@@ -17,6 +17,11 @@ struct RingFaces {
   std::vector<double> weights;  ///< of the faces in an energy in which the mesh weighs `mesh_area`
 };
 
+/// `count` points, counter-clockwise, on the circle around the centre of the bounding box of
+/// `inner`, whose radius is `factor` times half the diagonal of the box. Precondition: `inner` is
+/// not empty. For the circle's polygon to contain `inner`, factor * cos(pi / count) > 1.
+std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count);
+
 /// Triangulates the ring between a simple counter-clockwise polygon and a circle around it. Joined
 /// to an energy that is infinite for flipped faces, it keeps the polygon from crossing itself
 /// (Jiang et al. 2017, SCAF; paper section 3.5). Throws Error INTERNAL if the polygon is not as

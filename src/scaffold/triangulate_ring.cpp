@@ -11,52 +11,20 @@
 // constrained Delaunay triangulations").
 #include "scaffold/triangulate_ring.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
-#include <string>
 #include <utility>
 
-#include "base/error.h"
 #include "exact/certificate.h"
+#include "scaffold/ring_predicates.h"
 
 namespace beltrami {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
 /// Cells of the Hilbert curve per axis: 2^31, so that a cell's number fits 62 bits.
 constexpr int kHilbertBits = 31;
-
-[[noreturn]] void fail(const std::string& sentence) {
-  throw Error(BELTRAMI_E_INTERNAL, "The scaffold cannot be triangulated: " + sentence);
-}
-
-bool lexicographically_less(const Vec2& a, const Vec2& b) {
-  return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-}
-
-/// Whether d lies inside the circle of the counter-clockwise triangle (a, b, c), d being across the
-/// edge a-b. Four points on a circle are decided as if each point's lift to the paraboloid were
-/// lowered infinitesimally, the lexicographically smallest point's by far the most (after
-/// Devillers, Teillaud 2011, "Perturbations for Delaunay and weighted Delaunay 3D triangulations").
-/// No three of them are collinear, so that only the smallest point matters: the diagonal through it
-/// is taken. As a perturbed Delaunay triangulation is unique, the result depends on no order of
-/// insertion.
-bool is_in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const auto point = [](const Vec2& p) { return Kernel::Point_2(p.x(), p.y()); };
-  const auto side = CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d));
-  if (side != CGAL::ON_ORIENTED_BOUNDARY) return side == CGAL::ON_POSITIVE_SIDE;
-  const auto smaller = [](const Vec2& p, const Vec2& q) {
-    return lexicographically_less(p, q) ? p : q;
-  };
-  return lexicographically_less(smaller(c, d), smaller(a, b));
-}
 
 /// The finaliser of splitmix64 (Steele, Lea, Flood 2014): random bits that are the same everywhere.
 std::uint64_t random_bits(Index seed) {
@@ -118,29 +86,6 @@ std::vector<Index> insertion_order(const std::vector<Vec2>& points,
   return order;
 }
 
-/// The vertices of `polygon` where it turns; throws if it is not convex and counter-clockwise.
-std::vector<Index> corners_of_convex(const std::vector<Vec2>& polygon) {
-  // A closed polygon that only turns left and by less than half a turn goes around once exactly if
-  // its edges change twice between lexicographically rising and falling.
-  const Index n = size_of(polygon);
-  std::vector<Index> corners;
-  int changes = 0;
-  for (Index i = 0; i < n; ++i) {
-    const Vec2& before = polygon[i == 0 ? n - 1 : i - 1];
-    const Vec2& after = polygon[i + 1 == n ? 0 : i + 1];
-    const bool changes_here =
-        lexicographically_less(before, polygon[i]) != lexicographically_less(polygon[i], after);
-    const int turn = orientation(before, polygon[i], after);
-    if (turn < 0 || (turn == 0 && changes_here) || polygon[i] == after) {
-      fail("the outer polygon is not convex at its vertex " + std::to_string(i) + ".");
-    }
-    changes += changes_here ? 1 : 0;
-    if (turn > 0) corners.push_back(i);
-  }
-  if (changes != 2) fail("the outer polygon winds around more than once.");
-  return corners;
-}
-
 /// A triangulation in half-edges: face f has the half-edges 3f, 3f + 1, 3f + 2, half-edge h leaves
 /// tail_[h], and the face is to its left. Half-edges of the outer polygon have no twin.
 class RingBuilder {
@@ -178,7 +123,7 @@ class RingBuilder {
     const std::vector<bool> in_ring = reached_from_outside();
     for (Index i = 0; i < inner_count_; ++i) {
       const Index h = find_edge(i, after(i));
-      if (in_ring[h / 3] || !in_ring[twin_[h] / 3]) fail("the inner polygon is clockwise.");
+      if (in_ring[h / 3] || !in_ring[twin_[h] / 3]) fail_ring("the inner polygon is clockwise.");
     }
     std::vector<Triangle> faces;
     faces.reserve(points_.size());
@@ -268,13 +213,13 @@ class RingBuilder {
     if (side(tail_[h], head(h), p) != 0) {
       split_face(h / 3, p);
     } else if (side(head(h), apex(h), p) == 0 || side(apex(h), tail_[h], p) == 0) {
-      fail(name(p) + " lies on another vertex.");
+      fail_ring(name(p) + " lies on another vertex.");
     } else if (twin_[h] != kNone) {
       split_edge(h, p);
     } else if (p >= inner_count_) {
       split_outer_edge(h, p);
     } else {
-      fail(name(p) + " lies on the outer polygon.");
+      fail_ring(name(p) + " lies on the outer polygon.");
     }
     last_face_ = leaving_[p] / 3;
     restore(p);
@@ -297,7 +242,7 @@ class RingBuilder {
         if (s == 0) on = h;
       }
       if (exit == kNone) return on;
-      if (twin_[exit] == kNone) fail(name(p) + " lies outside the outer polygon.");
+      if (twin_[exit] == kNone) fail_ring(name(p) + " lies outside the outer polygon.");
       entry = twin_[exit];
       is_entered = true;
     }
@@ -417,7 +362,7 @@ class RingBuilder {
   }
 
   [[noreturn]] void fail_through(Index a, Index b, Index p) const {
-    fail(edge_name(a, b) + " passes through " + name(p) + ".");
+    fail_ring(edge_name(a, b) + " passes through " + name(p) + ".");
   }
 
   /// The half-edge that leaves a in the face that the missing edge a-b enters first.
@@ -433,7 +378,7 @@ class RingBuilder {
       if (s < 0 && side(a, b, apex(h)) > 0) return h;
       h = twin_[previous(h)];
     } while (h != start);
-    fail("no face at " + name(a) + " points to its successor.");
+    fail_ring("no face at " + name(a) + " points to its successor.");
   }
 
   Rim rim(Index h) const { return {h, twin_[h], head(h), is_fixed(h)}; }
@@ -448,8 +393,8 @@ class RingBuilder {
     Index crossed = next(first);
     for (;;) {
       if (twin_[crossed] == kNone || fixed_[crossed]) {
-        fail(edge_name(a, b) + " crosses the edge from " + name(tail_[crossed]) + " to " +
-             name(head(crossed)) + ".");
+        fail_ring(edge_name(a, b) + " crosses the edge from " + name(tail_[crossed]) + " to " +
+                  name(head(crossed)) + ".");
       }
       const Index h = twin_[crossed];
       const Index p = apex(h);
@@ -500,7 +445,7 @@ class RingBuilder {
       }
       chain.push_back(end);
     }
-    if (chain.size() != 2 || chain.back().across == kNone) fail("a cavity did not close.");
+    if (chain.size() != 2 || chain.back().across == kNone) fail_ring("a cavity did not close.");
     return chain.back().across;
   }
 
@@ -559,13 +504,7 @@ class RingBuilder {
 }  // namespace
 
 RingTriangulation triangulate_ring(const std::vector<Vec2>& inner, const std::vector<Vec2>& outer) {
-  if (inner.size() < 3 || outer.size() < 3) fail("a polygon has fewer than three vertices.");
-  RingTriangulation ring;
-  ring.points = inner;
-  ring.points.insert(ring.points.end(), outer.begin(), outer.end());
-  for (const Vec2& p : ring.points) {
-    if (!p.allFinite()) fail("a coordinate is not finite.");
-  }
+  RingTriangulation ring{{}, ring_points(inner, outer)};
   const Index inner_count = size_of(inner);
   std::vector<Index> corners = corners_of_convex(outer);
   std::vector<bool> is_corner(ring.points.size(), false);
@@ -585,17 +524,8 @@ RingTriangulation triangulate_ring(const std::vector<Vec2>& inner, const std::ve
   return ring;
 }
 
-std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count) {
-  Eigen::AlignedBox2d box;
-  for (const Vec2& p : inner) box.extend(p);
-  const double radius = factor * 0.5 * box.diagonal().norm();
-  std::vector<Vec2> circle;
-  circle.reserve(count);
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2 * std::numbers::pi * i / count;
-    circle.push_back(box.center() + radius * Vec2(std::cos(angle), std::sin(angle)));
-  }
-  return circle;
+const char* ring_triangulation_name() {
+  return "own";
 }
 
 }  // namespace beltrami

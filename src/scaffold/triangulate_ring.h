@@ -25,9 +25,8 @@ struct RingTriangulation {
 /// input. Throws Error(BELTRAMI_E_INTERNAL) if the polygons are not as described.
 RingTriangulation triangulate_ring(const std::vector<Vec2>& inner, const std::vector<Vec2>& outer);
 
-/// `count` points, counter-clockwise, on the circle around the centre of the bounding box of
-/// `inner`, whose radius is `factor` times half the diagonal of the box. Precondition: `inner` is
-/// not empty. For the circle's polygon to contain `inner`, factor * cos(pi / count) > 1.
-std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count);
+/// "own" or "cgal": the back end is chosen when the library is built
+/// (-DBELTRAMI_SCAFFOLD=own|cgal).
+const char* ring_triangulation_name();
 
 }  // namespace beltrami

@@ -1,0 +1,48 @@
+#include "mesh/boundary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace beltrami {
+namespace {
+
+constexpr double kShortestShare = 1e-3;  // of the mean edge
+
+}  // namespace
+
+std::vector<double> boundary_lengths(const DiskMesh& mesh) {
+  const Index count = size_of(mesh.boundary);
+  std::vector<double> lengths(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index a = mesh.boundary[i], b = mesh.boundary[i + 1 == count ? 0 : i + 1];
+    lengths[i] = (mesh.positions[b] - mesh.positions[a]).norm();
+  }
+  const double total = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  const double shortest = total > 0 ? kShortestShare * total / count : 1.0;
+  for (double& length : lengths) length = std::max(length, shortest);
+  return lengths;
+}
+
+std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh) {
+  const std::vector<double> lengths = boundary_lengths(mesh);
+  const double total = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  const double radius = std::sqrt(surface_area(mesh) / std::numbers::pi);
+  std::vector<Vec2> places;
+  double along = 0;
+  for (const double length : lengths) {
+    const double angle = 2 * std::numbers::pi * along / total;
+    places.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+    along += length;
+  }
+  return places;
+}
+
+std::vector<Vec2> boundary_polygon(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  std::vector<Vec2> polygon;
+  for (const Index v : mesh.boundary) polygon.push_back(uvs[v]);
+  return polygon;
+}
+
+}  // namespace beltrami

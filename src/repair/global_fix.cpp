@@ -1,0 +1,125 @@
+#include "repair/global_fix.h"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exact/certificate.h"
+#include "mesh/boundary.h"
+#include "scaffold/ring_faces.h"
+#include "scaffold/triangulate_ring.h"
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+namespace {
+
+constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
+constexpr int kCirclePoints = 48;
+/// Bounds of the tangent of half an angle, and of a length in bounding boxes: what is folded to
+/// nothing still gets a positive weight that the solve can digest.
+constexpr double kLeastTangent = 1e-6, kGreatestTangent = 1e6;
+constexpr double kLeastLength = 1e-9;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Tangent of half the unsigned angle between two vectors.
+double half_angle_tangent(const Vec2& a, const Vec2& b) {
+  const double adjacent = a.norm() * b.norm() + a.dot(b);
+  const double tangent = adjacent > 0 ? std::abs(cross(a, b)) / adjacent : kGreatestTangent;
+  return std::isfinite(tangent) ? std::clamp(tangent, kLeastTangent, kGreatestTangent)
+                                : kLeastTangent;
+}
+
+bool is_counter_clockwise(const std::vector<Vec2>& polygon) {
+  double area = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    area += cross(polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
+  }
+  return area > 0;
+}
+
+/// The mesh and the ring as one triangulation of the outer circle, whose points come last.
+struct Glued {
+  std::vector<Triangle> faces;
+  std::vector<Vec2> places;
+  double extent = 0;
+};
+
+Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
+  const bool simple =
+      count_crossings(mesh.boundary, uvs).count == 0 && is_counter_clockwise(polygon);
+  const std::vector<Vec2> inner = simple ? polygon : boundary_on_circle(mesh);
+  const RingTriangulation ring =
+      triangulate_ring(inner, circle_around(inner, kCircleFactor, kCirclePoints));
+
+  Glued glued{mesh.faces, uvs, 0};
+  const auto circle = circle_around(uvs, kCircleFactor, kCirclePoints);
+  glued.places.insert(glued.places.end(), circle.begin(), circle.end());
+  glued.extent = (circle.front() - circle[kCirclePoints / 2]).norm();
+  const auto vertex = [&](Index i) {
+    return i < size_of(polygon) ? mesh.boundary[i] : size_of(uvs) + i - size_of(polygon);
+  };
+  for (const Triangle& t : ring.faces) {
+    glued.faces.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+  }
+  return glued;
+}
+
+}  // namespace
+
+bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
+  const Glued glued = glue(mesh, uvs);
+  const Index free = mesh.vertex_count();
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> total(free, 0.0);
+  DenseMatrix rhs = DenseMatrix::Zero(free, 2);
+  const auto pull = [&](Index row, Index column, double weight) {
+    total[row] += weight;
+    if (column < free) {
+      entries.emplace_back(row, column, -weight);
+    } else {
+      rhs.row(row) += weight * glued.places[column].transpose();
+    }
+  };
+  for (const Triangle& face : glued.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const Index v = face[k], next = face[next_corner(k)], previous = face[previous_corner(k)];
+      if (v >= free) continue;
+      const Vec2 a = glued.places[next] - glued.places[v];
+      const Vec2 b = glued.places[previous] - glued.places[v];
+      const double tangent = half_angle_tangent(a, b), least = kLeastLength * glued.extent;
+      pull(v, next, tangent / std::max(a.norm(), least));
+      pull(v, previous, tangent / std::max(b.norm(), least));
+    }
+  }
+  // Each row scaled to a diagonal of 1.
+  std::vector<Eigen::Triplet<double>> scaled;
+  scaled.reserve(entries.size() + free);
+  for (const auto& e : entries) {
+    scaled.emplace_back(e.row(), e.col(), e.value() / total[e.row()]);
+  }
+  for (Index v = 0; v < free; ++v) {
+    scaled.emplace_back(v, v, 1.0);
+    rhs.row(v) /= total[v];
+  }
+  SparseMatrix matrix(free, free);
+  matrix.setFromTriplets(scaled.begin(), scaled.end());
+
+  // Weakly diagonally dominant by rows: elimination on the diagonal is stable.
+  Eigen::SparseLU<SparseMatrix, Eigen::AMDOrdering<int>> solver;
+  solver.isSymmetric(true);
+  solver.setPivotThreshold(0);
+  solver.compute(matrix);
+  if (solver.info() != Eigen::Success) return false;
+  DenseMatrix solution = solver.solve(rhs);
+  solution += solver.solve(DenseMatrix(rhs - matrix * solution));
+  if (!solution.allFinite()) return false;
+  for (Index v = 0; v < free; ++v) uvs[v] = solution.row(v).transpose();
+  return true;
+}
+
+}  // namespace beltrami
