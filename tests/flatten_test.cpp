@@ -271,6 +271,18 @@ Polished polish_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
   return polished;
 }
 
+TEST(MetricLaplacian, RefitsToTheCurvatureOfTheDensityAtAnIsometry) {
+  const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
+  const auto rest = disks::rest_of(mesh);
+  const auto held = disks::only_fixed(mesh, 0);
+  const std::vector<Vec2> flat = disks::flat_uvs(mesh);
+  MetricLaplacian laplacian(mesh, rest, face_metrics(mesh.faces, rest, flat), held);
+  DenseMatrix rhs = DenseMatrix::Random(mesh.vertex_count(), 2);
+  const DenseMatrix before = laplacian.solve(rhs);
+  laplacian.refit(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, rest, flat, 2);
+  EXPECT_LT((4 * laplacian.solve(rhs) - before).norm(), 1e-10 * before.norm());
+}
+
 TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
   for (const auto& list : {meshes::bumps(10, 10), meshes::cap(8, 24, 1.8), meshes::strip(10),
                            disks::slivers(6, 6), disks::spike(8)}) {

@@ -9,6 +9,7 @@
 
 #include "distortion/measure.h"
 #include "exact/certificate.h"
+#include "repair/global_fix.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
 #include "support/disks.h"
@@ -170,6 +171,73 @@ TEST(Repair, HasTheSameBitsOnTwoThreads) {
   repair(mesh, rest, one, {.threads = 1});
   repair(mesh, rest, two, {.threads = 2});
   EXPECT_EQ(one, two);
+}
+
+// ---- Global fix ---------------------------------------------------------------------------
+
+TEST(GlobalFix, ReproducesALayoutThatIsInjective) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(9, 7));
+  const std::vector<Vec2> before = disks::flat_uvs(mesh);
+  std::vector<Vec2> after = before;
+  ASSERT_TRUE(embed_with_scaffold(mesh, after));
+  for (std::size_t v = 0; v < after.size(); ++v) EXPECT_LT((after[v] - before[v]).norm(), 1e-9);
+}
+
+TEST(GlobalFix, EmbedsAnyLayout) {
+  const DiskMesh mesh = disks::disk(meshes::grid(10, 10));
+  for (int seed = 0; seed < 20; ++seed) {
+    Random random(500 + seed);
+    std::vector<Vec2> uvs;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) uvs.push_back(random.vec2());
+    ASSERT_TRUE(embed_with_scaffold(mesh, uvs));
+    EXPECT_TRUE(injective(mesh, uvs)) << seed;
+  }
+  // Nothing to go by at all: every vertex in one place.
+  std::vector<Vec2> uvs(mesh.positions.size(), Vec2(0.25, 0.5));
+  ASSERT_TRUE(embed_with_scaffold(mesh, uvs));
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(GlobalFix, IsTheRungAfterPatches) {
+  const DiskMesh mesh = disks::disk(meshes::grid(40, 40));
+  // More folds than patches are tried for.
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  for (Vec2& w : uvs) w = {std::cos(9 * w.x()) + 0.3 * w.y(), w.y() - 0.2 * w.x()};
+  const RepairResult result = mend(mesh, uvs);
+  EXPECT_GT(result.flips_before, 1000);
+  EXPECT_EQ(result.global_fixes, 1);
+  EXPECT_EQ(result.patch_fixes, 0);
+  EXPECT_EQ(result.flips_after, 0);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(GlobalFix, OpensABoundaryThatCrossesItselfOnDemandOnly) {
+  const DiskMesh mesh = disks::disk(meshes::strip(24));
+  // Bent through more than a turn: no face is flipped, the ends overlap.
+  std::vector<Vec2> bent = disks::flat_uvs(mesh);
+  for (Vec2& w : bent) {
+    const double angle = -7.5 * w.x(), radius = 1 + 0.5 * w.y();
+    w = {radius * std::sin(angle), -radius * std::cos(angle)};
+  }
+  std::vector<Vec2> uvs = bent;
+  EXPECT_EQ(mend(mesh, uvs).flips_before, 0);
+  EXPECT_EQ(uvs, bent);
+  ASSERT_GT(certify(mesh.faces, mesh.boundary, bent, 1).crossings.count, 0);
+  const auto rest = disks::rest_of(mesh);
+  EXPECT_EQ(repair(mesh, rest, uvs, {.simple_boundary = true}).global_fixes, 1);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(Repair, MovesNeighboursFirstWhereAKernelIsEmpty) {
+  const DiskMesh mesh = disks::disk(meshes::grid(12, 12));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  // Two neighbours that changed places: no kernel until one of them has moved out of the way.
+  std::swap(uvs[6 * 13 + 6], uvs[6 * 13 + 7]);
+  const RepairResult result = mend(mesh, uvs);
+  EXPECT_GT(result.flips_before, 0);
+  EXPECT_EQ(result.flips_after, 0);
+  EXPECT_EQ(result.global_fixes, 0);
+  EXPECT_TRUE(injective(mesh, uvs));
 }
 
 // ---- Outliers -------------------------------------------------------------------------------

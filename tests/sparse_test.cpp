@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sparse/mesh_matrix.h"
+#include "sparse/shifted_factor.h"
 #include "sparse/spd_solver.h"
 #include "support/disks.h"
 
@@ -82,6 +84,37 @@ TEST(SpdSolver, RefusesAMatrixOfZeros) {
   solver->analyze(lower);
   for (int i = 0; i < 3; ++i) lower.valuePtr()[i] = 0;
   EXPECT_FALSE(solver->factorize(lower));
+}
+
+TEST(FactorizeShifted, ShiftsWhatRoundingMadeIndefiniteAndNothingElse) {
+  Random random(7);
+  DenseMatrix a = random_spd(random, 30);
+  SparseMatrix lower = lower_of(a);
+  const auto solver = make_spd_solver();
+  solver->analyze(lower);
+  EXPECT_EQ(factorize_shifted(*solver, lower), 0);
+
+  // Singular, and negative by a rounding error.
+  DenseMatrix path = DenseMatrix::Zero(20, 20);
+  for (int i = 0; i + 1 < 20; ++i) {
+    path(i, i) += 1;
+    path(i + 1, i + 1) += 1;
+    path(i, i + 1) = path(i + 1, i) = -1;
+  }
+  path(19, 19) -= 1e-12;
+  lower = lower_of(path);
+  const SparseMatrix before = lower;
+  solver->analyze(lower);
+  const double shift = factorize_shifted(*solver, lower);
+  EXPECT_GT(shift, 0);
+  EXPECT_LT(shift, 1e-8);
+  EXPECT_EQ(DenseMatrix(lower), DenseMatrix(before));
+
+  lower = lower_of(-path);
+  solver->analyze(lower);
+  EXPECT_LT(factorize_shifted(*solver, lower), 0);
+  lower.valuePtr()[0] = std::nan("");
+  EXPECT_LT(factorize_shifted(*solver, lower), 0);
 }
 
 TEST(SpdSolver, AnalyzesAnotherPatternAfterTheFirst) {

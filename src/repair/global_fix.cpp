@@ -57,7 +57,8 @@ Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
       triangulate_ring(inner, circle_around(inner, kCircleFactor, kCirclePoints));
 
   Glued glued{mesh.faces, uvs, 0};
-  const auto circle = circle_around(uvs, kCircleFactor, kCirclePoints);
+  auto circle = circle_around(uvs, kCircleFactor, kCirclePoints);
+  if (circle.front() == circle[1]) circle = circle_around(inner, kCircleFactor, kCirclePoints);
   glued.places.insert(glued.places.end(), circle.begin(), circle.end());
   glued.extent = (circle.front() - circle[kCirclePoints / 2]).norm();
   const auto vertex = [&](Index i) {

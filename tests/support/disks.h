@@ -99,6 +99,16 @@ inline meshes::TriangleList tube(Index rings, Index sectors, double height) {
   return mesh;
 }
 
+/// A ramp that winds up one and a half turns: flattened without distortion it covers itself.
+inline meshes::TriangleList ramp(Index along, Index across) {
+  meshes::TriangleList mesh = meshes::grid(along, across);
+  for (Vec3& p : mesh.positions) {
+    const double angle = -3 * std::numbers::pi * p.x(), radius = 1 + p.y();
+    p = {radius * std::sin(angle), -radius * std::cos(angle), 0.1 * angle};
+  }
+  return mesh;
+}
+
 /// A flat grid whose middle vertex stands out by twenty times its width.
 inline meshes::TriangleList spike(Index n) {
   meshes::TriangleList mesh = meshes::grid(n, n);
