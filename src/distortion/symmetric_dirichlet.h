@@ -11,6 +11,7 @@ namespace beltrami {
 /// Defined for s2 > 0; minimum 2 at the isometries.
 struct SymmetricDirichlet {
   static constexpr bool kBarrier = true;
+  static constexpr double kMinimum = 2;
   static constexpr double kCurvature = 4;
 
   static double value(double s1, double s2) {

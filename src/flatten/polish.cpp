@@ -170,7 +170,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     gradient.swap(next);
     result.blocked = length < kBlockedStep;
     result.converged =
-        length >= kFullStep && before - after <= options.tolerance * std::max(before, kLeastEnergy);
+        length >= kFullStep && before - after <= options.tolerance * comparable_energy<Density>(before);
     if (result.blocked || result.converged) break;
   }
   return result;

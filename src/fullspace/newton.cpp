@@ -61,7 +61,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
       break;
     }
     if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;
-    const double gain = (before - step.energy) / std::max(before, kLeastEnergy);
+    const double gain = (before - step.energy) / comparable_energy<Density>(before);
     const bool little = gain <= options.tolerance;
     little_gains = little && (step.length >= kBlockedStep || gain <= kNothing * options.tolerance)
                        ? little_gains + 1

@@ -21,6 +21,14 @@ namespace beltrami {
 /// ARAP energy is 0.
 inline constexpr double kLeastEnergy = 0.01;
 
+/// What a decrease of the energy is compared with to tell convergence: the energy, shifted so that
+/// an isometry counts 2 as it does for symmetric Dirichlet. All energies then end equally near their
+/// minimum.
+template <class Density>
+constexpr double comparable_energy(double energy) {
+  return energy + 2 - Density::kMinimum;
+}
+
 /// What a step did.
 struct NewtonStep {
   double length = 0;     ///< share of the Newton step taken; 0: no representable decrease

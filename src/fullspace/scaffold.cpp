@@ -80,7 +80,7 @@ NewtonResult minimise(const DiskMesh& mesh, const std::vector<RestTriangle>& res
     const double before = result.energies.back();
     result.energies.push_back(mesh_energy<Density>(mesh, rest, uvs));
     const bool little =
-        before - result.energies.back() <= options.tolerance * std::max(before, kLeastEnergy);
+        before - result.energies.back() <= options.tolerance * comparable_energy<Density>(before);
     little_gain = little ? little_gain + 1 : 0;
     result.converged = (little && step.length >= kFullStep) || little_gain >= kPatience;
   }
