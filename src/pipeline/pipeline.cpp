@@ -9,6 +9,7 @@
 #include "fullspace/tutte.h"
 #include "pipeline/run.h"
 #include "repair/repair.h"
+#include "repair/single_precision.h"
 
 namespace beltrami {
 namespace {
@@ -111,23 +112,48 @@ void Run::refine(std::vector<Vec2>& uvs) {
   });
 }
 
-/// Brings the map into the caller's unit (exactly: the scale is a power of two) or into the unit
-/// square, and judges the very numbers that are returned.
+/// Brings the map into the caller's unit (exactly: the scale is a power of two), its bounding box
+/// around the origin, or into the unit square.
+void Run::place(const Normalisation& frame, std::vector<Vec2>& uvs) const {
+  Vec2 low = uvs.front(), high = uvs.front();
+  for (const Vec2& w : uvs) {
+    low = low.cwiseMin(w);
+    high = high.cwiseMax(w);
+  }
+  if (options_.unit_square) {
+    // One ulp short, so that no rounding leaves the square.
+    const double scale = (1 - 0x1p-52) / (high - low).maxCoeff();
+    for (Vec2& w : uvs) w = scale * (w - low);
+  } else {
+    // Where floats are densest, above all in single precision.
+    const Vec2 centre = 0.5 * (low + high);
+    for (Vec2& w : uvs) w = (w - centre) / frame.scale;
+  }
+}
+
+/// Places the map and judges the very numbers that are returned, in double and in single precision.
 void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
-  stage("certify", 1.0, [&](StageStatistics&, const Checkpoint&) {
-    double scale = 1 / frame.scale;
-    if (options_.unit_square) {
-      Vec2 low = uvs.front(), high = uvs.front();
-      for (const Vec2& w : uvs) {
-        low = low.cwiseMin(w);
-        high = high.cwiseMax(w);
-      }
-      // One ulp short, so that no rounding leaves the square.
-      scale = (1 - 0x1p-52) / (high - low).maxCoeff();
-      for (Vec2& w : uvs) w -= low;
-    }
-    for (Vec2& w : uvs) w *= scale;
+  stage("certify", 1.0, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    place(frame, uvs);
     result_.certificate = certify(disk_.faces, disk_.boundary, uvs, options_.threads);
+    checkpoint(0.3);
+    SinglePrecision single =
+        round_to_single(disk_, uvs, result_.certificate, options_.threads, checkpoint);
+    result_.single_certificate = single.certificate;
+    if (options_.float32) {
+      if (!single.certificate.injective() && result_.certificate.injective()) {
+        result_.status = BELTRAMI_NOT_INJECTIVE_FLOAT32;
+      }
+      result_.certificate = single.certificate;
+      uvs.swap(single.uvs);
+    } else if (single.moved > 0) {
+      for (Index v = 0; v < size_of(uvs); ++v) {
+        if (single.uvs[v] != nearest_single(uvs[v])) {
+          result_.single_moves.emplace_back(v, single.uvs[v]);
+        }
+      }
+    }
+    checkpoint(0.8);
 
     result_.face_energies.resize(disk_.faces.size());
     // Undone for the measure, which takes UVs in the unit of the normalised positions.
@@ -136,7 +162,9 @@ void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
     result_.distortion = measure_distortion(disk_.positions, disk_.faces, in_mesh_unit,
                                             options_.threads, result_.face_energies.data());
   });
-  if (!result_.certificate.injective()) result_.status = BELTRAMI_NOT_INJECTIVE;
+  if (!result_.certificate.injective() && result_.status != BELTRAMI_NOT_INJECTIVE_FLOAT32) {
+    result_.status = BELTRAMI_NOT_INJECTIVE;
+  }
 }
 
 std::vector<Vec2> Run::run_method() {

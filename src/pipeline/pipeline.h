@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -29,6 +30,7 @@ struct Options {
   bool refine = false;
   int refine_iterations = 0;  ///< 0: to the stopping rule of CM
   double time_limit = 0;      ///< wall seconds after which refinement stops; 0: none
+  bool float32 = false;       ///< deliver single-precision numbers
 };
 
 struct StageStatistics {
@@ -39,9 +41,13 @@ struct StageStatistics {
 
 /// What a run leaves behind.
 struct Flattening {
-  beltrami_status status = BELTRAMI_OK;  ///< OK, NOT_CONVERGED or NOT_INJECTIVE
+  beltrami_status status = BELTRAMI_OK;  ///< OK, or the greatest reservation
   std::vector<Vec2> uvs;                 ///< one per vertex of the disk, as delivered
   Certificate certificate;               ///< of `uvs`
+  Certificate single_certificate;        ///< of `uvs` in single precision
+  /// The vertices that are not at the nearest single-precision place there, increasing, and where
+  /// they are instead.
+  std::vector<std::pair<Index, Vec2>> single_moves;
   Distortion distortion;                 ///< of `uvs` against the input in its own unit
   std::vector<double> face_energies;     ///< symmetric Dirichlet, one per face
   std::vector<StageStatistics> stages;   ///< in the order in which they ran

@@ -50,6 +50,7 @@ class Run {
   std::vector<Vec2> run_method();
   std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
   void refine(std::vector<Vec2>& uvs);
+  void place(const Normalisation& frame, std::vector<Vec2>& uvs) const;
   void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
   NewtonOptions newton_options(const DiskMesh& mesh) const;
   NewtonResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,

@@ -45,7 +45,7 @@ Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   for (const Index f : patch.mesh_faces) {
     patch.mesh_vertices.insert(patch.mesh_vertices.end(), mesh.faces[f].begin(),
                                mesh.faces[f].end());
-    patch.rest.push_back(rest[f]);
+    if (!rest.empty()) patch.rest.push_back(rest[f]);
   }
   sort_unique(patch.mesh_vertices);
   const auto local = [&](Index v) {

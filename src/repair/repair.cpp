@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "exact/certificate.h"
 #include "repair/global_fix.h"
+#include "repair/kernel.h"
 #include "repair/patch.h"
 #include "repair/untangle.h"
 
@@ -21,46 +23,6 @@ constexpr double kLocalShare = 0.6;         // of the work, if the global fix is
 
 double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-/// The part of a polygon to the left of the line from a to b (Sutherland & Hodgman 1974).
-std::vector<Vec2> clip(const std::vector<Vec2>& polygon, const Vec2& a, const Vec2& b) {
-  std::vector<Vec2> result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 &p = polygon[i], &q = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-    const double dp = cross(a, b, p), dq = cross(a, b, q);
-    if (dp >= 0) result.push_back(p);
-    if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) result.push_back(p + dp / (dp - dq) * (q - p));
-  }
-  return result;
-}
-
-/// The points from which the whole polygon is visible; empty if there are none.
-std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
-  Vec2 low = polygon.front(), high = polygon.front();
-  for (const Vec2& p : polygon) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  std::vector<Vec2> region = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-  for (std::size_t i = 0; i < polygon.size() && !region.empty(); ++i) {
-    region = clip(region, polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
-  }
-  return region;
-}
-
-/// Area centroid of a convex polygon; false if it has no area.
-bool centroid(const std::vector<Vec2>& polygon, Vec2& result) {
-  double area = 0;
-  Vec2 sum = Vec2::Zero();
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    const double part = cross(polygon[0], polygon[i - 1], polygon[i]);
-    area += part;
-    sum += part * (polygon[0] + polygon[i - 1] + polygon[i]) / 3;
-  }
-  if (!(area > 0)) return false;
-  result = sum / area;
-  return true;
 }
 
 class Repair {
@@ -151,8 +113,9 @@ class Repair {
     if (mesh_.on_boundary[vertex]) return false;
     std::vector<Vec2> ring;
     mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
-    Vec2 target;
-    if (!centroid(kernel(ring), target)) return false;
+    const std::optional<Vec2> centre = kernel_centroid(ring);
+    if (!centre) return false;
+    const Vec2 target = *centre;
     double ring_area = 0, least = std::numeric_limits<double>::infinity();
     bool all_positive = true;
     for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -29,22 +29,21 @@ void insert_points(const std::vector<Vec2>& points, Triangulation& triangulation
                    std::vector<Triangulation::Vertex_handle>& handles) {
   std::vector<Kernel::Point_2> places;
   for (const Vec2& p : points) places.emplace_back(p.x(), p.y());
-  std::vector<Index> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto place = [&](Index i) { return places[static_cast<std::size_t>(i)]; };
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   using Map = CGAL::Pointer_property_map<Kernel::Point_2>::type;
   CGAL::spatial_sort(
       order.begin(), order.end(),
       CGAL::Spatial_sort_traits_adapter_2<Kernel, Map>(CGAL::make_property_map(places)));
   handles.resize(points.size());
   Triangulation::Face_handle hint;
-  for (const Index i : order) {
+  for (const std::size_t i : order) {
     const std::size_t known = triangulation.number_of_vertices();
-    handles[i] = triangulation.insert(place(i), hint);
+    handles[i] = triangulation.insert(places[i], hint);
     if (triangulation.number_of_vertices() == known) {
       fail_ring("vertex " + std::to_string(i) + " lies on another.");
     }
-    handles[i]->info() = i;
+    handles[i]->info() = static_cast<Index>(i);
     hint = handles[i]->face();
   }
 }
@@ -76,9 +75,9 @@ void flip_to_unique(Triangulation& triangulation) {
     return Vec2(p.x(), p.y());
   };
   while (!pending.empty()) {
-    const auto [face, i] = pending.back();
+    auto [face, i] = pending.back();
     pending.pop_back();
-    const auto other = face->neighbor(i);
+    auto other = face->neighbor(i);
     if (face->is_constrained(i) || triangulation.is_infinite(face) ||
         triangulation.is_infinite(other)) {
       continue;

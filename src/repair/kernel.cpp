@@ -1,0 +1,53 @@
+#include "repair/kernel.h"
+
+#include <cstddef>
+
+namespace beltrami {
+namespace {
+
+double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// The part of a polygon to the left of the line from a to b (Sutherland & Hodgman 1974).
+std::vector<Vec2> clip(const std::vector<Vec2>& polygon, const Vec2& a, const Vec2& b) {
+  std::vector<Vec2> result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 &p = polygon[i], &q = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+    const double dp = cross(a, b, p), dq = cross(a, b, q);
+    if (dp >= 0) result.push_back(p);
+    if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) result.push_back(p + dp / (dp - dq) * (q - p));
+  }
+  return result;
+}
+
+/// The points from which the whole polygon is visible; empty if there are none.
+std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
+  Vec2 low = polygon.front(), high = polygon.front();
+  for (const Vec2& p : polygon) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  std::vector<Vec2> region = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  for (std::size_t i = 0; i < polygon.size() && !region.empty(); ++i) {
+    region = clip(region, polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
+  }
+  return region;
+}
+
+}  // namespace
+
+std::optional<Vec2> kernel_centroid(const std::vector<Vec2>& polygon) {
+  const std::vector<Vec2> region = kernel(polygon);
+  double area = 0;
+  Vec2 sum = Vec2::Zero();
+  for (std::size_t i = 2; i < region.size(); ++i) {
+    const double part = cross(region[0], region[i - 1], region[i]);
+    area += part;
+    sum += part * (region[0] + region[i - 1] + region[i]) / 3;
+  }
+  if (!(area > 0)) return std::nullopt;
+  return sum / area;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,257 @@
+#include "repair/single_precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "mesh/boundary.h"
+#include "repair/kernel.h"
+#include "repair/patch.h"
+#include "repair/untangle.h"
+#include "scaffold/ring_faces.h"
+#include "scaffold/triangulate_ring.h"
+
+namespace beltrami {
+namespace {
+
+/// Units in the last place between the places that are tried, sweep by sweep.
+constexpr std::array<int, 6> kSpacings = {1, 1, 2, 4, 8, 16};
+constexpr int kReach = 2;  // of these to each side
+constexpr std::array<int, 4> kPatchRings = {1, 2, 4, 8};
+constexpr std::size_t kMostPatches = 2000;
+constexpr int kCrossingRounds = 4;
+constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
+constexpr int kCirclePoints = 48;
+
+double to_single(double x) {
+  const auto rounded = static_cast<double>(static_cast<float>(x));
+  return std::isfinite(rounded) ? rounded : x;
+}
+
+/// The distance to the next single-precision number away from zero.
+double unit_in_the_last_place(double x) {
+  const auto single = static_cast<float>(std::abs(x));
+  return static_cast<double>(std::nextafter(single, std::numeric_limits<float>::infinity())) -
+         static_cast<double>(single);
+}
+
+/// Mends the faces of one triangulated disk whose vertices are at single-precision places.
+class Rounding {
+ public:
+  Rounding(const DiskMesh& mesh, std::vector<Vec2>& uvs, int threads)
+      : mesh_(mesh), uvs_(uvs), threads_(threads) {}
+
+  /// Tries to make `faces` positive, and never makes another face worse.
+  void mend(std::vector<Index> faces, const Checkpoint& checkpoint) {
+    for (const int spacing : kSpacings) {
+      for (const Index face : faces) {
+        for (const Index v : mesh_.faces[face]) {
+          if (!positive(face)) improve(v, spacing);
+        }
+      }
+      keep_bad(faces);
+      if (faces.empty()) return;
+      checkpoint(0);
+    }
+    if (faces.size() > kMostPatches) return;
+    for (const int rings : kPatchRings) {
+      for (const Index face : faces) {
+        checkpoint(0);
+        if (!positive(face)) mend_patch(face, rings);
+      }
+      keep_bad(faces);
+      if (faces.empty()) return;
+    }
+  }
+
+ private:
+  /// How well the faces at a vertex lie: fewest that are not positive, then the greatest least
+  /// height.
+  struct Quality {
+    int bad = 0;
+    double least_height = std::numeric_limits<double>::infinity();
+    bool operator<(const Quality& other) const {  // worse than
+      return bad != other.bad ? bad > other.bad : least_height < other.least_height;
+    }
+  };
+
+  bool positive(Index face) const {
+    const Triangle& t = mesh_.faces[face];
+    return orientation(uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]) > 0;
+  }
+
+  void keep_bad(std::vector<Index>& faces) const {
+    std::erase_if(faces, [&](Index face) { return positive(face); });
+  }
+
+  Quality quality_at(Index vertex) const {
+    Quality quality;
+    mesh_.for_each_outgoing(vertex, [&](Index h) {
+      const Triangle& t = mesh_.faces[h / 3];
+      if (orientation(uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]) <= 0) ++quality.bad;
+      const Vec2 a = uvs_[t[1]] - uvs_[t[0]], b = uvs_[t[2]] - uvs_[t[0]];
+      const double longest = std::max({a.norm(), b.norm(), (b - a).norm()});
+      const double height = (a.x() * b.y() - a.y() * b.x()) / longest;
+      quality.least_height = std::min(quality.least_height, std::isnan(height) ? 0 : height);
+    });
+    return quality;
+  }
+
+  void improve(Index vertex, int spacing) {
+    const Vec2 start = uvs_[vertex];
+    Quality best = quality_at(vertex);
+    Vec2 place = start;
+    const auto attempt = [&](const Vec2& trial) {
+      uvs_[vertex] = nearest_single(trial);
+      const Quality quality = quality_at(vertex);
+      if (!(best < quality)) return;
+      best = quality;
+      place = uvs_[vertex];
+    };
+    const Vec2 unit =
+        spacing * Vec2(unit_in_the_last_place(start.x()), unit_in_the_last_place(start.y()));
+    for (int i = -kReach; i <= kReach; ++i) {
+      for (int j = -kReach; j <= kReach; ++j) {
+        attempt({start.x() + i * unit.x(), start.y() + j * unit.y()});
+      }
+    }
+    if (!mesh_.on_boundary[vertex]) {
+      std::vector<Vec2> ring;
+      mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
+      if (const auto centre = kernel_centroid(ring)) attempt(*centre);
+    }
+    uvs_[vertex] = place;
+  }
+
+  /// Towards equilateral faces of the mean size, whatever their shapes in space: what single
+  /// precision cannot hold is a sliver.
+  void mend_patch(Index face, int rings) {
+    Patch patch = cut_patch(mesh_, {}, uvs_, face, rings);
+    for (std::size_t v = 0; v < patch.fixed.size(); ++v) {
+      // Those on the rim of the mesh, the circle of a ring among them, stay.
+      patch.fixed[v] = patch.fixed[v] || mesh_.on_boundary[patch.mesh_vertices[v]];
+    }
+    double area = 0;
+    for (const Triangle& t : patch.faces) {
+      const Vec2 a = patch.uvs[t[1]] - patch.uvs[t[0]], b = patch.uvs[t[2]] - patch.uvs[t[0]];
+      area += 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+    }
+    const double side = std::sqrt(area / static_cast<double>(patch.faces.size()) / kEquilateral);
+    if (!(side > 0)) return;
+    patch.rest.assign(patch.faces.size(), {side, 0.5 * side, 2 * kEquilateral * side});
+    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return;
+    for (Vec2& w : patch.uvs) w = nearest_single(w);
+    if (non_positive_faces(patch.faces, patch.uvs, threads_).empty()) patch.exchange(uvs_);
+  }
+
+  static constexpr double kEquilateral = 0.43301270189221932;  // area for a side of 1
+
+  const DiskMesh& mesh_;
+  std::vector<Vec2>& uvs_;
+  const int threads_;
+};
+
+/// The mesh and the ring around its boundary as one disk; the circle's points come last.
+struct Surrounded {
+  DiskMesh disk;
+  std::vector<Vec2> circle;
+};
+
+std::optional<Surrounded> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
+  Surrounded all;
+  for (Vec2 w : circle_around(polygon, kCircleFactor, kCirclePoints)) {
+    all.circle.push_back(nearest_single(w));
+  }
+  std::vector<Triangle> faces = mesh.faces;
+  try {
+    for (Triangle t : triangulate_ring(polygon, all.circle).faces) {
+      for (Index& v : t) {
+        v = v < size_of(polygon) ? mesh.boundary[v] : size_of(uvs) + v - size_of(polygon);
+      }
+      faces.push_back(t);
+    }
+  } catch (const Error&) {
+    return std::nullopt;  // the boundary is not simple to begin with
+  }
+  std::vector<Vec3> positions(uvs.size() + all.circle.size(), Vec3::Zero());
+  all.disk = build_disk(std::move(positions), std::move(faces));
+  return all;
+}
+
+/// The ring's faces at the edges that cross.
+std::vector<Index> faces_at_crossings(const DiskMesh& mesh, const DiskMesh& surrounded,
+                                      const std::vector<Vec2>& uvs) {
+  std::vector<Index> faces;
+  const Index count = size_of(mesh.boundary);
+  for (const auto& pair : find_crossings(mesh.boundary, uvs)) {
+    for (const Index edge : pair) {
+      for (const Index v : {mesh.boundary[edge], mesh.boundary[(edge + 1) % count]}) {
+        surrounded.for_each_outgoing(v, [&](Index h) {
+          if (h / 3 >= mesh.face_count()) faces.push_back(h / 3);
+        });
+      }
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+std::int64_t faults(const Certificate& certificate) {
+  return certificate.orientations.negative + certificate.orientations.degenerate +
+         certificate.crossings.count;
+}
+
+/// Mends boundary crossings, and flips that need the boundary to move. `uvs`: before rounding.
+void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int threads,
+                    const Checkpoint& checkpoint, SinglePrecision& result) {
+  const auto all = surround(mesh, uvs);
+  if (!all) return;
+  std::vector<Vec2> places = result.uvs;
+  places.insert(places.end(), all->circle.begin(), all->circle.end());
+  for (int round = 0; round < kCrossingRounds && !result.certificate.injective(); ++round) {
+    auto faces = non_positive_faces(mesh.faces, places, threads);
+    const auto beside = faces_at_crossings(mesh, all->disk, places);
+    faces.insert(faces.end(), beside.begin(), beside.end());
+    Rounding(all->disk, places, threads).mend(std::move(faces), checkpoint);
+    const std::vector<Vec2> mended(places.begin(),
+                                   places.begin() + static_cast<std::ptrdiff_t>(uvs.size()));
+    const Certificate after = certify(mesh.faces, mesh.boundary, mended, threads);
+    if (faults(after) >= faults(result.certificate)) return;
+    result.uvs = mended;
+    result.certificate = after;
+  }
+}
+
+}  // namespace
+
+Vec2 nearest_single(const Vec2& place) {
+  return {to_single(place.x()), to_single(place.y())};
+}
+
+SinglePrecision round_to_single(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                                const Certificate& exact, int threads,
+                                const Checkpoint& checkpoint) {
+  SinglePrecision result;
+  result.uvs.reserve(uvs.size());
+  for (const Vec2& w : uvs) result.uvs.push_back(nearest_single(w));
+  const std::vector<Vec2> nearest = result.uvs;
+
+  const bool had_flips = exact.orientations.first_bad_face != kNone;
+  auto bad = non_positive_faces(mesh.faces, result.uvs, threads);
+  if (!bad.empty() && !had_flips) {
+    Rounding(mesh, result.uvs, threads).mend(std::move(bad), checkpoint);
+  }
+  result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, threads);
+  if (exact.injective() && !result.certificate.injective()) {
+    mend_with_ring(mesh, uvs, threads, checkpoint, result);
+  }
+  for (std::size_t v = 0; v < uvs.size(); ++v) result.moved += result.uvs[v] != nearest[v];
+  return result;
+}
+
+}  // namespace beltrami
