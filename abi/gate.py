@@ -85,7 +85,7 @@ def dump_types(library, header, out):
     run("abidw", "--exported-interfaces-only", "--drop-private-types", "--headers-dir", include,
         "--no-show-locs", "--no-corpus-path", "--no-comp-dir-path", "--no-elf-needed",
         "--out-file", out, library)
-    text = re.sub(r" path='[^']*'", "", out.read_text(encoding="utf-8"))
+    text = re.sub(r" path='[^']*/", " path='", out.read_text(encoding="utf-8"))
     out.write_text(text, encoding="utf-8")
     # Without debug information the dump has no types, and compares as equal to anything.
     defined = re.findall(r"<class-decl name='(\w+)' size-in-bits", text)
