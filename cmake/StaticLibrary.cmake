@@ -30,8 +30,10 @@ function(beltrami_add_static_library target)
     set_target_properties(${target} PROPERTIES OUTPUT_NAME beltrami)
   endif()
   # What is left open in the archive, by name; the package configuration finds GMP where it lies.
-  target_link_libraries(${target} INTERFACE
-    Threads::Threads $<BUILD_INTERFACE:${GMP_LIBRARIES}> $<INSTALL_INTERFACE:beltrami::gmp>)
+  find_library(BELTRAMI_GMP_LIBRARY gmp REQUIRED)
+  mark_as_advanced(BELTRAMI_GMP_LIBRARY)
+  target_link_libraries(${target} INTERFACE Threads::Threads
+    $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
   if(BELTRAMI_SOLVER STREQUAL "cholmod")
     target_link_libraries(${target} INTERFACE
       $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)
@@ -42,9 +44,3 @@ function(beltrami_add_static_library target)
       $<$<NOT:$<LINK_LANGUAGE:CXX>>:${BELTRAMI_CXX_RUNTIME}> m)
   endif()
 endfunction()
-
-if(APPLE)
-  set(BELTRAMI_CXX_RUNTIME c++)
-else()
-  set(BELTRAMI_CXX_RUNTIME stdc++)
-endif()
