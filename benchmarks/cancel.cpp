@@ -1,9 +1,8 @@
 // How long a run goes on after beltrami_cancel, stage by stage.
 //
-// The first run notes when the library looks for a request: at each call of the progress callback.
-// Then, for each stage, another thread cancels at the worst moment, right after the look that
-// begins the stage's longest pause, and the time until beltrami_run returns is the latency. Wall
-// time, so the machine should have nothing else to do.
+// A first run notes when each stage begins and ends. Then further runs are cancelled from another
+// thread, at moments spread evenly over the stage; the time until beltrami_run returns is the
+// latency. Wall time, so the machine should have nothing else to do.
 #include <beltrami/beltrami.h>
 
 #include <CLI/CLI.hpp>
@@ -39,46 +38,45 @@ std::int32_t note_look(void* user, double, const char* stage) {
   return 0;
 }
 
-/// Cancels from a thread of its own, as soon as the run has looked `at` + 1 times.
+/// Cancels from a thread of its own, some time after the run has looked `at` + 1 times.
 class Canceller {
  public:
-  Canceller(beltrami_context* context, std::size_t at)
-      : context_(context), at_(at), thread_([this] { wait_and_cancel(); }) {}
+  Canceller(beltrami_context* context, std::size_t at, Clock::duration after)
+      : context_(context), at_(at), after_(after), thread_([this] { wait_and_cancel(); }) {}
 
   static std::int32_t count_look(void* user, double, const char*) {
     auto& self = *static_cast<Canceller*>(user);
-    if (self.looks_++ == self.at_) {
-      const std::lock_guard<std::mutex> lock(self.guard_);
-      self.due_ = true;
-      self.wake_.notify_one();
-    }
+    if (self.looks_++ == self.at_) self.release();
     return 0;
   }
 
-  /// When the request was made. Call it after the run.
+  /// When the request was made. Call it once, after the run.
   Clock::time_point requested() {
-    {
-      const std::lock_guard<std::mutex> lock(guard_);
-      due_ = true;
-    }
-    wake_.notify_one();
+    release();
     thread_.join();
     return requested_;
   }
 
  private:
+  void release() {
+    const std::lock_guard<std::mutex> lock(guard_);
+    due_ = true;
+    wake_.notify_one();
+  }
+
   void wait_and_cancel() {
-    std::unique_lock<std::mutex> lock(guard_);
-    wake_.wait(lock, [&] { return due_; });
-    lock.unlock();
-    // The run must leave the look itself before it can miss the request.
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    {
+      std::unique_lock<std::mutex> lock(guard_);
+      wake_.wait(lock, [&] { return due_; });
+    }
+    std::this_thread::sleep_for(after_);
     requested_ = Clock::now();
     beltrami_cancel(context_);
   }
 
   beltrami_context* context_;
   std::size_t at_, looks_ = 0;
+  Clock::duration after_;
   std::mutex guard_;
   std::condition_variable wake_;
   bool due_ = false;
@@ -86,59 +84,55 @@ class Canceller {
   std::thread thread_;
 };
 
-struct StagePauses {
+struct Stage {
   std::string name;
-  std::size_t looks = 0, before_longest = 0;
-  double total = 0, longest = 0;
+  std::size_t first_look;
+  Clock::time_point begin, end;
 };
 
-std::vector<StagePauses> pauses_of(const std::vector<Look>& looks, Clock::time_point end) {
-  std::vector<StagePauses> stages;
+/// Stages that come several times are listed as often.
+std::vector<Stage> stages_of(const std::vector<Look>& looks, Clock::time_point end) {
+  std::vector<Stage> stages;
   for (std::size_t i = 0; i < looks.size(); ++i) {
-    auto stage = std::find_if(stages.begin(), stages.end(),
-                              [&](const StagePauses& s) { return s.name == looks[i].stage; });
-    if (stage == stages.end()) stage = stages.insert(stages.end(), StagePauses{looks[i].stage});
-    const Clock::time_point next = i + 1 < looks.size() ? looks[i + 1].when : end;
-    const double pause = milliseconds(next - looks[i].when);
-    ++stage->looks;
-    stage->total += pause;
-    if (pause > stage->longest) {
-      stage->longest = pause;
-      stage->before_longest = i;
-    }
+    if (!stages.empty() && stages.back().name == looks[i].stage) continue;
+    if (!stages.empty()) stages.back().end = looks[i].when;
+    stages.push_back({looks[i].stage, i, looks[i].when, end});
   }
   return stages;
 }
 
-void measure(beltrami_context* context, double noteworthy) {
+/// Milliseconds from a request, made `after` the stage's begin, to the end of the run; negative if
+/// the run ended first.
+double latency(beltrami_context* context, const Stage& stage, Clock::duration after) {
+  Canceller canceller(context, stage.first_look, after);
+  const beltrami_status status = beltrami_run(context, Canceller::count_look, &canceller);
+  const Clock::time_point returned = Clock::now();
+  const double waited = milliseconds(returned - canceller.requested());
+  return status == BELTRAMI_E_CANCELLED ? waited : -1;
+}
+
+void measure(beltrami_context* context, int samples, const std::string& only) {
   std::vector<Look> looks;
   const beltrami_status status = beltrami_run(context, note_look, &looks);
   const Clock::time_point end = Clock::now();
   if (status < 0) throw std::runtime_error(beltrami_error_message(context));
-
-  std::printf("\npauses above %.0f ms\n", noteworthy);
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    const Clock::time_point next = i + 1 < looks.size() ? looks[i + 1].when : end;
-    const double pause = milliseconds(next - looks[i].when);
-    if (pause > noteworthy) {
-      std::printf("  look %4zu  %-10s %8.0f ms\n", i, looks[i].stage.c_str(), pause);
+  std::printf("\n%-10s %9s %11s %11s   %s\n", "stage", "stage ms", "median ms", "longest ms",
+              "each, from the stage's begin to its end");
+  for (const Stage& stage : stages_of(looks, end)) {
+    if (!only.empty() && stage.name != only) continue;
+    std::vector<double> found;
+    std::string each;
+    for (int i = 0; i < samples; ++i) {
+      const double waited =
+          latency(context, stage, (stage.end - stage.begin) * (2 * i + 1) / (2 * samples));
+      each.append(" ").append(std::to_string(static_cast<int>(waited)));
+      if (waited >= 0) found.push_back(waited);
     }
-  }
-
-  std::printf("\n%-12s %10s %8s %16s %12s\n", "stage", "total ms", "looks", "longest pause ms",
-              "latency ms");
-  for (const StagePauses& stage : pauses_of(looks, end)) {
-    Canceller canceller(context, stage.before_longest);
-    const beltrami_status cancelled = beltrami_run(context, Canceller::count_look, &canceller);
-    const Clock::time_point returned = Clock::now();
-    const Clock::time_point requested = canceller.requested();
-    std::printf("%-12s %10.0f %8zu %16.1f ", stage.name.c_str(), stage.total, stage.looks,
-                stage.longest);
-    if (cancelled == BELTRAMI_E_CANCELLED) {
-      std::printf("%12.1f\n", milliseconds(returned - requested));
-    } else {
-      std::printf("%12s\n", "ended first");
-    }
+    if (found.empty()) continue;
+    std::sort(found.begin(), found.end());
+    std::printf("%-10s %9.0f %11.1f %11.1f  %s\n", stage.name.c_str(),
+                milliseconds(stage.end - stage.begin), found[found.size() / 2], found.back(),
+                each.c_str());
     std::fflush(stdout);
   }
 }
@@ -170,12 +164,14 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the latency of beltrami_cancel in every stage.");
   std::string path = BELTRAMI_EXAMPLE_MESH;
   std::uint64_t faces = 1000000;
-  double noteworthy = 100;
+  int samples = 5;
+  std::string stage;
   std::vector<std::string> options;
   app.add_option("MESH", path, "Disk to flatten; the bust of examples/data by default");
   app.add_option("--faces", faces, "Refine a smaller mesh to about this many faces first");
   app.add_option("--set", options, "Options of the library: --set threads=2 --set flatten=gif");
-  app.add_option("--above", noteworthy, "List the pauses of more than this many milliseconds");
+  app.add_option("--samples", samples, "Runs to cancel in each stage");
+  app.add_option("--stage", stage, "This stage only");
   CLI11_PARSE(app, argc, argv);
   try {
     auto file = beltrami::cli::read_mesh(path, beltrami::cli::Content::kSurface);
@@ -197,7 +193,7 @@ int main(int argc, char** argv) {
     std::printf("%s\n%llu faces; beltrami_set_mesh, which cannot be cancelled, takes %.0f ms\n",
                 beltrami_build_info(), static_cast<unsigned long long>(mesh.face_count),
                 milliseconds(Clock::now() - begin));
-    measure(raw, noteworthy);
+    measure(raw, samples, stage);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "beltrami_cancel_bench: %s\n", error.what());
     return 2;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "flatten/dirichlet.h"
 
@@ -69,7 +70,9 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
   row_ = laplacian.rows();
   free_count_ = laplacian.free_count();
   if (free_count_ == 0) return;
+  poll_interrupt();
   solver_->analyze(laplacian.matrix());
+  poll_interrupt();
   if (!solver_->factorize(laplacian.matrix())) {
     throw Error(
         BELTRAMI_E_SOLVER,
