@@ -2,18 +2,24 @@
 //
 // A first run notes when each stage begins and ends. Then further runs are cancelled from another
 // thread, at moments spread evenly over the stage; the time until beltrami_run returns is the
-// latency. Wall time, so the machine should have nothing else to do.
+// latency, and counts for the stage that the run was in by then. Wall time, so the machine should
+// have nothing else to do.
 #include <beltrami/beltrami.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "mesh_file.h"
@@ -44,17 +50,18 @@ class Canceller {
   Canceller(beltrami_context* context, std::size_t at, Clock::duration after)
       : context_(context), at_(at), after_(after), thread_([this] { wait_and_cancel(); }) {}
 
-  static std::int32_t count_look(void* user, double, const char*) {
+  static std::int32_t count_look(void* user, double, const char* stage) {
     auto& self = *static_cast<Canceller*>(user);
+    self.stage_ = stage;
     if (self.looks_++ == self.at_) self.release();
     return 0;
   }
 
-  /// When the request was made. Call it once, after the run.
-  Clock::time_point requested() {
+  /// When the request was made, and in which stage. Call it once, after the run.
+  std::pair<Clock::time_point, std::string> requested() {
     release();
     thread_.join();
-    return requested_;
+    return {requested_, stage_then_};
   }
 
  private:
@@ -70,6 +77,7 @@ class Canceller {
       wake_.wait(lock, [&] { return due_; });
     }
     std::this_thread::sleep_for(after_);
+    stage_then_ = stage_;
     requested_ = Clock::now();
     beltrami_cancel(context_);
   }
@@ -77,6 +85,8 @@ class Canceller {
   beltrami_context* context_;
   std::size_t at_, looks_ = 0;
   Clock::duration after_;
+  std::atomic<const char*> stage_{""};  // names of stages are static
+  const char* stage_then_ = "";
   std::mutex guard_;
   std::condition_variable wake_;
   bool due_ = false;
@@ -101,14 +111,20 @@ std::vector<Stage> stages_of(const std::vector<Look>& looks, Clock::time_point e
   return stages;
 }
 
-/// Milliseconds from a request, made `after` the stage's begin, to the end of the run; negative if
-/// the run ended first.
-double latency(beltrami_context* context, const Stage& stage, Clock::duration after) {
+struct Latency {
+  std::string stage;
+  double milliseconds;
+};
+
+/// Cancels a run `after` the begin of the stage. Nothing if the run ended first.
+std::optional<Latency> cancel_in(beltrami_context* context, const Stage& stage,
+                                 Clock::duration after) {
   Canceller canceller(context, stage.first_look, after);
   const beltrami_status status = beltrami_run(context, Canceller::count_look, &canceller);
   const Clock::time_point returned = Clock::now();
-  const double waited = milliseconds(returned - canceller.requested());
-  return status == BELTRAMI_E_CANCELLED ? waited : -1;
+  const auto [requested, stage_then] = canceller.requested();
+  if (status != BELTRAMI_E_CANCELLED) return std::nullopt;
+  return Latency{stage_then, milliseconds(returned - requested)};
 }
 
 void measure(beltrami_context* context, int samples, const std::string& only) {
@@ -116,24 +132,31 @@ void measure(beltrami_context* context, int samples, const std::string& only) {
   const beltrami_status status = beltrami_run(context, note_look, &looks);
   const Clock::time_point end = Clock::now();
   if (status < 0) throw std::runtime_error(beltrami_error_message(context));
-  std::printf("\n%-10s %9s %11s %11s   %s\n", "stage", "stage ms", "median ms", "longest ms",
-              "each, from the stage's begin to its end");
-  for (const Stage& stage : stages_of(looks, end)) {
+  const std::vector<Stage> stages = stages_of(looks, end);
+  std::map<std::string, std::vector<double>> found;
+  for (const Stage& stage : stages) {
     if (!only.empty() && stage.name != only) continue;
-    std::vector<double> found;
-    std::string each;
     for (int i = 0; i < samples; ++i) {
-      const double waited =
-          latency(context, stage, (stage.end - stage.begin) * (2 * i + 1) / (2 * samples));
-      each.append(" ").append(std::to_string(static_cast<int>(waited)));
-      if (waited >= 0) found.push_back(waited);
+      const auto after = (stage.end - stage.begin) * (2 * i + 1) / (2 * samples);
+      if (const auto latency = cancel_in(context, stage, after)) {
+        found[latency->stage].push_back(latency->milliseconds);
+      }
     }
-    if (found.empty()) continue;
-    std::sort(found.begin(), found.end());
-    std::printf("%-10s %9.0f %11.1f %11.1f  %s\n", stage.name.c_str(),
-                milliseconds(stage.end - stage.begin), found[found.size() / 2], found.back(),
-                each.c_str());
-    std::fflush(stdout);
+  }
+  std::printf("\n%-10s %9s %8s %10s %11s   %s\n", "stage", "stage ms", "cancels", "median ms",
+              "longest ms", "the longest");
+  std::set<std::string> printed;
+  for (const Stage& stage : stages) {
+    std::vector<double>& latencies = found[stage.name];
+    if (latencies.empty() || !printed.insert(stage.name).second) continue;
+    std::sort(latencies.begin(), latencies.end());
+    std::printf("%-10s %9.0f %8zu %10.1f %11.1f  ", stage.name.c_str(),
+                milliseconds(stage.end - stage.begin), latencies.size(),
+                latencies[latencies.size() / 2], latencies.back());
+    for (std::size_t i = latencies.size(); i-- > 0 && i + 6 > latencies.size();) {
+      std::printf(" %.0f", latencies[i]);
+    }
+    std::printf("\n");
   }
 }
 

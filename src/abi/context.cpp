@@ -77,7 +77,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   using beltrami::Error;
   if (!mesh) throw Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
   beltrami::RunMark mark(*this);
-  const beltrami::InterruptScope interruptible(cancelled);
+  const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);
   beltrami::Progress report = [](double, const char*) { return false; };
   if (progress != nullptr) {

@@ -7,11 +7,11 @@
 
 namespace beltrami {
 
-/// Makes `cancelled` what poll_interrupt() of this thread looks at, until destruction. Scopes nest:
-/// a progress callback may run another context.
+/// Makes `request` what poll_interrupt() of this thread looks at, until destruction. Scopes nest,
+/// as a progress callback may run another context.
 class InterruptScope {
  public:
-  explicit InterruptScope(const std::atomic<bool>& cancelled);
+  explicit InterruptScope(const std::atomic<bool>* request);
   ~InterruptScope();
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
@@ -20,9 +20,12 @@ class InterruptScope {
   const std::atomic<bool>* outer_;
 };
 
-/// Throws Error CANCELLED if the run on this thread is to end. Costs a few nanoseconds, and nothing
-/// happens outside a run, or on the other threads of a parallel loop. parallel_for calls it before
-/// each chunk; loops of their own of more than some ten milliseconds should, too.
+/// What poll_interrupt() of this thread looks at, to pass on to workers; null outside a run.
+const std::atomic<bool>* interrupt_request();
+
+/// Throws Error CANCELLED if the run on this thread is to end. Costs a few nanoseconds; does
+/// nothing outside a run. parallel_for calls it before each chunk; serial loops of more than some
+/// ten milliseconds should, too.
 void poll_interrupt();
 
 }  // namespace beltrami

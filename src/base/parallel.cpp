@@ -26,8 +26,10 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   std::atomic<std::int64_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_guard;
+  const std::atomic<bool>* const request = interrupt_request();
   const auto work = [&] {
     const StandardFloatingPoint standard_mode;
+    const InterruptScope interruptible(request);
     try {
       for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
         poll_interrupt();
