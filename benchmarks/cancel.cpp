@@ -2,9 +2,12 @@
 //
 // A first run notes when each stage begins and ends. Then further runs are cancelled from another
 // thread, at moments spread evenly over the stage; the time until beltrami_run returns is the
-// latency, and counts for the stage that the run was in by then. Wall time, so the machine should
-// have nothing else to do.
+// latency, and counts for the stage that the run was in by then. Beside the wall time stands the
+// CPU time of the run's thread, which is what the latency would be on a machine with nothing else
+// to do.
 #include <beltrami/beltrami.h>
+#include <pthread.h>
+#include <time.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -34,6 +37,14 @@ double milliseconds(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
+/// CPU milliseconds that a thread has used.
+double thread_cpu(pthread_t thread) {
+  clockid_t clock;
+  timespec time{};
+  if (pthread_getcpuclockid(thread, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
 struct Look {
   Clock::time_point when;
   std::string stage;
@@ -57,11 +68,17 @@ class Canceller {
     return 0;
   }
 
-  /// When the request was made, and in which stage. Call it once, after the run.
-  std::pair<Clock::time_point, std::string> requested() {
+  struct Request {
+    Clock::time_point when;
+    double run_cpu;  ///< milliseconds of the run's thread by then
+    std::string stage;
+  };
+
+  /// Call it once, after the run.
+  Request requested() {
     release();
     thread_.join();
-    return {requested_, stage_then_};
+    return {requested_, requested_cpu_, stage_then_};
   }
 
  private:
@@ -78,6 +95,7 @@ class Canceller {
     }
     std::this_thread::sleep_for(after_);
     stage_then_ = stage_;
+    requested_cpu_ = thread_cpu(run_);
     requested_ = Clock::now();
     beltrami_cancel(context_);
   }
@@ -91,6 +109,8 @@ class Canceller {
   std::condition_variable wake_;
   bool due_ = false;
   Clock::time_point requested_;
+  double requested_cpu_ = 0;
+  const pthread_t run_ = pthread_self();  // it is the run's thread that builds this
   std::thread thread_;
 };
 
@@ -113,7 +133,7 @@ std::vector<Stage> stages_of(const std::vector<Look>& looks, Clock::time_point e
 
 struct Latency {
   std::string stage;
-  double milliseconds;
+  double wall, cpu;
 };
 
 /// Cancels a run `after` the begin of the stage. Nothing if the run ended first.
@@ -122,9 +142,25 @@ std::optional<Latency> cancel_in(beltrami_context* context, const Stage& stage,
   Canceller canceller(context, stage.first_look, after);
   const beltrami_status status = beltrami_run(context, Canceller::count_look, &canceller);
   const Clock::time_point returned = Clock::now();
-  const auto [requested, stage_then] = canceller.requested();
-  if (status != BELTRAMI_E_CANCELLED) return std::nullopt;
-  return Latency{stage_then, milliseconds(returned - requested)};
+  const double cpu = thread_cpu(pthread_self());
+  const Canceller::Request request = canceller.requested();
+  if (status != BELTRAMI_E_CANCELLED) {
+    beltrami_run(context, nullptr, nullptr);  // uses up the request, which came too late
+    return std::nullopt;
+  }
+  return Latency{request.stage, milliseconds(returned - request.when), cpu - request.run_cpu};
+}
+
+void print_row(const Stage& stage, std::vector<Latency> latencies) {
+  const auto by_wall = [](const Latency& a, const Latency& b) { return a.wall < b.wall; };
+  const auto by_cpu = [](const Latency& a, const Latency& b) { return a.cpu < b.cpu; };
+  std::sort(latencies.begin(), latencies.end(), by_wall);
+  const std::size_t middle = latencies.size() / 2;
+  const double median = latencies[middle].wall, longest = latencies.back().wall;
+  std::sort(latencies.begin(), latencies.end(), by_cpu);
+  std::printf("%-10s %9.0f %8zu %12.1f %12.1f %12.1f %12.1f\n", stage.name.c_str(),
+              milliseconds(stage.end - stage.begin), latencies.size(), median, longest,
+              latencies[middle].cpu, latencies.back().cpu);
 }
 
 void measure(beltrami_context* context, int samples, const std::string& only) {
@@ -133,30 +169,22 @@ void measure(beltrami_context* context, int samples, const std::string& only) {
   const Clock::time_point end = Clock::now();
   if (status < 0) throw std::runtime_error(beltrami_error_message(context));
   const std::vector<Stage> stages = stages_of(looks, end);
-  std::map<std::string, std::vector<double>> found;
+  std::map<std::string, std::vector<Latency>> found;
   for (const Stage& stage : stages) {
     if (!only.empty() && stage.name != only) continue;
     for (int i = 0; i < samples; ++i) {
       const auto after = (stage.end - stage.begin) * (2 * i + 1) / (2 * samples);
       if (const auto latency = cancel_in(context, stage, after)) {
-        found[latency->stage].push_back(latency->milliseconds);
+        found[latency->stage].push_back(*latency);
       }
     }
   }
-  std::printf("\n%-10s %9s %8s %10s %11s   %s\n", "stage", "stage ms", "cancels", "median ms",
-              "longest ms", "the longest");
+  std::printf("\n%-10s %9s %8s %12s %12s %12s %12s\n", "stage", "stage ms", "cancels", "median ms",
+              "longest ms", "median cpu", "longest cpu");
   std::set<std::string> printed;
   for (const Stage& stage : stages) {
-    std::vector<double>& latencies = found[stage.name];
-    if (latencies.empty() || !printed.insert(stage.name).second) continue;
-    std::sort(latencies.begin(), latencies.end());
-    std::printf("%-10s %9.0f %8zu %10.1f %11.1f  ", stage.name.c_str(),
-                milliseconds(stage.end - stage.begin), latencies.size(),
-                latencies[latencies.size() / 2], latencies.back());
-    for (std::size_t i = latencies.size(); i-- > 0 && i + 6 > latencies.size();) {
-      std::printf(" %.0f", latencies[i]);
-    }
-    std::printf("\n");
+    const std::vector<Latency>& latencies = found[stage.name];
+    if (!latencies.empty() && printed.insert(stage.name).second) print_row(stage, latencies);
   }
 }
 

@@ -23,6 +23,7 @@ class HostProgress {
     // Not std::clamp: NaN must not pass.
     if (fraction > reached_) reached_ = std::min(fraction, 1.0);
     const StandardFloatingPoint mode_of_the_run;
+    const InterruptScope not_in_the_run(nullptr);  // for checks that the host makes meanwhile
     if (callback_(user_, reached_, stage) != 0) cancelled_ = true;
     return cancelled_;
   }

@@ -247,19 +247,26 @@ TEST(Cancel, OfOneContextLeavesAnotherOnTheSameThreadAlone) {
   struct Nested {
     beltrami_context *outer, *inner;
     bool cancel_inner;
-    beltrami_status inner_status;
+    beltrami_status inner_status, check_status;
   };
   const auto run_inside = [](void* user, double, const char*) -> int32_t {
     auto& self = *static_cast<Nested*>(user);
     beltrami_cancel(self.cancel_inner ? self.inner : self.outer);
     self.inner_status = beltrami_run(self.inner, nullptr, nullptr);
+    const TriangleList quad = meshes::quad();
+    const beltrami_mesh mesh = view(quad);
+    const auto flat = flat_uvs(quad);
+    const beltrami_buffer uv_view = view(flat);
+    auto certificate = sized<beltrami_certificate>();
+    self.check_status = beltrami_check_injective(&mesh, &uv_view, &certificate);
     return 0;
   };
   const Context outer = whole_pipeline(meshes::bumps(30, 30));
   const Context inner = whole_pipeline(meshes::bumps(30, 30));
-  Nested nested{outer.get(), inner.get(), false, BELTRAMI_E_INTERNAL};
+  Nested nested{outer.get(), inner.get(), false, BELTRAMI_E_INTERNAL, BELTRAMI_E_INTERNAL};
   EXPECT_EQ(beltrami_run(outer.get(), run_inside, &nested), BELTRAMI_E_CANCELLED);
   EXPECT_EQ(nested.inner_status, BELTRAMI_OK);
+  EXPECT_EQ(nested.check_status, BELTRAMI_OK);
   nested.cancel_inner = true;
   EXPECT_EQ(beltrami_run(outer.get(), run_inside, &nested), BELTRAMI_OK);
   EXPECT_EQ(nested.inner_status, BELTRAMI_E_CANCELLED);
