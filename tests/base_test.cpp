@@ -10,7 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.h"
 #include "base/floating_point.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/resources.h"
 
@@ -82,6 +84,31 @@ TEST(ParallelFor, StopsSoonAfterAnException) {
   };
   EXPECT_THROW(parallel_for(2, 2000, 1, body), std::runtime_error);
   EXPECT_LT(chunks, 1000);
+}
+
+TEST(ParallelFor, EndsWhereTheRunOfItsThreadIsCancelled) {
+  std::atomic<bool> cancelled{false};
+  const auto count_chunks = [&](int threads) {
+    std::atomic<int> chunks{0};
+    parallel_for(threads, 100, 1, [&](std::int64_t, std::int64_t) {
+      if (++chunks == 10) cancelled = true;
+    });
+    return chunks.load();
+  };
+  EXPECT_EQ(count_chunks(1), 100) << "outside a run nobody asks";
+  for (const int threads : {1, 3}) {
+    cancelled = false;
+    const InterruptScope scope(&cancelled);
+    EXPECT_THROW(count_chunks(threads), Error) << threads << " threads";
+  }
+  cancelled = false;
+  const InterruptScope outer(&cancelled);
+  std::atomic<bool> always{true};
+  {
+    const InterruptScope inner(&always);
+    EXPECT_THROW(poll_interrupt(), Error);
+  }
+  EXPECT_NO_THROW(poll_interrupt());
 }
 
 TEST(ParallelSum, HasTheSameBitsAtOneTwoAndThreeThreads) {

@@ -99,20 +99,23 @@ enum {
 
 /* ---- Library ---------------------------------------------------------------------------- */
 
-/* Version of the library as major * 1000000 + minor * 1000 + patch. Never fails. */
+/* Version of the library as major * 1000000 + minor * 1000 + patch. Cannot fail. */
 BELTRAMI_API uint32_t beltrami_version(void);
 
-/* One line on this build: version, solver, licence of what it links. Static, never NULL. */
+/* One line on this build: version, solver, licence of what it links. Static, never NULL. Cannot
+ * fail. */
 BELTRAMI_API const char* beltrami_build_info(void);
 
 /* 1 if this build has `feature`, else 0: "solver:eigen", "solver:cholmod", "scaffold:own",
- * "scaffold:cgal", "gpl". NULL and unknown names give 0. */
+ * "scaffold:cgal", "gpl". NULL and unknown names give 0. Cannot
+ * fail. */
 BELTRAMI_API int32_t beltrami_has(const char* feature);
 
-/* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static. */
+/* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static,
+ * never NULL. Cannot fail. */
 BELTRAMI_API const char* beltrami_status_name(beltrami_status status);
 
-/* One sentence on what a status means and what to do about it. Static, never NULL. */
+/* One sentence on what a status means and what to do about it. Static, never NULL. Cannot fail. */
 BELTRAMI_API const char* beltrami_status_advice(beltrami_status status);
 
 /* ---- Context ---------------------------------------------------------------------------- */
@@ -126,17 +129,19 @@ typedef struct beltrami_context beltrami_context;
 BELTRAMI_API beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out);
 #define beltrami_create(out) beltrami_create_(BELTRAMI_ABI, (out))
 
-/* Frees a context; NULL is fine. Not during a run. */
+/* Frees a context; NULL is fine. Cannot fail. During a run, which is a defect of the caller, it
+ * does nothing. */
 BELTRAMI_API void beltrami_destroy(beltrami_context* context);
 
 /* What the last failed call on this context said, in one sentence of UTF-8; "" after a success.
- * Valid until the next call on the context. NULL context: "". */
+ * Valid until the next call on the context. NULL context: "". Cannot fail. */
 BELTRAMI_API const char* beltrami_error_message(const beltrami_context* context);
 
-/* The input face or vertex that the last failure is about, or BELTRAMI_NO_ELEMENT. */
+/* The input face or vertex that the last failure is about, counted from 0, or BELTRAMI_NO_ELEMENT.
+ * Cannot fail. */
 BELTRAMI_API uint64_t beltrami_error_element(const beltrami_context* context);
 
-/* What beltrami_error_element counts: a BELTRAMI_ELEMENT_ number. */
+/* What beltrami_error_element counts: a BELTRAMI_ELEMENT_ number. Cannot fail. */
 BELTRAMI_API int32_t beltrami_error_element_kind(const beltrami_context* context);
 
 /* ---- Options ---------------------------------------------------------------------------- */
@@ -228,14 +233,15 @@ typedef struct beltrami_option_info {
   const char* summary; /* one sentence, static */
 } beltrami_option_info;
 
-/* Key of the option with this name ("coarse-faces"), or -1. */
+/* Key of the option with this name ("coarse-faces"); -1 for NULL and unknown names. Cannot fail. */
 BELTRAMI_API int32_t beltrami_option_find(const char* name);
 
 /* Describes option `key`; keys count from 0 without gaps, so a loop that ends at the first
  * INVALID_ARGUMENT lists them all. Errors: INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_option_describe(int32_t key, beltrami_option_info* out);
 
-/* Name of value `value` of the choice option `key` ("cm"), or NULL past its last value. Static. */
+/* Name of value `value` of the choice option `key` ("cm"), or NULL past its last value. Static.
+ * Cannot fail. */
 BELTRAMI_API const char* beltrami_option_choice(int32_t key, int32_t value);
 
 /* Sets an option for later runs. Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range;
@@ -292,13 +298,13 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
  * Returns OK, NOT_CONVERGED or NOT_INJECTIVE with a result; errors: INVALID_STATE (no mesh),
- * CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL. */
+ * CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
 
 /* Asks the run under way (or, where none is, the next one) to end with CANCELLED. From any thread,
  * and from a signal handler. It takes effect at the next solver step: at the latest after one
- * factorization. NULL is ignored. */
+ * ordering or factorization. NULL is ignored. Cannot fail. */
 BELTRAMI_API void beltrami_cancel(beltrami_context* context);
 
 /* ---- Results ---------------------------------------------------------------------------- */
@@ -355,34 +361,37 @@ typedef struct beltrami_stage {
   const char* name;   /* static: "simplify", "coarse", "prolong", "flatten", "repair", ... */
 } beltrami_stage;
 
-/* The functions below fail with INVALID_STATE before the first run with a result, and with
- * INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride. */
+/* The functions below that return a status fail with INVALID_STATE before the first run with a
+ * result, and with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride. */
 
+/* Counts, area and cost of the last run with a result. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, beltrami_result* out);
 
 /* Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32
  * or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
  * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest: check what you
- * ship with beltrami_check_injective. */
+ * ship with beltrami_check_injective. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
                                               uint64_t stride);
 
-/* The certificate of the UVs as returned in F64. */
+/* The certificate of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_certificate(beltrami_context* context,
                                                       beltrami_certificate* out);
 
-/* Energies of the UVs as returned in F64. */
+/* Energies of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_energy(beltrami_context* context, beltrami_energy* out);
 
 /* Symmetric Dirichlet energy of every face, in input order: face_count doubles, `stride` bytes
- * apart (0: packed). Infinite where a face is flipped, degenerate, or without 3D area. */
+ * apart (0: packed). Infinite where a face is flipped, degenerate, or without 3D area. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_face_energies(beltrami_context* context, void* out,
                                                         uint64_t stride);
 
-/* Number of stages of the last run; 0 before it. */
+/* Number of stages of the last run; 0 before it. Cannot fail. */
 BELTRAMI_API int32_t beltrami_stage_count(const beltrami_context* context);
 
-/* Statistics of stage `index`, in the order in which they ran. */
+/* Statistics of stage `index`, in the order in which they ran. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT (also for an index that is none). */
 BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index,
                                                 beltrami_stage* out);
 
@@ -393,24 +402,25 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
  * out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
 
 /* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
- * that, so out->injective stays 0. */
+ * that, so out->injective stays 0. Errors: as above, of the mesh INDEX_OUT_OF_RANGE. */
 BELTRAMI_API beltrami_status beltrami_check_triangles(const beltrami_mesh* mesh,
                                                       const beltrami_buffer* uvs,
                                                       beltrami_certificate* out);
 
 /* Simplicity of the boundary loop. Verifies that the mesh is one oriented disk. Proves no more than
- * that, so out->injective stays 0. */
+ * that, so out->injective stays 0. Errors: as above. */
 BELTRAMI_API beltrami_status beltrami_check_boundary(const beltrami_mesh* mesh,
                                                      const beltrami_buffer* uvs,
                                                      beltrami_certificate* out);
 
-/* Both: OK proves that the piecewise linear map is injective. */
+/* Both: OK proves that the piecewise linear map is injective. Errors: as above. */
 BELTRAMI_API beltrami_status beltrami_check_injective(const beltrami_mesh* mesh,
                                                       const beltrami_buffer* uvs,
                                                       beltrami_certificate* out);
 
-/* Distortion of any UVs. `face_energies`: NULL or face_count doubles for the symmetric Dirichlet
- * energy of each face. Errors: INVALID_ARGUMENT, INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
+/* Distortion of any UVs, in the positions' unit of length. `face_energies`: NULL or face_count
+ * doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT,
+ * INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
                                               beltrami_energy* out, double* face_energies);
 

@@ -5,6 +5,7 @@
 
 #include "abi/buffers.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 
 static_assert(std::atomic<bool>::is_always_lock_free,
               "beltrami_cancel may be called from a signal handler");
@@ -22,6 +23,7 @@ class HostProgress {
     // Not std::clamp: NaN must not pass.
     if (fraction > reached_) reached_ = std::min(fraction, 1.0);
     const StandardFloatingPoint mode_of_the_run;
+    const InterruptScope not_in_the_run(nullptr);  // for checks that the host makes meanwhile
     if (callback_(user_, reached_, stage) != 0) cancelled_ = true;
     return cancelled_;
   }
@@ -76,6 +78,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   using beltrami::Error;
   if (!mesh) throw Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
   beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);
   beltrami::Progress report = [](double, const char*) { return false; };
   if (progress != nullptr) {

@@ -1,6 +1,6 @@
 #include "abi/option_table.h"
 
-#include <cstdio>
+#include <charconv>
 #include <string>
 
 #include "base/error.h"
@@ -125,10 +125,10 @@ const OptionEntry kOptions[] = {
      set<&Options::time_limit>},
 };
 
+/// The shortest text that reads back to the value, whatever the host's locale.
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 const OptionEntry& require_option(std::int32_t key, bool is_float) {

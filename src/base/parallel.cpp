@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/floating_point.h"
+#include "base/interrupt.h"
 
 namespace beltrami {
 
@@ -17,6 +18,7 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   const int workers = static_cast<int>(std::min<std::int64_t>(threads, chunks));
   if (workers <= 1) {
     for (std::int64_t begin = 0; begin < count; begin += grain) {
+      poll_interrupt();
       body(begin, std::min(begin + grain, count));
     }
     return;
@@ -24,10 +26,13 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   std::atomic<std::int64_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_guard;
+  const std::atomic<bool>* const request = interrupt_request();
   const auto work = [&] {
     const StandardFloatingPoint standard_mode;
+    const InterruptScope interruptible(request);
     try {
       for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
+        poll_interrupt();
         body(chunk * grain, std::min((chunk + 1) * grain, count));
       }
     } catch (...) {

@@ -1,6 +1,7 @@
 #include "flatten/laplacian.h"
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "sparse/shifted_factor.h"
 
@@ -35,12 +36,14 @@ std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& res
 
 std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian) {
   auto solver = make_spd_solver();
+  poll_interrupt();
   solver->analyze(laplacian.matrix());
   refactorize_laplacian(*solver, laplacian);
   return solver;
 }
 
 void refactorize_laplacian(SpdSolver& solver, MeshMatrix& laplacian) {
+  poll_interrupt();
   if (factorize_shifted(solver, laplacian.matrix()) >= 0) return;
   throw Error(BELTRAMI_E_SOLVER,
               "the Laplacian of the fine mesh is not definite in floating point: its faces are too "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "flatten/laplacian.h"
 

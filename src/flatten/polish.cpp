@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "fullspace/assembly.h"
 #include "fullspace/line_search.h"
@@ -52,6 +53,7 @@ class Polish {
         corner_gradients_[f] = face_gradient(static_cast<Index>(f), uvs);
       }
     });
+    poll_interrupt();
     DenseMatrix sum = DenseMatrix::Zero(static_cast<Eigen::Index>(uvs.size()), 2);
     for (Index f = 0; f < size_of(faces_); ++f) {
       for (int k = 0; k < 3; ++k) {
@@ -108,11 +110,13 @@ class History {
     DenseMatrix q = -gradient;
     std::vector<double> alpha(pairs_.size());
     for (std::size_t i = pairs_.size(); i-- > 0;) {
+      poll_interrupt();
       alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q);
       q -= alpha[i] * pairs_[i].change;
     }
     q = precondition(q);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      poll_interrupt();
       const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, q);
       q += (alpha[i] - beta) * pairs_[i].step;
     }

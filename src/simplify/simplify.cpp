@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "simplify/surface.h"
 
 namespace beltrami {
@@ -245,7 +246,9 @@ bool try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_cos
 Index collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate>& candidates, Index begin,
                         Index end, Index target_faces, const ShapeLimits& limits,
                         const std::function<void()>& tick) {
+  poll_interrupt();
   std::sort(candidates.begin() + begin, candidates.begin() + end);
+  poll_interrupt();
   const double max_cost = candidates[end - 1].cost;
   Index collapsed = 0;
   for (Index i = begin; i < end && surface.live_faces > target_faces; ++i) {

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "base/interrupt.h"
+
 namespace beltrami {
 namespace {
 
@@ -132,6 +134,7 @@ ShrinkingSurface make_surface(const DiskMesh& mesh) {
     surface.loop_previous[next] = v;
   }
   fix_boundary(mesh, surface.role);
+  poll_interrupt();
   add_quadrics(mesh, surface);
   return surface;
 }
@@ -169,6 +172,7 @@ void compact(ShrinkingSurface& surface) {
 
 void begin_pass(ShrinkingSurface& surface) {
   compact(surface);
+  poll_interrupt();
   // Counting sort of the half-edges by origin.
   const Index vertex_count = surface.vertex_count();
   surface.valence.assign(vertex_count, 0);

@@ -1,6 +1,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "sparse/spd_solver.h"
 
@@ -118,7 +119,20 @@ class EigenSolver final : public SpdSolver {
     return factor_.info() == Eigen::Success;
   }
 
-  DenseMatrix solve(const DenseMatrix& rhs) const override { return factor_.solve(rhs); }
+  /// What Eigen's own solve does, one column and one triangle at a time, so that a request to
+  /// cancel is heard in between.
+  DenseMatrix solve(const DenseMatrix& rhs) const override {
+    DenseMatrix result(rhs.rows(), rhs.cols());
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+      Eigen::VectorXd column = factor_.permutationP() * rhs.col(c);
+      poll_interrupt();
+      factor_.matrixL().solveInPlace(column);
+      poll_interrupt();
+      factor_.matrixU().solveInPlace(column);
+      result.col(c) = factor_.permutationPinv() * column;
+    }
+    return result;
+  }
 
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
                          int threads) const override {

@@ -24,7 +24,7 @@ struct Outcome {
 
 Outcome outcome(const TriangleList& mesh) {
   Outcome out;
-  const Context context = loaded(mesh);
+  const Context context = whole_pipeline(mesh);
   EXPECT_EQ(run(context), BELTRAMI_OK);
   out.uvs = uvs(context, mesh.positions.size());
   out.single_uvs.resize(mesh.positions.size());
@@ -51,7 +51,7 @@ void expect_same(const Outcome& a, const Outcome& b) {
 }
 
 TEST(FloatingPoint, RoundingModesChangeNothingAndComeBack) {
-  const TriangleList mesh = meshes::bumps(9, 8);
+  const TriangleList mesh = meshes::bumps(50, 50);
   const Outcome expected = outcome(mesh);
   for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
     ASSERT_EQ(std::fesetround(mode), 0);
@@ -64,7 +64,7 @@ TEST(FloatingPoint, RoundingModesChangeNothingAndComeBack) {
 
 #if defined(__SSE2__)
 TEST(FloatingPoint, FlushToZeroChangesNothingAndComesBack) {
-  const TriangleList mesh = meshes::bumps(9, 8);
+  const TriangleList mesh = meshes::bumps(50, 50);
   const Outcome expected = outcome(mesh);
   const unsigned before = _mm_getcsr();
   const unsigned flushing = before | 0x8040;  // FTZ and DAZ
@@ -77,10 +77,10 @@ TEST(FloatingPoint, FlushToZeroChangesNothingAndComesBack) {
 }
 
 TEST(FloatingPoint, UnmaskedTrapsDoNotFire) {
-  const TriangleList mesh = meshes::bumps(5, 5);
+  const TriangleList mesh = meshes::bumps(20, 20);
   const Outcome expected = outcome(mesh);
   const unsigned before = _mm_getcsr();
-  const Context context = loaded(mesh);
+  const Context context = whole_pipeline(mesh);
   std::vector<std::array<double, 2>> found(mesh.positions.size());
   _mm_setcsr((before & ~0x3fu) & ~0x1f80u);  // every exception traps
   const beltrami_status ran = beltrami_run(context.get(), nullptr, nullptr);
@@ -94,9 +94,9 @@ TEST(FloatingPoint, UnmaskedTrapsDoNotFire) {
 }
 
 TEST(FloatingPoint, AProgressCallbackMayChangeTheMode) {
-  const TriangleList mesh = meshes::bumps(9, 8);
+  const TriangleList mesh = meshes::bumps(20, 20);
   const Outcome expected = outcome(mesh);
-  const Context context = loaded(mesh);
+  const Context context = whole_pipeline(mesh);
   const auto spoil = [](void*, double, const char*) -> int32_t {
     std::fesetround(FE_UPWARD);
     _mm_setcsr(_mm_getcsr() | 0x8040);

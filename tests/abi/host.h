@@ -68,6 +68,16 @@ inline Context loaded(const meshes::TriangleList& mesh) {
   return context;
 }
 
+/// A context with this mesh, set to go through all stages of the default method, with workers.
+inline Context whole_pipeline(const meshes::TriangleList& mesh) {
+  Context context = loaded(mesh);
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_BELTRAMI),
+            BELTRAMI_OK);
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_COARSE_FACES, 200), BELTRAMI_OK);
+  EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_THREADS, 3), BELTRAMI_OK);
+  return context;
+}
+
 inline beltrami_status run(const Context& context) {
   return beltrami_run(context.get(), nullptr, nullptr);
 }

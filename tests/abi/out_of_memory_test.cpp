@@ -89,6 +89,22 @@ TEST(OutOfMemory, RunAnswersAndKeepsTheOldResults) {
   EXPECT_GE(failures_of([&] { return run(context); }), 5);
 }
 
+TEST(OutOfMemory, EveryStageAnswers) {
+  // Too many allocations to let each fail: more and more of them succeed.
+  const Context context = whole_pipeline(meshes::bumps(24, 24));
+  beltrami_status status = BELTRAMI_E_INTERNAL;
+  int failures = 0;
+  for (long allowance = 0; status != BELTRAMI_OK; allowance += 1 + allowance / 8, ++failures) {
+    allowed = allowance;
+    status = run(context);
+    allowed = -1;
+    if (status == BELTRAMI_OK) break;
+    ASSERT_EQ(status, BELTRAMI_E_OUT_OF_MEMORY) << "after " << allowance << " allocations";
+    EXPECT_NE(message(context), "");
+  }
+  EXPECT_GE(failures, 20);
+}
+
 TEST(OutOfMemory, ChecksAnswer) {
   const TriangleList mesh = meshes::grid(4, 4);
   const auto flat = flat_uvs(mesh);

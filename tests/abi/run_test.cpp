@@ -242,6 +242,56 @@ TEST(Cancel, FromAnotherThreadEndsALongRun) {
   other.join();
 }
 
+TEST(Cancel, OfOneContextLeavesAnotherOnTheSameThreadAlone) {
+  // The inner run takes place inside a progress call of the outer one, which is cancelled by then.
+  struct Nested {
+    beltrami_context *outer, *inner;
+    bool cancel_inner;
+    beltrami_status inner_status, check_status;
+  };
+  const auto run_inside = [](void* user, double, const char*) -> int32_t {
+    auto& self = *static_cast<Nested*>(user);
+    beltrami_cancel(self.cancel_inner ? self.inner : self.outer);
+    self.inner_status = beltrami_run(self.inner, nullptr, nullptr);
+    const TriangleList quad = meshes::quad();
+    const beltrami_mesh mesh = view(quad);
+    const auto flat = flat_uvs(quad);
+    const beltrami_buffer uv_view = view(flat);
+    auto certificate = sized<beltrami_certificate>();
+    self.check_status = beltrami_check_injective(&mesh, &uv_view, &certificate);
+    return 0;
+  };
+  const Context outer = whole_pipeline(meshes::bumps(30, 30));
+  const Context inner = whole_pipeline(meshes::bumps(30, 30));
+  Nested nested{outer.get(), inner.get(), false, BELTRAMI_E_INTERNAL, BELTRAMI_E_INTERNAL};
+  EXPECT_EQ(beltrami_run(outer.get(), run_inside, &nested), BELTRAMI_E_CANCELLED);
+  EXPECT_EQ(nested.inner_status, BELTRAMI_OK);
+  EXPECT_EQ(nested.check_status, BELTRAMI_OK);
+  nested.cancel_inner = true;
+  EXPECT_EQ(beltrami_run(outer.get(), run_inside, &nested), BELTRAMI_OK);
+  EXPECT_EQ(nested.inner_status, BELTRAMI_E_CANCELLED);
+}
+
+TEST(Cancel, OfOneContextLeavesAnotherOnAnotherThreadAlone) {
+  const Context cancelled = loaded_with(meshes::bumps(220, 220), BELTRAMI_METHOD_CM);
+  ASSERT_EQ(beltrami_set_float(cancelled.get(), BELTRAMI_OPTION_TOLERANCE, 0), BELTRAMI_OK);
+  std::atomic<bool> begun{false};
+  const auto begin = [](void* user, double, const char*) -> int32_t {
+    static_cast<std::atomic<bool>*>(user)->store(true);
+    return 0;
+  };
+  std::thread other(
+      [&] { EXPECT_EQ(beltrami_run(cancelled.get(), begin, &begun), BELTRAMI_E_CANCELLED); });
+  while (!begun) std::this_thread::yield();
+  const Context undisturbed = whole_pipeline(meshes::bumps(40, 40));
+  const auto cancel = [](void* user, double, const char*) -> int32_t {
+    beltrami_cancel(static_cast<beltrami_context*>(user));
+    return 0;
+  };
+  EXPECT_EQ(beltrami_run(undisturbed.get(), cancel, cancelled.get()), BELTRAMI_OK);
+  other.join();
+}
+
 TEST(Contexts, ShareNothingAcrossThreads) {
   const TriangleList meshes_of[2] = {meshes::bumps(14, 10), meshes::cap(7, 12, 1.8)};
   std::vector<std::array<double, 2>> expected[2], found[2];

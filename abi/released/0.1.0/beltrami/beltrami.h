@@ -1,0 +1,430 @@
+/* beltrami: injective, low-distortion flattening of disk-like triangle meshes.
+ *
+ * The C interface of the library, its only public header.
+ *
+ * Threads: a context belongs to one thread at a time; contexts share nothing, and the library has
+ * no global state. beltrami_cancel may be called from any thread. Functions without a context are
+ * reentrant. Nothing is printed, no environment variable is read, no signal handler is set.
+ *
+ * Statuses: 0 means that every promise was kept; above 0 there is a result, with a reservation;
+ * below 0 there is no new result. After a failure the context keeps a sentence that says what to
+ * do, and the face or vertex concerned.
+ *
+ * Structs: the caller sets `struct_size` to sizeof of the struct that it was compiled with. The
+ * library reads and writes only the fields that this size covers.
+ */
+#ifndef BELTRAMI_BELTRAMI_H
+#define BELTRAMI_BELTRAMI_H
+
+#include <stdint.h>
+
+#if defined(_WIN32) && defined(BELTRAMI_SHARED)
+#if defined(BELTRAMI_BUILDING)
+#define BELTRAMI_API __declspec(dllexport)
+#else
+#define BELTRAMI_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__) && defined(BELTRAMI_BUILDING)
+#define BELTRAMI_API __attribute__((visibility("default")))
+#else
+#define BELTRAMI_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define BELTRAMI_VERSION_MAJOR 0
+#define BELTRAMI_VERSION_MINOR 1
+#define BELTRAMI_VERSION_PATCH 0
+
+/* The number of the binary interface: apart from the product version, raised by a break only. */
+#define BELTRAMI_ABI 1
+
+/* "No element" in element fields: all bits set. */
+#define BELTRAMI_NO_ELEMENT UINT64_MAX
+
+/* ---- Statuses --------------------------------------------------------------------------- */
+
+typedef int32_t beltrami_status;
+
+enum {
+  BELTRAMI_STATUS_FORCE_SIGNED_ = -1,
+
+  /* All promises kept. */
+  BELTRAMI_OK = 0,
+  /* A map exists and is injective, but an optimisation stopped at its iteration limit. */
+  BELTRAMI_NOT_CONVERGED = 1,
+  /* A map exists, but the exact certificate found flips, zero areas or boundary crossings. */
+  BELTRAMI_NOT_INJECTIVE = 2,
+
+  /* The call itself is wrong: NULL, an unknown key, a value out of range, an odd stride. */
+  BELTRAMI_E_INVALID_ARGUMENT = -1,
+  BELTRAMI_E_OUT_OF_MEMORY = -2,
+  /* The program was compiled against another ABI than the library's. */
+  BELTRAMI_E_ABI_MISMATCH = -3,
+  /* This build does not have what was asked for. */
+  BELTRAMI_E_UNSUPPORTED = -4,
+  /* The call comes too early, e.g. results before a run, or during a run. */
+  BELTRAMI_E_INVALID_STATE = -5,
+  BELTRAMI_E_CANCELLED = -6,
+  /* A defect of the library: please report it with the mesh. */
+  BELTRAMI_E_INTERNAL = -7,
+
+  /* The mesh is not one that can be flattened. The element says where. */
+  BELTRAMI_E_EMPTY = -20,               /* no vertices or no faces */
+  BELTRAMI_E_INDEX_OUT_OF_RANGE = -21,  /* face: an index >= the vertex count */
+  BELTRAMI_E_NON_FINITE = -22,          /* vertex: a NaN or infinite coordinate */
+  BELTRAMI_E_REPEATED_VERTEX = -23,     /* face: names one vertex twice */
+  BELTRAMI_E_NON_MANIFOLD_EDGE = -24,   /* face: one of its edges has more than two faces */
+  BELTRAMI_E_NON_MANIFOLD_VERTEX = -25, /* vertex: its faces form more than one fan */
+  BELTRAMI_E_ORIENTATION = -26,         /* face: runs against its neighbour, or is a duplicate */
+  BELTRAMI_E_COMPONENTS = -27,          /* face: in a second component */
+  BELTRAMI_E_CLOSED = -28,              /* no boundary: cut the mesh open first */
+  BELTRAMI_E_BOUNDARIES = -29,          /* vertex: on a second boundary loop */
+  BELTRAMI_E_GENUS = -30,               /* has handles: cut them open first */
+  BELTRAMI_E_ZERO_AREA = -31,           /* the whole surface has no area, or overflows */
+
+  /* A linear system could not be solved. */
+  BELTRAMI_E_SOLVER = -40
+};
+
+/* What an element index counts. */
+enum {
+  BELTRAMI_ELEMENT_FORCE_SIGNED_ = -1,
+  BELTRAMI_ELEMENT_NONE = 0,
+  BELTRAMI_ELEMENT_FACE = 1,
+  BELTRAMI_ELEMENT_VERTEX = 2
+};
+
+/* ---- Library ---------------------------------------------------------------------------- */
+
+/* Version of the library as major * 1000000 + minor * 1000 + patch. Cannot fail. */
+BELTRAMI_API uint32_t beltrami_version(void);
+
+/* One line on this build: version, solver, licence of what it links. Static, never NULL. Cannot
+ * fail. */
+BELTRAMI_API const char* beltrami_build_info(void);
+
+/* 1 if this build has `feature`, else 0: "solver:eigen", "solver:cholmod", "gpl".
+ * NULL and unknown names give 0. Cannot fail. */
+BELTRAMI_API int32_t beltrami_has(const char* feature);
+
+/* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static,
+ * never NULL. Cannot fail. */
+BELTRAMI_API const char* beltrami_status_name(beltrami_status status);
+
+/* One sentence on what a status means and what to do about it. Static, never NULL. Cannot fail. */
+BELTRAMI_API const char* beltrami_status_advice(beltrami_status status);
+
+/* ---- Context ---------------------------------------------------------------------------- */
+
+/* Options, a copy of one mesh, and the results of its last run. */
+typedef struct beltrami_context beltrami_context;
+
+/* Use the macro beltrami_create: it passes the ABI that the caller was compiled with.
+ * On success *out is a new context, to be freed by beltrami_destroy; else *out is NULL.
+ * Errors: ABI_MISMATCH, INVALID_ARGUMENT (out is NULL), OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out);
+#define beltrami_create(out) beltrami_create_(BELTRAMI_ABI, (out))
+
+/* Frees a context; NULL is fine. Cannot fail. During a run, which is a defect of the caller, it
+ * does nothing. */
+BELTRAMI_API void beltrami_destroy(beltrami_context* context);
+
+/* What the last failed call on this context said, in one sentence of UTF-8; "" after a success.
+ * Valid until the next call on the context. NULL context: "". Cannot fail. */
+BELTRAMI_API const char* beltrami_error_message(const beltrami_context* context);
+
+/* The input face or vertex that the last failure is about, counted from 0, or BELTRAMI_NO_ELEMENT.
+ * Cannot fail. */
+BELTRAMI_API uint64_t beltrami_error_element(const beltrami_context* context);
+
+/* What beltrami_error_element counts: a BELTRAMI_ELEMENT_ number. Cannot fail. */
+BELTRAMI_API int32_t beltrami_error_element_kind(const beltrami_context* context);
+
+/* ---- Options ---------------------------------------------------------------------------- */
+
+enum {
+  BELTRAMI_OPTION_FORCE_SIGNED_ = -1,
+  BELTRAMI_OPTION_METHOD = 0,         /* choice: BELTRAMI_METHOD_ */
+  BELTRAMI_OPTION_ENERGY = 1,         /* choice: BELTRAMI_ENERGY_ */
+  BELTRAMI_OPTION_COARSE_FACES = 2,   /* int: faces of the simplified mesh; 0: max(1%, 10,000) */
+  BELTRAMI_OPTION_TOLERANCE = 3,      /* float: relative energy decrease at which CM stops */
+  BELTRAMI_OPTION_MAX_ITERATIONS = 4, /* int: limit of CM iterations */
+  BELTRAMI_OPTION_THREADS = 5,        /* int: threads to use; the result does not depend on it */
+  BELTRAMI_OPTION_UNIT_SQUARE = 6,    /* int: 1 scales and shifts the UVs into [0,1]^2 */
+  BELTRAMI_OPTION_FLATTEN = 7,        /* choice: BELTRAMI_FLATTEN_ */
+  BELTRAMI_OPTION_INJECTIVITY = 8,    /* choice: BELTRAMI_INJECTIVITY_ */
+  BELTRAMI_OPTION_REFINE = 9,         /* int: 1 goes on with CM on the fine mesh */
+  BELTRAMI_OPTION_REFINE_ITERATIONS = 10, /* int: limit of its iterations; 0: CM's stopping rule */
+  BELTRAMI_OPTION_TIME_LIMIT = 11         /* float: wall seconds after which it stops; 0: none */
+};
+
+enum {
+  BELTRAMI_METHOD_FORCE_SIGNED_ = -1,
+  /* Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric. */
+  BELTRAMI_METHOD_BELTRAMI = 0,
+  /* Composite majorization on the full mesh: the slow reference. */
+  BELTRAMI_METHOD_CM = 1,
+  /* Tutte's embedding into a circle: injective, fast, highly distorted. */
+  BELTRAMI_METHOD_TUTTE = 2,
+  /* Baseline: globally injective, in the harmonic subspace of the surface's own metric. */
+  BELTRAMI_METHOD_GIF = 3,
+  /* Baseline: boundary first flattening, conformal. May flip and overlap. */
+  BELTRAMI_METHOD_BFF = 4,
+  /* Baseline: the UVs of the coarse mesh carried over by closest points. Flips. */
+  BELTRAMI_METHOD_UV_PROLONGATION = 5
+};
+
+/* How the method BELTRAMI flattens the fine mesh. */
+enum {
+  BELTRAMI_FLATTEN_FORCE_SIGNED_ = -1,
+  /* Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps. */
+  BELTRAMI_FLATTEN_METRIC = 0,
+  /* Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
+   * and 0.3% to 3% higher in energy. */
+  BELTRAMI_FLATTEN_DIRICHLET = 1,
+  /* The paper's: the harmonic subspace of a few boundary vertices, with a scaffold. */
+  BELTRAMI_FLATTEN_GIF = 2,
+  /* The same without a scaffold: no flips, but the boundary may overlap itself. */
+  BELTRAMI_FLATTEN_FLIM = 3,
+  /* Conformal with the boundary lengths that the coarse map asks for. May flip and overlap. */
+  BELTRAMI_FLATTEN_BFF = 4
+};
+
+/* What the optimisation sees to. The certificate always judges global injectivity. */
+enum {
+  BELTRAMI_INJECTIVITY_FORCE_SIGNED_ = -1,
+  /* Global, but for the method CM: that is left as the literature has it, the reference. */
+  BELTRAMI_INJECTIVITY_AUTO = 0,
+  /* No flips, and no part of the boundary may cross another. */
+  BELTRAMI_INJECTIVITY_GLOBAL = 1,
+  /* No flips; the boundary may overlap itself, at a slightly lower energy. */
+  BELTRAMI_INJECTIVITY_LOCAL = 2
+};
+
+enum {
+  BELTRAMI_ENERGY_FORCE_SIGNED_ = -1,
+  /* 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2. */
+  BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET = 0,
+  /* (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0. */
+  BELTRAMI_ENERGY_SYMMETRIC_ARAP = 1
+};
+
+/* How an option's value is given. */
+enum {
+  BELTRAMI_TYPE_FORCE_SIGNED_ = -1,
+  BELTRAMI_TYPE_INT = 0,   /* beltrami_set_int */
+  BELTRAMI_TYPE_FLOAT = 1, /* beltrami_set_float */
+  BELTRAMI_TYPE_CHOICE = 2 /* beltrami_set_int with one of the named values */
+};
+
+typedef struct beltrami_option_info {
+  uint32_t struct_size;
+  int32_t key;      /* BELTRAMI_OPTION_ */
+  int32_t type;     /* BELTRAMI_TYPE_ */
+  int32_t reserved; /* 0 */
+  double minimum;   /* inclusive */
+  double maximum;   /* inclusive */
+  double default_value;
+  const char* name;    /* "coarse-faces": the flag of the program, static */
+  const char* summary; /* one sentence, static */
+} beltrami_option_info;
+
+/* Key of the option with this name ("coarse-faces"); -1 for NULL and unknown names. Cannot fail. */
+BELTRAMI_API int32_t beltrami_option_find(const char* name);
+
+/* Describes option `key`; keys count from 0 without gaps, so a loop that ends at the first
+ * INVALID_ARGUMENT lists them all. Errors: INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_option_describe(int32_t key, beltrami_option_info* out);
+
+/* Name of value `value` of the choice option `key` ("cm"), or NULL past its last value. Static.
+ * Cannot fail. */
+BELTRAMI_API const char* beltrami_option_choice(int32_t key, int32_t value);
+
+/* Sets an option for later runs. Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range;
+ * the old value stays), INVALID_STATE (during a run). */
+BELTRAMI_API beltrami_status beltrami_set_int(beltrami_context* context, int32_t key,
+                                              int64_t value);
+BELTRAMI_API beltrami_status beltrami_set_float(beltrami_context* context, int32_t key,
+                                                double value);
+
+/* ---- Mesh ------------------------------------------------------------------------------- */
+
+/* Element types of buffers. */
+enum {
+  BELTRAMI_SCALAR_FORCE_SIGNED_ = -1,
+  BELTRAMI_F32 = 0,
+  BELTRAMI_F64 = 1,
+  BELTRAMI_U32 = 2,
+  BELTRAMI_U64 = 3
+};
+
+/* Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
+ * The library never writes to a buffer that it takes as input. No alignment is required. */
+typedef struct beltrami_buffer {
+  const void* data;
+  uint64_t stride;
+  int32_t type;      /* BELTRAMI_F32, ... */
+  uint32_t reserved; /* 0 */
+} beltrami_buffer;
+
+/* A triangle mesh in the caller's memory. Its faces must form one consistently oriented disk: one
+ * component, edge- and vertex-manifold, one boundary loop, no handles. Vertices that no face uses
+ * are allowed: they get the UV (0, 0) and are counted in beltrami_result.unreferenced_vertices. */
+typedef struct beltrami_mesh {
+  uint32_t struct_size;
+  uint32_t flags;            /* 0 */
+  uint64_t vertex_count;     /* at most 2^31 - 1 */
+  uint64_t face_count;       /* at most 700,000,000 */
+  beltrami_buffer positions; /* vertex_count items of 3: F32 or F64, in any unit of length */
+  beltrami_buffer indices;   /* face_count items of 3: U32 or U64, counter-clockwise */
+} beltrami_mesh;
+
+/* Copies and validates a mesh; the caller's memory is free to go afterwards. A valid mesh drops the
+ * results of the old one; an invalid mesh leaves the context with its old mesh and results. A
+ * request to cancel that is pending is dropped. Errors: INVALID_ARGUMENT, INVALID_STATE,
+ * OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element. */
+BELTRAMI_API beltrami_status beltrami_set_mesh(beltrami_context* context,
+                                               const beltrami_mesh* mesh);
+
+/* ---- Run -------------------------------------------------------------------------------- */
+
+/* Called on the thread that called beltrami_run, only. `fraction` is in [0, 1] and never
+ * decreases; `stage` is the name of the stage under way. Return non-zero to cancel. */
+typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* stage);
+
+/* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
+ * Returns OK, NOT_CONVERGED or NOT_INJECTIVE with a result; errors: INVALID_STATE (no mesh),
+ * CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
+BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
+                                          void* user);
+
+/* Asks the run under way (or, where none is, the next one) to end with CANCELLED. From any thread,
+ * and from a signal handler. It takes effect at the next solver step: at the latest after one
+ * ordering or factorization. NULL is ignored. Cannot fail. */
+BELTRAMI_API void beltrami_cancel(beltrami_context* context);
+
+/* ---- Results ---------------------------------------------------------------------------- */
+
+/* The exact verdict on a map. Signs of areas and crossings are decided by exact predicates on the
+ * very floats given. Injective: every face positive, no boundary crossing, on one oriented disk. */
+typedef struct beltrami_certificate {
+  uint32_t struct_size;
+  int32_t injective; /* 1 or 0 */
+  uint64_t positive; /* faces of positive, negative, zero area in UV */
+  uint64_t negative;
+  uint64_t degenerate;
+  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not */
+  uint64_t first_bad_face;     /* first face that is not positive, or BELTRAMI_NO_ELEMENT */
+  uint64_t first_crossing[2];  /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
+  uint64_t error_element;      /* the element of an error status, or BELTRAMI_NO_ELEMENT */
+  int32_t error_element_kind;  /* BELTRAMI_ELEMENT_ */
+  int32_t reserved;            /* 0 */
+} beltrami_certificate;
+
+/* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given.
+ * s1 >= s2 are the singular values of the map of a face. Faces without 3D area, or whose map has no
+ * finite energy (flipped or degenerate), are left out and counted. */
+typedef struct beltrami_energy {
+  uint32_t struct_size;
+  uint32_t reserved;          /* 0 */
+  double symmetric_dirichlet; /* 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2 */
+  double symmetric_arap;      /* (s1 - 1)^2 + (1/s2 - 1)^2, >= 0 */
+  double max;                 /* greatest symmetric Dirichlet energy of a face */
+  uint64_t worst_face;        /* where, or BELTRAMI_NO_ELEMENT */
+  uint64_t left_out;          /* faces left out */
+} beltrami_energy;
+
+typedef struct beltrami_result {
+  uint32_t struct_size;
+  beltrami_status status; /* what beltrami_run returned */
+  uint64_t vertices;      /* of the input */
+  uint64_t faces;
+  uint64_t boundary_edges;
+  uint64_t unreferenced_vertices; /* vertices that no face uses: UV (0, 0) */
+  uint64_t coarse_faces;          /* of the mesh that CM ran on */
+  uint64_t flips_before_repair;   /* faces that were not positive before repair */
+  double area;                    /* of the input, in its unit squared */
+  double seconds;                 /* wall time of the run */
+  double cpu_seconds;             /* of the whole process during the run */
+  uint64_t peak_memory_bytes;     /* of the whole process so far */
+} beltrami_result;
+
+typedef struct beltrami_stage {
+  uint32_t struct_size;
+  int32_t iterations; /* 0 where a stage does not iterate */
+  double seconds;     /* wall time */
+  double cpu_seconds; /* of the whole process */
+  const char* name;   /* static: "simplify", "coarse", "prolong", "flatten", "repair", ... */
+} beltrami_stage;
+
+/* The functions below that return a status fail with INVALID_STATE before the first run with a
+ * result, and with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride. */
+
+/* Counts, area and cost of the last run with a result. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, beltrami_result* out);
+
+/* Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32
+ * or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
+ * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest: check what you
+ * ship with beltrami_check_injective. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
+                                              uint64_t stride);
+
+/* The certificate of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_certificate(beltrami_context* context,
+                                                      beltrami_certificate* out);
+
+/* Energies of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_energy(beltrami_context* context, beltrami_energy* out);
+
+/* Symmetric Dirichlet energy of every face, in input order: face_count doubles, `stride` bytes
+ * apart (0: packed). Infinite where a face is flipped, degenerate, or without 3D area. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_face_energies(beltrami_context* context, void* out,
+                                                        uint64_t stride);
+
+/* Number of stages of the last run; 0 before it. Cannot fail. */
+BELTRAMI_API int32_t beltrami_stage_count(const beltrami_context* context);
+
+/* Statistics of stage `index`, in the order in which they ran. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT (also for an index that is none). */
+BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index,
+                                                beltrami_stage* out);
+
+/* ---- Checks without a context ----------------------------------------------------------- */
+/* They judge the caller's own arrays, keep nothing and need no run. `uvs`: vertex_count items of 2,
+ * F32 or F64, judged as stored. `mesh->positions` may be empty (data NULL) except for
+ * beltrami_measure. Each returns OK, or NOT_INJECTIVE where it found something, or an error with
+ * out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
+
+/* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
+ * that, so out->injective stays 0. Errors: as above, of the mesh INDEX_OUT_OF_RANGE. */
+BELTRAMI_API beltrami_status beltrami_check_triangles(const beltrami_mesh* mesh,
+                                                      const beltrami_buffer* uvs,
+                                                      beltrami_certificate* out);
+
+/* Simplicity of the boundary loop. Verifies that the mesh is one oriented disk. Proves no more than
+ * that, so out->injective stays 0. Errors: as above. */
+BELTRAMI_API beltrami_status beltrami_check_boundary(const beltrami_mesh* mesh,
+                                                     const beltrami_buffer* uvs,
+                                                     beltrami_certificate* out);
+
+/* Both: OK proves that the piecewise linear map is injective. Errors: as above. */
+BELTRAMI_API beltrami_status beltrami_check_injective(const beltrami_mesh* mesh,
+                                                      const beltrami_buffer* uvs,
+                                                      beltrami_certificate* out);
+
+/* Distortion of any UVs, in the positions' unit of length. `face_energies`: NULL or face_count
+ * doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT,
+ * INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                              beltrami_energy* out, double* face_energies);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* BELTRAMI_BELTRAMI_H */

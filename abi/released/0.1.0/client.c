@@ -1,0 +1,200 @@
+/* A program of its time: compiled against the header beside it and run with today's library. It
+ * calls every function, and knows when the library writes behind a struct that it hands over. */
+#include <beltrami/beltrami.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 9, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), CANARY = 0xa5 };
+
+/* A struct with room behind it that nobody may write to. */
+#define GUARDED(type)          \
+  struct {                     \
+    type value;                \
+    unsigned char canary[256]; \
+  }
+#define ARM(guarded) \
+  (memset(&(guarded), CANARY, sizeof(guarded)), (guarded).value.struct_size = sizeof(guarded).value)
+#define ALIVE(guarded) \
+  REQUIRE(untouched((guarded).canary) && (guarded).value.struct_size == sizeof(guarded).value)
+#define REQUIRE(condition)                                       \
+  do {                                                           \
+    if (!(condition)) {                                          \
+      printf("client.c:%d: not so: %s\n", __LINE__, #condition); \
+      exit(EXIT_FAILURE);                                        \
+    }                                                            \
+  } while (0)
+
+static float positions[VERTICES][3];
+static uint32_t indices[FACES][3];
+static double uvs[VERTICES + 1][2];
+static double energies[FACES + 1];
+
+static int untouched(const unsigned char* canary) {
+  int i;
+  for (i = 0; i < 256; ++i) {
+    if (canary[i] != CANARY) return 0;
+  }
+  return 1;
+}
+
+static int32_t count_calls(void* user, double fraction, const char* stage) {
+  REQUIRE(fraction >= 0 && fraction <= 1 && stage[0] != '\0');
+  ++*(int*)user;
+  return 0;
+}
+
+static void make_sheet(void) {
+  uint32_t i, j;
+  for (j = 0; j < SIDE; ++j) {
+    for (i = 0; i < SIDE; ++i) {
+      float* p = positions[j * SIDE + i];
+      p[0] = (float)i;
+      p[1] = (float)j;
+      p[2] = (float)sin(0.7 * i + 0.3 * j);
+    }
+  }
+  for (j = 0; j + 1 < SIDE; ++j) {
+    for (i = 0; i + 1 < SIDE; ++i) {
+      const uint32_t a = j * SIDE + i;
+      uint32_t(*face)[3] = &indices[2 * (j * (SIDE - 1) + i)];
+      face[0][0] = a, face[0][1] = a + 1, face[0][2] = a + 1 + SIDE;
+      face[1][0] = a, face[1][1] = a + 1 + SIDE, face[1][2] = a + SIDE;
+    }
+  }
+}
+
+static beltrami_mesh describe_sheet(void) {
+  beltrami_mesh mesh;
+  memset(&mesh, 0, sizeof mesh);
+  mesh.struct_size = sizeof mesh;
+  mesh.vertex_count = VERTICES;
+  mesh.face_count = FACES;
+  mesh.positions.data = positions;
+  mesh.positions.type = BELTRAMI_F32;
+  mesh.indices.data = indices;
+  mesh.indices.type = BELTRAMI_U32;
+  return mesh;
+}
+
+static void ask_the_library(void) {
+  REQUIRE(beltrami_version() >= 1000);
+  REQUIRE(strstr(beltrami_build_info(), "beltrami") != NULL);
+  REQUIRE(beltrami_has("no such feature") == 0);
+  REQUIRE(strcmp(beltrami_status_name(BELTRAMI_E_GENUS), "BELTRAMI_E_GENUS") == 0);
+  REQUIRE(beltrami_status_advice(BELTRAMI_E_GENUS)[0] != '\0');
+}
+
+static void ask_the_options(beltrami_context* context) {
+  GUARDED(beltrami_option_info) info;
+  const int32_t key = beltrami_option_find("coarse-faces");
+  REQUIRE(key == BELTRAMI_OPTION_COARSE_FACES);
+  ARM(info);
+  REQUIRE(beltrami_option_describe(key, &info.value) == BELTRAMI_OK);
+  ALIVE(info);
+  REQUIRE(info.value.key == key && info.value.type == BELTRAMI_TYPE_INT);
+  REQUIRE(info.value.minimum == 0 && info.value.default_value == 0);
+  REQUIRE(strcmp(info.value.name, "coarse-faces") == 0 && info.value.summary[0] != '\0');
+  REQUIRE(strcmp(beltrami_option_choice(BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_CM), "cm") == 0);
+  REQUIRE(beltrami_set_int(context, key, 64) == BELTRAMI_OK);
+  REQUIRE(beltrami_set_float(context, BELTRAMI_OPTION_TOLERANCE, 1e-3) == BELTRAMI_OK);
+}
+
+static void fail_with_an_element(beltrami_context* context) {
+  beltrami_mesh mesh = describe_sheet();
+  indices[5][0] = VERTICES;
+  REQUIRE(beltrami_set_mesh(context, &mesh) == BELTRAMI_E_INDEX_OUT_OF_RANGE);
+  REQUIRE(beltrami_error_message(context)[0] != '\0');
+  REQUIRE(beltrami_error_element(context) == 5);
+  REQUIRE(beltrami_error_element_kind(context) == BELTRAMI_ELEMENT_FACE);
+  make_sheet();
+}
+
+static void flatten(beltrami_context* context) {
+  const beltrami_mesh mesh = describe_sheet();
+  int calls = 0;
+  REQUIRE(beltrami_set_mesh(context, &mesh) == BELTRAMI_OK);
+  beltrami_cancel(context);
+  REQUIRE(beltrami_run(context, NULL, NULL) == BELTRAMI_E_CANCELLED);
+  REQUIRE(beltrami_run(context, count_calls, &calls) == BELTRAMI_OK);
+  REQUIRE(calls > 0);
+}
+
+static void read_results(beltrami_context* context) {
+  GUARDED(beltrami_result) result;
+  GUARDED(beltrami_certificate) certificate;
+  GUARDED(beltrami_energy) energy;
+  GUARDED(beltrami_stage) stage;
+  ARM(result);
+  ARM(certificate);
+  ARM(energy);
+  ARM(stage);
+  REQUIRE(beltrami_get_result(context, &result.value) == BELTRAMI_OK);
+  ALIVE(result);
+  REQUIRE(result.value.status == BELTRAMI_OK && result.value.vertices == VERTICES);
+  REQUIRE(result.value.faces == FACES && result.value.boundary_edges == 4 * (SIDE - 1));
+  REQUIRE(result.value.unreferenced_vertices == 0 && result.value.area > 64);
+  REQUIRE(result.value.coarse_faces > 0 && result.value.seconds >= 0);
+  REQUIRE(beltrami_get_certificate(context, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1 && certificate.value.positive == FACES);
+  REQUIRE(certificate.value.first_bad_face == BELTRAMI_NO_ELEMENT);
+  REQUIRE(beltrami_get_energy(context, &energy.value) == BELTRAMI_OK);
+  ALIVE(energy);
+  REQUIRE(energy.value.symmetric_dirichlet >= 2 && energy.value.worst_face < FACES);
+  REQUIRE(energy.value.max >= energy.value.symmetric_dirichlet && energy.value.left_out == 0);
+  REQUIRE(beltrami_stage_count(context) > 0);
+  REQUIRE(beltrami_get_stage(context, 0, &stage.value) == BELTRAMI_OK);
+  ALIVE(stage);
+  REQUIRE(stage.value.name[0] != '\0' && stage.value.seconds >= 0);
+
+  uvs[VERTICES][0] = energies[FACES] = -7;
+  REQUIRE(beltrami_get_uvs(context, uvs, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_get_face_energies(context, energies, 0) == BELTRAMI_OK);
+  REQUIRE(uvs[VERTICES][0] == -7 && energies[FACES] == -7);
+  REQUIRE(energies[energy.value.worst_face] == energy.value.max);
+}
+
+static void check_without_a_context(void) {
+  const beltrami_mesh mesh = describe_sheet();
+  GUARDED(beltrami_certificate) certificate;
+  GUARDED(beltrami_energy) energy;
+  beltrami_buffer buffer;
+  memset(&buffer, 0, sizeof buffer);
+  buffer.data = uvs;
+  buffer.type = BELTRAMI_F64;
+  ARM(certificate);
+  REQUIRE(beltrami_check_triangles(&mesh, &buffer, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.positive == FACES && certificate.value.injective == 0);
+  ARM(certificate);
+  REQUIRE(beltrami_check_boundary(&mesh, &buffer, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.boundary_crossings == 0);
+  ARM(certificate);
+  REQUIRE(beltrami_check_injective(&mesh, &buffer, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1);
+  REQUIRE(certificate.value.error_element == BELTRAMI_NO_ELEMENT);
+  ARM(energy);
+  energies[FACES] = -7;
+  REQUIRE(beltrami_measure(&mesh, &buffer, &energy.value, energies) == BELTRAMI_OK);
+  ALIVE(energy);
+  REQUIRE(energy.value.symmetric_dirichlet >= 2 && energies[FACES] == -7);
+}
+
+int main(void) {
+  beltrami_context* context = NULL;
+  ask_the_library();
+  make_sheet();
+  REQUIRE(beltrami_create_(BELTRAMI_ABI + 1, &context) == BELTRAMI_E_ABI_MISMATCH);
+  REQUIRE(beltrami_create(&context) == BELTRAMI_OK && context != NULL);
+  ask_the_options(context);
+  fail_with_an_element(context);
+  flatten(context);
+  read_results(context);
+  beltrami_destroy(context);
+  check_without_a_context();
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,46 @@
+# The static library. A plain archive hands the final link every template instance of Eigen, CGAL
+# and the C++ library, as weak symbols: a host that compiles the same templates with other flags
+# (-ffast-math) would lend us its versions, or get ours. So where GNU ld is at hand all objects are
+# linked into one, in which only the names of abi/symbols.txt are global.
+
+# beltrami_add_static_library(TARGET OBJECT_LIBRARY...)
+function(beltrami_add_static_library target)
+  foreach(library IN LISTS ARGN)
+    list(APPEND objects $<TARGET_OBJECTS:${library}>)
+  endforeach()
+  set(one_object ${CMAKE_CURRENT_BINARY_DIR}/${target}${CMAKE_CXX_OUTPUT_EXTENSION})
+  set(symbols ${PROJECT_SOURCE_DIR}/abi/symbols.txt)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_OBJCOPY
+     AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+    # Groups are dissolved, or the final link would still merge them by their names.
+    add_custom_command(OUTPUT ${one_object}
+      COMMAND ${CMAKE_CXX_COMPILER} -r -nostdlib -Wl,--force-group-allocation -o ${one_object}
+              ${objects}
+      COMMAND ${CMAKE_OBJCOPY} --keep-global-symbols=${symbols} --strip-debug ${one_object}
+      DEPENDS ${objects} ${symbols} COMMAND_EXPAND_LISTS VERBATIM
+      COMMENT "Linking the objects of the static library into one")
+    add_library(${target} STATIC ${one_object})
+    set_source_files_properties(${one_object} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+    set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
+  else()
+    add_library(${target} STATIC ${objects})
+  endif()
+  # Its file has the shared library's name where the suffixes differ.
+  if(NOT WIN32 OR NOT BUILD_SHARED_LIBS)
+    set_target_properties(${target} PROPERTIES OUTPUT_NAME beltrami)
+  endif()
+  # What is left open in the archive, by name; the package configuration finds GMP where it lies.
+  find_library(BELTRAMI_GMP_LIBRARY gmp REQUIRED)
+  mark_as_advanced(BELTRAMI_GMP_LIBRARY)
+  target_link_libraries(${target} INTERFACE Threads::Threads
+    $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
+  if(BELTRAMI_SOLVER STREQUAL "cholmod")
+    target_link_libraries(${target} INTERFACE
+      $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)
+  endif()
+  # For programs in C, whose linker does not think of them.
+  if(UNIX)
+    target_link_libraries(${target} INTERFACE
+      $<$<NOT:$<LINK_LANGUAGE:CXX>>:${BELTRAMI_CXX_RUNTIME}> m)
+  endif()
+endfunction()
