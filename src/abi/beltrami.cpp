@@ -75,7 +75,25 @@ beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
   result.seconds = flattening.seconds;
   result.cpu_seconds = flattening.cpu_seconds;
   result.peak_memory_bytes = flattening.peak_memory_bytes;
+  result.kernel_fixes = static_cast<std::uint64_t>(flattening.kernel_fixes);
+  result.patch_fixes = static_cast<std::uint64_t>(flattening.patch_fixes);
+  result.global_fixes = static_cast<std::uint64_t>(flattening.global_fixes);
+  result.cleaned_patches = static_cast<std::uint64_t>(flattening.cleaned_patches);
+  result.restarts = static_cast<std::uint64_t>(flattening.restarts);
+  result.float32_moves = flattening.single_moves.size();
+  result.delaunay_flips = static_cast<std::uint64_t>(flattening.delaunay_flips);
+  result.delaunay_refused = static_cast<std::uint64_t>(flattening.delaunay_refused);
+  result.degenerate_faces = mesh.degenerate_faces;
+  result.first_degenerate_face = element_or_none(mesh.first_degenerate_face);
   return result;
+}
+
+beltrami_certificate describe(const LoadedMesh& mesh, const Certificate& certificate) {
+  beltrami_certificate report = empty_certificate();
+  describe_orientations(report, certificate.orientations);
+  describe_crossings(report, certificate.crossings, mesh.input.original);
+  report.injective = certificate.injective() ? 1 : 0;
+  return report;
 }
 
 void write_uvs(const LoadedMesh& mesh, const std::vector<Vec2>& uvs, Writer& writer) {
@@ -221,6 +239,11 @@ beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t t
     const beltrami::Flattening& results = self.results();
     beltrami::Writer writer(out, type, stride, self.mesh->vertex_count, 2);
     beltrami::write_uvs(*self.mesh, results.uvs, writer);
+    if (type == BELTRAMI_F32) {
+      for (const auto& [vertex, place] : results.single_moves) {
+        writer.write(static_cast<std::size_t>(self.mesh->input.original[vertex]), place.data());
+      }
+    }
     return BELTRAMI_OK;
   });
 }
@@ -228,12 +251,27 @@ beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t t
 beltrami_status beltrami_get_certificate(beltrami_context* context, beltrami_certificate* out) {
   return enter(context, [&](beltrami_context& self) {
     beltrami::require_sized(out, "out");
-    const beltrami::Certificate& certificate = self.results().certificate;
-    beltrami_certificate report = beltrami::empty_certificate();
-    beltrami::describe_orientations(report, certificate.orientations);
-    beltrami::describe_crossings(report, certificate.crossings, self.mesh->input.original);
-    report.injective = certificate.injective() ? 1 : 0;
-    beltrami::write_sized(out, report);
+    beltrami::write_sized(out, beltrami::describe(*self.mesh, self.results().certificate));
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_float32_certificate(beltrami_context* context,
+                                                 beltrami_certificate* out) {
+  return enter(context, [&](beltrami_context& self) {
+    beltrami::require_sized(out, "out");
+    beltrami::write_sized(out, beltrami::describe(*self.mesh, self.results().single_certificate));
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_get_faces(beltrami_context* context, void* out, int32_t type,
+                                   uint64_t stride) {
+  return enter(context, [&](beltrami_context& self) {
+    const beltrami::Flattening& results = self.results();
+    const beltrami::InputDisk& input = self.mesh->input;
+    const auto& faces = results.faces.empty() ? input.disk.faces : results.faces;
+    beltrami::write_faces(faces, input.original, out, type, stride);
     return BELTRAMI_OK;
   });
 }

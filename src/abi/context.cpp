@@ -6,6 +6,7 @@
 #include "abi/buffers.h"
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "mesh/rest_shape.h"
 
 static_assert(std::atomic<bool>::is_always_lock_free,
               "beltrami_cancel may be called from a signal handler");
@@ -69,6 +70,11 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs) {
   DiskMesh& disk = loaded.input.disk;
   loaded.frame = normalise(disk.positions, disk.faces);
   loaded.area = surface_area(disk) / loaded.frame.scale / loaded.frame.scale;
+  for (Index f = 0; f < disk.face_count(); ++f) {
+    const Triangle& t = disk.faces[f];
+    if (!is_degenerate(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]])) continue;
+    if (loaded.degenerate_faces++ == 0) loaded.first_degenerate_face = f;
+  }
   return loaded;
 }
 

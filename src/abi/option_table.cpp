@@ -11,6 +11,7 @@ namespace {
 constexpr const char* kMethods[] = {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"};
 constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"};
 constexpr const char* kInjectivities[] = {"auto", "global", "local"};
+constexpr const char* kSwitch[] = {"off", "on"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
 template <auto Member>
@@ -123,6 +124,19 @@ const OptionEntry kOptions[] = {
      {},
      get<&Options::time_limit>,
      set<&Options::time_limit>},
+    {BELTRAMI_OPTION_FLOAT32,
+     BELTRAMI_TYPE_INT,
+     "float32",
+     "1 delivers UVs that single precision holds exactly, rounded so that the map stays injective.",
+     0,
+     1,
+     {},
+     get<&Options::float32>,
+     set<&Options::float32>},
+    {BELTRAMI_OPTION_DELAUNAY, BELTRAMI_TYPE_CHOICE, "delaunay",
+     "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the "
+     "fine mesh is flattened: what is injective then are its own triangles on the same vertices.",
+     0, std::size(kSwitch) - 1, kSwitch, get<&Options::delaunay>, set<&Options::delaunay>},
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.

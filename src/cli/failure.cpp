@@ -8,6 +8,7 @@ int exit_code_of(beltrami_status status) {
     case BELTRAMI_NOT_CONVERGED:
       return kExitInjective;
     case BELTRAMI_NOT_INJECTIVE:
+    case BELTRAMI_NOT_INJECTIVE_FLOAT32:
       return kExitNotInjective;
     case BELTRAMI_E_CANCELLED:
       return kExitCancelled;

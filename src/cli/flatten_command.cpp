@@ -91,7 +91,10 @@ class Flattening {
     report_.area = result.area;
     report_.coarse_faces = result.coarse_faces;
     report_.flips_before_repair = result.flips_before_repair;
+    report_.result = result;
+    require(beltrami_get_faces(context, file_.faces.data(), BELTRAMI_U32, 0));
 
+    file_.single_uvs = options_.integer(BELTRAMI_OPTION_FLOAT32) != 0;
     file_.uvs.resize(2 * file_.vertex_count());
     require(beltrami_get_uvs(context, file_.uvs.data(), BELTRAMI_F64, 0));
     // What is written reads back to these very doubles, so this is the verdict on the file.
@@ -99,6 +102,10 @@ class Flattening {
     certificate.struct_size = sizeof certificate;
     require(beltrami_get_certificate(context, &certificate));
     report_.certificate = certificate;
+    beltrami_certificate single{};
+    single.struct_size = sizeof single;
+    require(beltrami_get_float32_certificate(context, &single));
+    report_.float32_possible = single.injective != 0;
     beltrami_energy energy{};
     energy.struct_size = sizeof energy;
     require(beltrami_get_energy(context, &energy));

@@ -18,6 +18,7 @@ struct MeshFile {
   std::vector<double> positions;      ///< x y z per vertex, in file order
   std::vector<std::uint32_t> faces;   ///< 3 vertices per face, in file order, each < vertex_count
   std::vector<double> uvs;            ///< u v per vertex; empty where not asked for
+  bool single_uvs = false;            ///< single precision holds them: PLY stores them so
   std::uint64_t welded_vertices = 0;  ///< STL: corners that fell together with an earlier one
 
   std::uint64_t vertex_count() const { return positions.size() / 3; }

@@ -49,13 +49,17 @@ Json element_json(const Report& report) {
 }
 
 Json input_json(const Report& report) {
-  return {{"path", report.input_path},
-          {"vertices", optional(report.vertices)},
-          {"faces", optional(report.faces)},
-          {"boundary_edges", optional(report.boundary_edges)},
-          {"area", report.area ? number(*report.area) : Json(nullptr)},
-          {"unreferenced_vertices", optional(report.unreferenced_vertices)},
-          {"welded_vertices", optional(report.welded_vertices)}};
+  return {
+      {"path", report.input_path},
+      {"vertices", optional(report.vertices)},
+      {"faces", optional(report.faces)},
+      {"boundary_edges", optional(report.boundary_edges)},
+      {"area", report.area ? number(*report.area) : Json(nullptr)},
+      {"unreferenced_vertices", optional(report.unreferenced_vertices)},
+      {"degenerate_faces", report.result ? Json(report.result->degenerate_faces) : Json(nullptr)},
+      {"first_degenerate_face",
+       report.result ? element(report.result->first_degenerate_face) : Json(nullptr)},
+      {"welded_vertices", optional(report.welded_vertices)}};
 }
 
 Json injective_json(const Report& report) {
@@ -78,6 +82,19 @@ Json energy_json(const Report& report) {
           {"max", number(found.max)},
           {"worst_face", element(found.worst_face)},
           {"left_out", found.left_out}};
+}
+
+Json repair_json(const Report& report) {
+  if (!report.result) return nullptr;
+  const beltrami_result& run = *report.result;
+  return {{"kernel_fixes", run.kernel_fixes},
+          {"patch_fixes", run.patch_fixes},
+          {"global_fixes", run.global_fixes},
+          {"cleaned_patches", run.cleaned_patches},
+          {"restarts", run.restarts},
+          {"float32_moves", run.float32_moves},
+          {"delaunay_flips", run.delaunay_flips},
+          {"delaunay_refused", run.delaunay_refused}};
 }
 
 Json stages_json(const Report& report) {
@@ -111,9 +128,10 @@ void append_verdict(const Report& report, std::string& text) {
   const beltrami_certificate& found = *report.certificate;
   if (found.injective) {
     append(text, "injective  yes%s\n",
-           !report.float32_injective ? ""
-           : *report.float32_injective
-               ? " (also when rounded to float32)"
+           !report.float32_injective   ? ""
+           : *report.float32_injective ? " (also when rounded to float32)"
+           : report.float32_possible.value_or(false)
+               ? " (NOT when rounded to float32: flatten with --float32 for that)"
                : " (NOT when rounded to float32: keep the UVs in double precision)");
     return;
   }
@@ -149,6 +167,7 @@ std::string to_json(const Report& report) {
                      {"energy", energy_json(report)},
                      {"coarse_faces", optional(report.coarse_faces)},
                      {"flips_before_repair", optional(report.flips_before_repair)},
+                     {"repair", repair_json(report)},
                      {"stages", stages_json(report)},
                      {"seconds", number(report.seconds)},
                      {"peak_memory_bytes", peak_memory_bytes()},
@@ -170,6 +189,18 @@ std::string to_summary(const Report& report, const std::string& written) {
            report.energy->symmetric_dirichlet, report.energy->max);
   }
   if (report.certificate) append_verdict(report, text);
+  if (report.status == "BELTRAMI_NOT_INJECTIVE_FLOAT32") {
+    append(text, "note       injective in double precision only: flatten without --float32\n");
+  }
+  if (report.result && report.result->degenerate_faces > 0) {
+    append(text, "note       %llu faces have no area, the first is %llu (counted from 0)\n",
+           static_cast<unsigned long long>(report.result->degenerate_faces),
+           static_cast<unsigned long long>(report.result->first_degenerate_face));
+  }
+  if (report.result && report.result->delaunay_refused > 0) {
+    append(text, "note       %llu edges are not Delaunay: flipping them would repeat an edge\n",
+           static_cast<unsigned long long>(report.result->delaunay_refused));
+  }
   if (report.status == "BELTRAMI_NOT_CONVERGED") {
     append(text, "note       stopped at the iteration limit before it converged\n");
   }

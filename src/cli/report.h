@@ -40,9 +40,11 @@ struct Report {
 
   nlohmann::ordered_json options = nlohmann::ordered_json::object();
   std::optional<beltrami_certificate> certificate;
-  std::optional<bool> float32_injective;
+  std::optional<bool> float32_injective;  ///< of the UVs as written, rounded to nearest
+  std::optional<bool> float32_possible;   ///< with the option float32
   std::optional<beltrami_energy> energy;
   std::optional<std::uint64_t> coarse_faces, flips_before_repair;
+  std::optional<beltrami_result> result;
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
   double seconds = 0;

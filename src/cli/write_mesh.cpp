@@ -85,14 +85,24 @@ void write_obj(const MeshFile& mesh, Writer& out) {
 void write_ply(const MeshFile& mesh, Writer& out) {
   out.text("ply\nformat binary_little_endian 1.0\ncomment UVs by beltrami\nelement vertex ");
   out.number(mesh.vertex_count());
-  out.text(
-      "\nproperty double x\nproperty double y\nproperty double z\nproperty double s\n"
-      "property double t\nelement face ");
+  out.text("\nproperty double x\nproperty double y\nproperty double z\nproperty ");
+  const std::string_view type = mesh.single_uvs ? "float" : "double";
+  out.text(type);
+  out.text(" s\nproperty ");
+  out.text(type);
+  out.text(" t\nelement face ");
   out.number(mesh.face_count());
   out.text("\nproperty list uchar int vertex_indices\nend_header\n");
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) out.binary(mesh.positions[3 * i + k]);
-    for (std::size_t k = 0; k < 2; ++k) out.binary(mesh.uvs[2 * i + k]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double w = mesh.uvs[2 * i + k];
+      if (mesh.single_uvs) {
+        out.binary(static_cast<float>(w));
+      } else {
+        out.binary(w);
+      }
+    }
   }
   for (std::size_t i = 0; i < mesh.face_count(); ++i) {
     out.binary(std::uint8_t{3});

@@ -173,8 +173,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     history.add(length * flat, next - gradient);
     gradient.swap(next);
     result.blocked = length < kBlockedStep;
-    result.converged =
-        length >= kFullStep && before - after <= options.tolerance * comparable_energy<Density>(before);
+    result.converged = length >= kFullStep &&
+                       before - after <= options.tolerance * comparable_energy<Density>(before);
     if (result.blocked || result.converged) break;
   }
   return result;

@@ -22,8 +22,8 @@ namespace beltrami {
 inline constexpr double kLeastEnergy = 0.01;
 
 /// What a decrease of the energy is compared with to tell convergence: the energy, shifted so that
-/// an isometry counts 2 as it does for symmetric Dirichlet. All energies then end equally near their
-/// minimum.
+/// an isometry counts 2 as it does for symmetric Dirichlet. All energies then end equally near
+/// their minimum.
 template <class Density>
 constexpr double comparable_energy(double energy) {
   return energy + 2 - Density::kMinimum;

@@ -44,6 +44,12 @@ LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, c
   return {{0.5 * (ux + vy), 0.5 * (vx - uy)}, {0.5 * (ux - vy), 0.5 * (vx + uy)}};
 }
 
+bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 e1 = b - a, e2 = c - a;
+  const double longest_sq = std::max({e1.squaredNorm(), e2.squaredNorm(), (c - b).squaredNorm()});
+  return !(e1.cross(e2).norm() > kDegenerateHeight * longest_sq);
+}
+
 std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& faces, int threads) {
   const auto edge_sum = [&](std::int64_t begin, std::int64_t end) {
@@ -66,11 +72,9 @@ std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
       const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
       const double x1 = e1.norm();
       const double double_area = e1.cross(e2).norm();
-      const double longest_sq =
-          std::max({e1.squaredNorm(), e2.squaredNorm(), (p[2] - p[1]).squaredNorm()});
-      rest[f] = double_area > kDegenerateHeight * longest_sq
-                    ? RestTriangle{x1, e1.dot(e2) / x1, double_area / x1}
-                    : mollified(p, mean_edge);
+      rest[f] = is_degenerate(p[0], p[1], p[2])
+                    ? mollified(p, mean_edge)
+                    : RestTriangle{x1, e1.dot(e2) / x1, double_area / x1};
     }
   });
   return rest;

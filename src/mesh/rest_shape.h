@@ -30,10 +30,13 @@ struct LinearMap {
 /// |fz| +- |fzbar|.
 LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2);
 
-/// Lays every face flat. A face whose height is below 1e-9 of its longest edge (zero area,
-/// duplicate positions) is valid topology without geometry: it is given a height of 1e-3 of its
-/// longest edge, or of the mean edge where it has no extent at all, so that every energy stays
-/// finite.
+/// Whether a face has no shape in space: its height is below 1e-9 of its longest edge (zero area,
+/// duplicate positions).
+bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Lays every face flat. A degenerate face is valid topology without geometry: it is given a height
+/// of 1e-3 of its longest edge, or of the mean edge where it has no extent at all, so that every
+/// energy stays finite.
 std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& faces, int threads);
 

@@ -1,9 +1,11 @@
 // From the coarse map to the fine one: prolongation and the ways to flatten.
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "flatten/boundary_first.h"
 #include "flatten/dirichlet.h"
+#include "flatten/intrinsic_delaunay.h"
 #include "flatten/metric.h"
 #include "flatten/polish.h"
 #include "flatten/reduced.h"
@@ -28,35 +30,59 @@ constexpr double kReachGrowth = 3;
 }  // namespace
 
 Index Run::coarse_target() const {
-  const double share = kCoarseShare * disk_.face_count();
+  const double share = kCoarseShare * disk_->face_count();
   const auto target = options_.coarse_faces > 0
                           ? options_.coarse_faces
                           : std::max(kLeastCoarseFaces, static_cast<std::int64_t>(share));
-  return static_cast<Index>(std::min<std::int64_t>(target, disk_.face_count()));
+  return static_cast<Index>(std::min<std::int64_t>({target, coarse_limit_, input_.face_count()}));
 }
 
 void Run::solve_coarse(FineProblem& fine) {
   stage("simplify", 0.12, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    fine.coarse = simplify(disk_, coarse_target(), checkpoint);
+    fine.coarse = simplify(*disk_, coarse_target(), checkpoint);
   });
   result_.coarse_faces = fine.coarse.mesh.face_count();
   fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
 }
 
+/// The metric of the fine faces: the coarse map's, or that of the surface where there is no coarse
+/// mesh. With the option delaunay the faces are those of the intrinsic Delaunay triangulation.
+void Run::measure_fine(FineProblem& fine, const Checkpoint& checkpoint) {
+  const DiskMesh& coarse = fine.coarse.mesh;
+  const auto coarse_rest = rest_triangles(coarse.positions, coarse.faces, options_.threads);
+  const auto coarse_metric = face_metrics(coarse.faces, coarse_rest, fine.coarse_uvs);
+  const auto measure = [&] {
+    fine.rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
+    fine.metric.assign(disk_->faces.size(), FaceMetric{});
+    if (coarse_metric.empty()) return;
+    fine.metric = prolong_metric(coarse, coarse_metric, *disk_, options_.threads, checkpoint);
+  };
+  measure();
+  // The metric solve brings its own weights.
+  const bool harmonic =
+      options_.method != BELTRAMI_METHOD_BELTRAMI || options_.flatten != BELTRAMI_FLATTEN_METRIC;
+  if (!harmonic && !options_.delaunay) return;
+  fine.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
+  if (!options_.delaunay) return;
+  DelaunayTriangulation delaunay =
+      intrinsic_delaunay(*disk_, std::move(fine.cotangents), checkpoint);
+  result_.delaunay_flips = delaunay.flips;
+  result_.delaunay_refused = delaunay.refused;
+  retriangulated_ = build_disk(input_.positions, std::move(delaunay.faces));
+  disk_ = &retriangulated_;
+  fine.cotangents = std::move(delaunay.cotangents);
+  measure();
+}
+
 std::vector<Vec2> Run::run_beltrami() {
-  if (coarse_target() >= disk_.face_count()) {
-    result_.coarse_faces = disk_.face_count();
-    return run_cm(disk_, "coarse", 0.9);
+  if (coarse_target() >= input_.face_count()) {
+    result_.coarse_faces = input_.face_count();
+    return run_cm(input_, "coarse", 0.9);
   }
   FineProblem fine;
   solve_coarse(fine);
-  stage("prolong", 0.37, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    const DiskMesh& mesh = fine.coarse.mesh;
-    const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
-    fine.metric = prolong_metric(mesh, face_metrics(mesh.faces, rest, fine.coarse_uvs), disk_,
-                                 options_.threads, checkpoint);
-    fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
-  });
+  stage("prolong", 0.37,
+        [&](StageStatistics&, const Checkpoint& checkpoint) { measure_fine(fine, checkpoint); });
   switch (options_.flatten) {
     case BELTRAMI_FLATTEN_DIRICHLET:
       return flatten_dirichlet(fine);
@@ -74,8 +100,8 @@ std::vector<Vec2> Run::run_beltrami() {
 /// GIF and BFF on the metric of the surface itself: the baselines.
 std::vector<Vec2> Run::run_plain() {
   FineProblem fine;
-  fine.rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
-  fine.metric.resize(disk_.faces.size());
+  stage("measure", 0.1,
+        [&](StageStatistics&, const Checkpoint& checkpoint) { measure_fine(fine, checkpoint); });
   return options_.method == BELTRAMI_METHOD_GIF ? flatten_reduced(fine, true)
                                                 : flatten_boundary_first(fine);
 }
@@ -85,21 +111,21 @@ std::vector<Vec2> Run::run_uv_prolongation() {
   solve_coarse(fine);
   std::vector<Vec2> uvs;
   stage("prolong", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    uvs = prolong_uvs(fine.coarse.mesh, fine.coarse_uvs, disk_, options_.threads, checkpoint);
+    uvs = prolong_uvs(fine.coarse.mesh, fine.coarse_uvs, *disk_, options_.threads, checkpoint);
   });
   count_flips(uvs);
   return uvs;
 }
 
 void Run::count_flips(const std::vector<Vec2>& uvs) {
-  result_.flips_before_repair = size_of(non_positive_faces(disk_.faces, uvs, options_.threads));
+  result_.flips_before_repair = size_of(non_positive_faces(disk_->faces, uvs, options_.threads));
 }
 
 std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
   std::vector<Vec2> uvs;
   stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
-    uvs = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
-    solve_harmonic(disk_, fine.cotangents(options_.threads), uvs);
+    uvs = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
+    solve_harmonic(*disk_, fine.cotangents, uvs);
   });
   mend(fine, keeps_boundary_simple(), 0.95, uvs);
   return uvs;
@@ -112,8 +138,8 @@ std::vector<Vec2> Run::flatten_reduced(const FineProblem& fine, bool scaffold) {
     reduced.scaffold = scaffold;
     reduced.threads = options_.threads;
     reduced.energy = options_.energy;
-    ReducedResult map = beltrami::flatten_reduced(
-        disk_, fine.rest, fine.cotangents(options_.threads), reduced, checkpoint);
+    ReducedResult map =
+        beltrami::flatten_reduced(*disk_, fine.rest, fine.cotangents, reduced, checkpoint);
     statistics.iterations = static_cast<int>(map.energies.size()) - 1;
     uvs = std::move(map.uvs);
   });
@@ -125,10 +151,10 @@ std::vector<Vec2> Run::flatten_reduced(const FineProblem& fine, bool scaffold) {
 std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
   std::vector<Vec2> uvs;
   stage("flatten", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    const auto lengths = metric_boundary_lengths(disk_, fine.rest, fine.metric);
-    uvs = beltrami::flatten_boundary_first(disk_, fine.rest, fine.metric, lengths, checkpoint).uvs;
+    const auto lengths = metric_boundary_lengths(*disk_, fine.rest, fine.metric);
+    uvs = beltrami::flatten_boundary_first(*disk_, fine.rest, fine.metric, lengths, checkpoint).uvs;
     // A conformal map is as good at any scale; the energies are not.
-    const double scale = best_scale(options_.energy, disk_.faces, fine.rest, uvs);
+    const double scale = best_scale(options_.energy, disk_->faces, fine.rest, uvs);
     for (Vec2& w : uvs) w *= scale;
   });
   count_flips(uvs);
@@ -139,40 +165,42 @@ std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
 /// crossings is held where the coarse map has it, further around in each round, up to the whole of
 /// it. (The coarse boundary is simple, or there is nothing to hold on to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
-  const std::vector<Vec2> carried = carry_boundary(disk_, fine.coarse, fine.coarse_uvs);
+  const std::vector<Vec2> carried = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
   const bool global =
-      keeps_boundary_simple() && count_crossings(disk_.boundary, carried).count == 0;
-  std::vector<bool> held(disk_.vertex_count(), false);
-  held[disk_.boundary.front()] = true;
+      keeps_boundary_simple() && count_crossings(disk_->boundary, carried).count == 0;
+  std::vector<bool> held(disk_->vertex_count(), false);
+  held[disk_->boundary.front()] = true;
   std::vector<Vec2> uvs;
   for (double reach = kFirstReach;; reach *= kReachGrowth) {
     uvs = solve_and_polish(fine, carried, held, global);
     if (!global) return uvs;
-    const auto crossings = find_crossings(disk_.boundary, uvs);
+    const auto crossings = find_crossings(disk_->boundary, uvs);
     if (crossings.empty()) return uvs;
     if (reach > 1) break;
     hold_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, held);
   }
-  return flatten_dirichlet(fine);
+  FineProblem harmonic = fine;
+  harmonic.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
+  return flatten_dirichlet(harmonic);
 }
 
 /// Holds the boundary vertices within `reach` times the boundary length of the given edges.
 void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                     std::vector<bool>& held) const {
-  const Index count = size_of(disk_.boundary);
+  const Index count = size_of(disk_->boundary);
   std::vector<double> along(count + 1, 0);
   for (Index i = 0; i < count; ++i) {
-    const Index a = disk_.boundary[i], b = disk_.boundary[i + 1 == count ? 0 : i + 1];
-    along[i + 1] = along[i] + (disk_.positions[b] - disk_.positions[a]).norm();
+    const Index a = disk_->boundary[i], b = disk_->boundary[i + 1 == count ? 0 : i + 1];
+    along[i + 1] = along[i] + (disk_->positions[b] - disk_->positions[a]).norm();
   }
   const double length = along[count];
   for (const auto& pair : edges) {
     for (const Index edge : pair) {
       for (Index i = 0; i < count; ++i) {
         const double apart = std::abs(along[i] - along[edge]);
-        if (std::min(apart, length - apart) <= reach * length) held[disk_.boundary[i]] = true;
+        if (std::min(apart, length - apart) <= reach * length) held[disk_->boundary[i]] = true;
       }
-      held[disk_.boundary[edge]] = held[disk_.boundary[edge + 1 == count ? 0 : edge + 1]] = true;
+      held[disk_->boundary[edge]] = held[disk_->boundary[edge + 1 == count ? 0 : edge + 1]] = true;
     }
   }
 }
@@ -182,21 +210,21 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   std::vector<Vec2> uvs = carried;
   std::unique_ptr<MetricLaplacian> laplacian;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    laplacian = std::make_unique<MetricLaplacian>(disk_, fine.rest, fine.metric, held);
+    laplacian = std::make_unique<MetricLaplacian>(*disk_, fine.rest, fine.metric, held);
     checkpoint(0.75);
-    solve_metric(disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
-    const auto flips = non_positive_faces(disk_.faces, uvs, options_.threads).size();
+    solve_metric(*disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
+    const auto flips = non_positive_faces(disk_->faces, uvs, options_.threads).size();
     if (flips <= kManyFlips) return;
     // On extreme models the free map flips far more than the harmonic one.
     std::vector<Vec2> harmonic = carried;
-    solve_harmonic(disk_, fine.cotangents(options_.threads), harmonic);
-    if (non_positive_faces(disk_.faces, harmonic, options_.threads).size() < flips) {
+    solve_harmonic(*disk_, modified_cotangents(fine.rest, fine.metric, options_.threads), harmonic);
+    if (non_positive_faces(disk_->faces, harmonic, options_.threads).size() < flips) {
       uvs.swap(harmonic);
     }
   });
   if (!mend(fine, false, 0.66, uvs)) return uvs;
   // Polishing a map that crosses itself already would be in vain.
-  if (global && count_crossings(disk_.boundary, uvs).count > 0) return uvs;
+  if (global && count_crossings(disk_->boundary, uvs).count > 0) return uvs;
 
   polish_map(fine, *laplacian, uvs);
   return uvs;
@@ -206,7 +234,7 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
 /// these are cleaned and the factor is fitted to the map as it is by then.
 void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const double area = surface_area(disk_);
+    const double area = surface_area(*disk_);
     double step =
         area / with_density(options_.energy, [](auto density) { return density.kCurvature; });
     const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
@@ -218,18 +246,18 @@ void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::v
     for (int round = 0;; ++round) {
       polish_options.max_iterations = kPolishIterations - statistics.iterations;
       const PolishResult polished =
-          polish(disk_.faces, fine.rest, precondition, uvs, polish_options, [&](double) {
+          polish(disk_->faces, fine.rest, precondition, uvs, polish_options, [&](double) {
             checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
           });
       statistics.iterations += polished.iterations();
       result_.cleaned_patches +=
-          clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
       if (!polished.blocked || round == kPolishRounds ||
           statistics.iterations >= kPolishIterations) {
         break;
       }
       checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
-      laplacian.refit(options_.energy, disk_, fine.rest, uvs, options_.threads);
+      laplacian.refit(options_.energy, *disk_, fine.rest, uvs, options_.threads);
       step = area;
     }
   });
@@ -242,7 +270,7 @@ bool Run::mend(const FineProblem& fine, bool simple_boundary, double until,
   bool positive = false;
   stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const RepairOptions options{.simple_boundary = simple_boundary, .threads = options_.threads};
-    const RepairResult repaired = repair(disk_, fine.rest, uvs, options, checkpoint);
+    const RepairResult repaired = repair(*disk_, fine.rest, uvs, options, checkpoint);
     result_.flips_before_repair = repaired.flips_before;
     result_.kernel_fixes += repaired.kernel_fixes;
     result_.patch_fixes += repaired.patch_fixes;
@@ -252,7 +280,7 @@ bool Run::mend(const FineProblem& fine, bool simple_boundary, double until,
     positive = repaired.flips_after == 0;
     if (positive) {
       result_.cleaned_patches +=
-          clean_outliers(options_.energy, disk_, fine.rest, uvs, options_.threads);
+          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
     }
   });
   return positive;

@@ -1,13 +1,17 @@
 #include "pipeline/pipeline.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
 
 #include "base/error.h"
+#include "flatten/dirichlet.h"
 #include "fullspace/newton.h"
 #include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
 #include "pipeline/run.h"
+#include "repair/outliers.h"
 #include "repair/repair.h"
 #include "repair/single_precision.h"
 
@@ -15,6 +19,12 @@ namespace beltrami {
 namespace {
 
 constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one asked for
+/// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
+constexpr std::array<Index, 2> kFallbacks = {1000, 100};
+constexpr Index kFewestFaces = 20;
+constexpr double kLeastReduction = 0.7;
+/// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
+constexpr double kHopelessEnergy = 1e3;
 
 }  // namespace
 
@@ -73,20 +83,74 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
   return done;
 }
 
-/// Tutte's embedding, then composite majorization; with a scaffold from the first step on that
-/// would make the boundary cross itself. A start that is folded in floating point is mended first;
-/// if it cannot be, it is returned as it is, and the certificate will say so.
+/// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
+/// coarser mesh; where that fails too, the embedding as it is, and the certificate will say so.
+std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                                 const Checkpoint& checkpoint) {
+  std::vector<Vec2> uvs = tutte_embedding(mesh);
+  if (repair(mesh, rest, uvs, {.threads = options_.threads}).flips_after == 0) return uvs;
+  std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
+  return other.empty() ? uvs : other;
+}
+
+/// The pipeline in small: a mesh of a tenth of the faces, or 1,000, or 100, is flattened and its
+/// metric prolonged. Empty if every size leaves faces flipped.
+std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
+                                          const std::vector<RestTriangle>& rest,
+                                          const Checkpoint& checkpoint) {
+  Index last = mesh.face_count();
+  for (const Index target : {mesh.face_count() / 10, kFallbacks[0], kFallbacks[1]}) {
+    if (target >= last || target < kFewestFaces) continue;
+    last = target;
+    checkpoint(0.05);
+    const CoarseDisk coarse = simplify(mesh, target);
+    // Simplification may get stuck far above its target.
+    if (coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) continue;
+    const auto coarse_rest =
+        rest_triangles(coarse.mesh.positions, coarse.mesh.faces, options_.threads);
+    std::vector<Vec2> map = start_map(coarse.mesh, coarse_rest, checkpoint);
+    if (!non_positive_faces(coarse.mesh.faces, map, 1).empty()) continue;
+    StageStatistics unused{"coarse"};
+    descend(coarse.mesh, coarse_rest, newton_options(coarse.mesh), map, unused,
+            [&](double) { checkpoint(0.05); });
+    const auto metric = prolong_metric(
+        coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh, options_.threads);
+    std::vector<Vec2> uvs = carry_boundary(mesh, coarse, map);
+    solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs);
+    const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
+                             .threads = options_.threads};
+    if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
+    clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
+    return uvs;
+  }
+  return {};
+}
+
+/// A start, then composite majorization; with a scaffold from the first step on that would make the
+/// boundary cross itself. Where it crawls at an enormous energy, again from a coarser mesh.
 std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until) {
   std::vector<Vec2> uvs;
   stage(name, until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
-    uvs = tutte_embedding(mesh);
+    uvs = start_map(mesh, rest, checkpoint);
     checkpoint(0.02);
-    if (repair(mesh, rest, uvs, {.threads = options_.threads}, checkpoint).flips_after > 0) return;
+    if (!non_positive_faces(mesh.faces, uvs, options_.threads).empty()) return;
     const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
     for (Vec2& w : uvs) w *= scale;
-    const NewtonResult done =
-        descend(mesh, rest, newton_options(mesh), uvs, statistics, checkpoint);
+    NewtonResult done = descend(mesh, rest, newton_options(mesh), uvs, statistics, checkpoint);
+    if (done.energies.back() > kHopelessEnergy) {
+      std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
+      if (!other.empty()) {
+        StageStatistics second{name};
+        const NewtonResult again =
+            descend(mesh, rest, newton_options(mesh), other, second, checkpoint);
+        statistics.iterations += second.iterations;
+        if (again.energies.back() < done.energies.back()) {
+          uvs.swap(other);
+          done = again;
+        }
+      }
+    }
     if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   });
   return uvs;
@@ -95,18 +159,18 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
 /// Goes on with composite majorization on the fine mesh (the paper's hybrid). What it starts from
 /// is kept if it cannot be improved; a map that is not injective is left alone.
 void Run::refine(std::vector<Vec2>& uvs) {
-  const Certificate certificate = certify(disk_.faces, disk_.boundary, uvs, options_.threads);
+  const Certificate certificate = certify(disk_->faces, disk_->boundary, uvs, options_.threads);
   if (certificate.orientations.first_bad_face != kNone) return;
   if (keeps_boundary_simple() && certificate.crossings.count > 0) return;
   stage("refine", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const auto rest = rest_triangles(disk_.positions, disk_.faces, options_.threads);
-    NewtonOptions newton = newton_options(disk_);
+    const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
+    NewtonOptions newton = newton_options(*disk_);
     newton.proxy_steps = 0;  // they pay far from the minimum
     if (options_.refine_iterations > 0) newton.max_iterations = options_.refine_iterations;
     if (options_.time_limit > 0) {
       newton.out_of_time = [&] { return wall_seconds() - started_ > options_.time_limit; };
     }
-    const NewtonResult done = descend(disk_, rest, newton, uvs, statistics, checkpoint);
+    const NewtonResult done = descend(*disk_, rest, newton, uvs, statistics, checkpoint);
     const bool limited = options_.refine_iterations > 0 || options_.time_limit > 0;
     if (!done.converged && !limited) result_.status = BELTRAMI_NOT_CONVERGED;
   });
@@ -135,10 +199,10 @@ void Run::place(const Normalisation& frame, std::vector<Vec2>& uvs) const {
 void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
   stage("certify", 1.0, [&](StageStatistics&, const Checkpoint& checkpoint) {
     place(frame, uvs);
-    result_.certificate = certify(disk_.faces, disk_.boundary, uvs, options_.threads);
+    result_.certificate = certify(disk_->faces, disk_->boundary, uvs, options_.threads);
     checkpoint(0.3);
     SinglePrecision single =
-        round_to_single(disk_, uvs, result_.certificate, options_.threads, checkpoint);
+        round_to_single(*disk_, uvs, result_.certificate, options_.threads, checkpoint);
     result_.single_certificate = single.certificate;
     if (options_.float32) {
       if (!single.certificate.injective() && result_.certificate.injective()) {
@@ -155,11 +219,11 @@ void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
     }
     checkpoint(0.8);
 
-    result_.face_energies.resize(disk_.faces.size());
+    result_.face_energies.resize(disk_->faces.size());
     // Undone for the measure, which takes UVs in the unit of the normalised positions.
     std::vector<Vec2> in_mesh_unit(uvs.size());
     for (std::size_t v = 0; v < uvs.size(); ++v) in_mesh_unit[v] = uvs[v] * frame.scale;
-    result_.distortion = measure_distortion(disk_.positions, disk_.faces, in_mesh_unit,
+    result_.distortion = measure_distortion(disk_->positions, disk_->faces, in_mesh_unit,
                                             options_.threads, result_.face_energies.data());
   });
   if (!result_.certificate.injective() && result_.status != BELTRAMI_NOT_INJECTIVE_FLOAT32) {
@@ -167,16 +231,77 @@ void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
   }
 }
 
-std::vector<Vec2> Run::run_method() {
+std::vector<Vec2> Run::run_tutte() {
   std::vector<Vec2> uvs;
+  stage("tutte", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    uvs = tutte_embedding(input_);
+    const auto rest = rest_triangles(input_.positions, input_.faces, options_.threads);
+    const RepairOptions mend{.simple_boundary = true, .threads = options_.threads};
+    result_.flips_before_repair = repair(input_, rest, uvs, mend, checkpoint).flips_before;
+  });
+  return uvs;
+}
+
+/// Faces that are not positive, and crossings where the boundary was to stay simple.
+std::int64_t Run::broken_promises(const std::vector<Vec2>& uvs) const {
+  const Certificate found = certify(disk_->faces, disk_->boundary, uvs, options_.threads);
+  const std::int64_t crossings = keeps_boundary_simple() ? found.crossings.count : 0;
+  return found.orientations.negative + found.orientations.degenerate + crossings;
+}
+
+/// The pipeline, and where its map breaks its promise again with coarser meshes (paper section
+/// 3.2), at last Tutte's embedding of the fine mesh. The best map is kept.
+std::vector<Vec2> Run::run_with_fallback() {
+  const bool promises = options_.method == BELTRAMI_METHOD_BELTRAMI &&
+                        options_.flatten != BELTRAMI_FLATTEN_BFF &&
+                        options_.flatten != BELTRAMI_FLATTEN_FLIM;
+  if (!promises) return run_method();
+  std::vector<Vec2> best;
+  std::vector<Triangle> best_faces;
+  std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
+  const auto attempt = [&](auto&& run) {
+    disk_ = &input_;
+    std::vector<Vec2> uvs;
+    try {
+      uvs = run();
+    } catch (const Error& error) {
+      if (error.status() != BELTRAMI_E_SOLVER) throw;
+      return false;
+    }
+    const std::int64_t broken = broken_promises(uvs);
+    if (broken >= fewest) return false;
+    fewest = broken;
+    best.swap(uvs);
+    best_faces = disk_->faces;
+    return broken == 0;
+  };
+  bool kept = attempt([&] { return run_method(); });
+  for (const Index target : kFallbacks) {
+    if (kept || target >= coarse_target()) continue;
+    ++result_.restarts;
+    coarse_limit_ = target;
+    kept = attempt([&] { return run_method(); });
+  }
+  if (!kept) {
+    ++result_.restarts;
+    attempt([&] { return run_tutte(); });
+    result_.status = BELTRAMI_NOT_CONVERGED;
+  }
+  if (best.empty()) throw Error(BELTRAMI_E_SOLVER, "no linear system of the mesh could be solved");
+  if (best_faces != disk_->faces) {
+    retriangulated_ = build_disk(input_.positions, std::move(best_faces));
+    disk_ = &retriangulated_;
+  }
+  return best;
+}
+
+std::vector<Vec2> Run::run_method() {
   switch (options_.method) {
     case BELTRAMI_METHOD_CM:
-      result_.coarse_faces = disk_.face_count();
-      return run_cm(disk_, "cm", 0.9);
+      result_.coarse_faces = input_.face_count();
+      return run_cm(input_, "cm", 0.9);
     case BELTRAMI_METHOD_TUTTE:
-      stage("tutte", 0.9,
-            [&](StageStatistics&, const Checkpoint&) { uvs = tutte_embedding(disk_); });
-      return uvs;
+      return run_tutte();
     case BELTRAMI_METHOD_GIF:
     case BELTRAMI_METHOD_BFF:
       return run_plain();
@@ -189,9 +314,10 @@ std::vector<Vec2> Run::run_method() {
 
 Flattening Run::flatten(const Normalisation& frame) {
   const double cpu = cpu_seconds();
-  std::vector<Vec2> uvs = run_method();
+  std::vector<Vec2> uvs = run_with_fallback();
   if (options_.refine) refine(uvs);
   deliver(frame, uvs);
+  if (disk_ != &input_) result_.faces = disk_->faces;
   result_.uvs = std::move(uvs);
   result_.seconds = wall_seconds() - started_;
   result_.cpu_seconds = cpu_seconds() - cpu;

@@ -31,6 +31,7 @@ struct Options {
   int refine_iterations = 0;  ///< 0: to the stopping rule of CM
   double time_limit = 0;      ///< wall seconds after which refinement stops; 0: none
   bool float32 = false;       ///< deliver single-precision numbers
+  bool delaunay = false;      ///< flatten on the intrinsic Delaunay triangulation
 };
 
 struct StageStatistics {
@@ -48,13 +49,16 @@ struct Flattening {
   /// The vertices that are not at the nearest single-precision place there, increasing, and where
   /// they are instead.
   std::vector<std::pair<Index, Vec2>> single_moves;
-  Distortion distortion;                 ///< of `uvs` against the input in its own unit
-  std::vector<double> face_energies;     ///< symmetric Dirichlet, one per face
-  std::vector<StageStatistics> stages;   ///< in the order in which they ran
-  std::int64_t coarse_faces = 0;         ///< of the mesh that CM ran on
+  Distortion distortion;                ///< of `uvs` against the input in its own unit
+  std::vector<double> face_energies;    ///< symmetric Dirichlet, one per face
+  std::vector<StageStatistics> stages;  ///< in the order in which they ran
+  std::int64_t coarse_faces = 0;        ///< of the mesh that CM ran on
   std::int64_t flips_before_repair = 0;
   std::int64_t kernel_fixes = 0, patch_fixes = 0, global_fixes = 0;  ///< see repair.h
-  std::int64_t cleaned_patches = 0;                                  ///< see outliers.h
+  std::int64_t restarts = 0;  ///< with a coarser mesh, after a map that broke its promise
+  std::int64_t delaunay_flips = 0, delaunay_refused = 0;  ///< see intrinsic_delaunay.h
+  std::vector<Triangle> faces;       ///< those of the map if they are not the disk's; else empty
+  std::int64_t cleaned_patches = 0;  ///< see outliers.h
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process so far
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <limits>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -25,17 +26,14 @@ struct FineProblem {
   std::vector<Vec2> coarse_uvs;
   std::vector<RestTriangle> rest;
   std::vector<FaceMetric> metric;
-
-  std::vector<Cotangents> cotangents(int threads) const {
-    return modified_cotangents(rest, metric, threads);
-  }
+  std::vector<Cotangents> cotangents;  ///< for the harmonic solves
 };
 
 class Run {
  public:
   Run(const DiskMesh& disk, const Options& options, const Progress& progress,
       const std::atomic<bool>& cancelled)
-      : disk_(disk), options_(options), progress_(progress), cancelled_(cancelled) {}
+      : input_(disk), options_(options), progress_(progress), cancelled_(cancelled) {}
 
   Flattening flatten(const Normalisation& frame);
 
@@ -47,8 +45,15 @@ class Run {
   void report(double fraction, const char* name);
 
   // pipeline.cpp: the methods, and what comes after them.
+  std::vector<Vec2> run_with_fallback();
   std::vector<Vec2> run_method();
+  std::vector<Vec2> run_tutte();
   std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
+  std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                              const Checkpoint& checkpoint);
+  std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                                       const Checkpoint& checkpoint);
+  std::int64_t broken_promises(const std::vector<Vec2>& uvs) const;
   void refine(std::vector<Vec2>& uvs);
   void place(const Normalisation& frame, std::vector<Vec2>& uvs) const;
   void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
@@ -62,6 +67,7 @@ class Run {
   std::vector<Vec2> run_uv_prolongation();
   std::vector<Vec2> run_plain();
   void solve_coarse(FineProblem& fine);
+  void measure_fine(FineProblem& fine, const Checkpoint& checkpoint);
   Index coarse_target() const;
   bool keeps_boundary_simple() const;
   std::vector<Vec2> flatten_metric(const FineProblem& fine);
@@ -76,7 +82,10 @@ class Run {
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
   void count_flips(const std::vector<Vec2>& uvs);
 
-  const DiskMesh& disk_;
+  const DiskMesh& input_;
+  const DiskMesh* disk_ = &input_;  // or what intrinsic flips made of it
+  DiskMesh retriangulated_;
+  Index coarse_limit_ = std::numeric_limits<Index>::max();
   const Options& options_;
   const Progress& progress_;
   const std::atomic<bool>& cancelled_;

@@ -25,8 +25,8 @@ struct SinglePrecision {
 /// vertices nearby move: first by a few units in the last place, then into the kernel of their
 /// one-ring, then in patches that are untangled towards equilateral faces; crossings are undone by
 /// the faces of a triangulated ring around the boundary, which must become positive. What cannot be
-/// mended is said by the certificate. What `exact`, the certificate of `uvs`, finds wrong already is
-/// left alone. Precondition: finite.
+/// mended is said by the certificate. What `exact`, the certificate of `uvs`, finds wrong already
+/// is left alone. Precondition: finite.
 SinglePrecision round_to_single(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                                 const Certificate& exact, int threads,
                                 const Checkpoint& checkpoint = no_checkpoint);

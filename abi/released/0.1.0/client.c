@@ -28,6 +28,7 @@ enum { SIDE = 9, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), CA
 
 static float positions[VERTICES][3];
 static uint32_t indices[FACES][3];
+static uint32_t triangles[FACES + 1][3];
 static double uvs[VERTICES + 1][2];
 static double energies[FACES + 1];
 
@@ -140,6 +141,13 @@ static void read_results(beltrami_context* context) {
   ALIVE(certificate);
   REQUIRE(certificate.value.injective == 1 && certificate.value.positive == FACES);
   REQUIRE(certificate.value.first_bad_face == BELTRAMI_NO_ELEMENT);
+  ARM(certificate);
+  REQUIRE(beltrami_get_float32_certificate(context, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1);
+  triangles[FACES][0] = 7;
+  REQUIRE(beltrami_get_faces(context, triangles, BELTRAMI_U32, 0) == BELTRAMI_OK);
+  REQUIRE(triangles[FACES][0] == 7 && triangles[0][0] < VERTICES);
   REQUIRE(beltrami_get_energy(context, &energy.value) == BELTRAMI_OK);
   ALIVE(energy);
   REQUIRE(energy.value.symmetric_dirichlet >= 2 && energy.value.worst_face < FACES);

@@ -57,6 +57,9 @@ enum {
   BELTRAMI_NOT_CONVERGED = 1,
   /* A map exists, but the exact certificate found flips, zero areas or boundary crossings. */
   BELTRAMI_NOT_INJECTIVE = 2,
+  /* With the option float32: the map is injective in double precision, but no rounding to single
+   * precision was found that is. The UVs are the best one found. */
+  BELTRAMI_NOT_INJECTIVE_FLOAT32 = 3,
 
   /* The call itself is wrong: NULL, an unknown key, a value out of range, an odd stride. */
   BELTRAMI_E_INVALID_ARGUMENT = -1,
@@ -106,8 +109,9 @@ BELTRAMI_API uint32_t beltrami_version(void);
  * fail. */
 BELTRAMI_API const char* beltrami_build_info(void);
 
-/* 1 if this build has `feature`, else 0: "solver:eigen", "solver:cholmod", "gpl".
- * NULL and unknown names give 0. Cannot fail. */
+/* 1 if this build has `feature`, else 0: "solver:eigen", "solver:cholmod", "scaffold:own",
+ * "scaffold:cgal", "gpl". NULL and unknown names give 0. Cannot
+ * fail. */
 BELTRAMI_API int32_t beltrami_has(const char* feature);
 
 /* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static,
@@ -158,7 +162,9 @@ enum {
   BELTRAMI_OPTION_INJECTIVITY = 8,    /* choice: BELTRAMI_INJECTIVITY_ */
   BELTRAMI_OPTION_REFINE = 9,         /* int: 1 goes on with CM on the fine mesh */
   BELTRAMI_OPTION_REFINE_ITERATIONS = 10, /* int: limit of its iterations; 0: CM's stopping rule */
-  BELTRAMI_OPTION_TIME_LIMIT = 11         /* float: wall seconds after which it stops; 0: none */
+  BELTRAMI_OPTION_TIME_LIMIT = 11,        /* float: wall seconds after which it stops; 0: none */
+  BELTRAMI_OPTION_FLOAT32 = 12,           /* int: 1 delivers single-precision numbers */
+  BELTRAMI_OPTION_DELAUNAY = 13           /* choice: 1 flattens on intrinsic Delaunay faces */
 };
 
 enum {
@@ -350,6 +356,16 @@ typedef struct beltrami_result {
   double seconds;                 /* wall time of the run */
   double cpu_seconds;             /* of the whole process during the run */
   uint64_t peak_memory_bytes;     /* of the whole process so far */
+  uint64_t kernel_fixes;          /* vertices that repair moved into the kernel of their one-ring */
+  uint64_t patch_fixes;           /* patches that repair untangled */
+  uint64_t global_fixes;          /* layouts that repair embedded anew, with a scaffold */
+  uint64_t cleaned_patches;       /* patches optimised around faces of enormous energy */
+  uint64_t restarts;              /* tries with a coarser mesh, after a map that was not injective */
+  uint64_t float32_moves;         /* vertices that are not at the nearest float in F32 */
+  uint64_t delaunay_flips;        /* with the option delaunay: edges flipped */
+  uint64_t delaunay_refused;      /* edges that are not Delaunay: their flip would repeat an edge */
+  uint64_t degenerate_faces;      /* of the input: faces without area, which no energy counts */
+  uint64_t first_degenerate_face; /* the first of them, or BELTRAMI_NO_ELEMENT */
 } beltrami_result;
 
 typedef struct beltrami_stage {
@@ -368,14 +384,26 @@ BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, belt
 
 /* Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32
  * or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
- * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest: check what you
- * ship with beltrami_check_injective. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+ * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for
+ * the vertices that must move a little further for the map to stay injective (float32_moves in
+ * beltrami_result): beltrami_get_float32_certificate tells. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
                                               uint64_t stride);
 
 /* The certificate of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_certificate(beltrami_context* context,
                                                       beltrami_certificate* out);
+
+/* The certificate of the UVs as returned in F32. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_float32_certificate(beltrami_context* context,
+                                                              beltrami_certificate* out);
+
+/* The triangles that the map, its certificates and its face energies speak of: the input's, or with
+ * the option delaunay those of the intrinsic Delaunay triangulation on the same vertices. Writes
+ * face_count items of 3 indices into the caller's memory: `type` BELTRAMI_U32 or BELTRAMI_U64,
+ * `stride` bytes from one face to the next (0: packed). Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_faces(beltrami_context* context, void* out, int32_t type,
+                                                uint64_t stride);
 
 /* Energies of the UVs as returned in F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_energy(beltrami_context* context, beltrami_energy* out);
