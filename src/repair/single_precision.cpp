@@ -58,9 +58,10 @@ class Rounding {
     }
     if (faces.size() > kMostPatches) return;
     for (const int rings : kPatchRings) {
+      std::vector<bool> tried(mesh_.faces.size(), false);
       for (const Index face : faces) {
         checkpoint(0);
-        if (!positive(face)) mend_patch(face, rings);
+        if (!positive(face) && !tried[face]) mend_patch(face, rings, tried);
       }
       keep_bad(faces);
       if (faces.empty()) return;
@@ -127,9 +128,10 @@ class Rounding {
   }
 
   /// Towards equilateral faces of the mean size, whatever their shapes in space: what single
-  /// precision cannot hold is a sliver.
-  void mend_patch(Index face, int rings) {
+  /// precision cannot hold is a sliver. Marks the faces of the patch as tried.
+  void mend_patch(Index face, int rings, std::vector<bool>& tried) {
     Patch patch = cut_patch(mesh_, {}, uvs_, face, rings);
+    for (const Index f : patch.mesh_faces) tried[f] = true;
     for (std::size_t v = 0; v < patch.fixed.size(); ++v) {
       // Those on the rim of the mesh, the circle of a ring among them, stay.
       patch.fixed[v] = patch.fixed[v] || mesh_.on_boundary[patch.mesh_vertices[v]];
