@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "sparse/multifrontal.h"
+#include "sparse/ordering.h"
+#include "sparse/spd_solver.h"
+#include "sparse/symbolic.h"
+
+namespace beltrami {
+namespace {
+
+// A map needs residuals of 1e-8 of the right-hand side: beyond that the set of flipped faces depends
+// on them.
+constexpr double kResidual = 1e-9;
+constexpr int kMaxSteps = 16;
+
+// Below so many vertices minimum degree is as good as nested dissection, and takes no time.
+constexpr int kLeastDissected = 200000;
+// Multiplications per vertex^(3/2) that nested dissection of a surface does not exceed, unless its
+// places mislead.
+constexpr double kMostWork = 20;
+
+bool all_finite(std::span<const Place> places) {
+  return std::all_of(places.begin(), places.end(), [](const Place& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  });
+}
+
+class NativeSolver final : public SpdSolver {
+ public:
+  explicit NativeSolver(const SolverOptions& options) : options_(options) {}
+
+  void analyze(const SparseMatrix& lower, std::span<const Place> places) override {
+    single_.clear();
+    double_.clear();
+    const int block = block_size_of(lower);
+    const Graph graph = graph_of(lower, block);
+    options_.checkpoint(0);
+    std::vector<int> order;
+    bool doubtful = false;
+    if (static_cast<int>(places.size()) == graph.count() && graph.count() >= kLeastDissected &&
+        all_finite(places)) {
+      order = nested_dissection_order(graph, places, options_.threads, options_.checkpoint);
+      doubtful = true;
+    } else {
+      order = minimum_degree_order(graph);
+    }
+    options_.checkpoint(0.3);
+    symbolic_ = analyze_pattern(graph, order, block, options_.threads, options_.checkpoint);
+    if (doubtful && symbolic_.work > kMostWork * std::pow(graph.count(), 1.5)) {
+      const std::vector<int> other = minimum_degree_order(graph);
+      if (factor_work(graph, other) < symbolic_.work) {
+        symbolic_ = analyze_pattern(graph, other, block, options_.threads, options_.checkpoint);
+      }
+    }
+    pattern_ = permute_pattern(lower, symbolic_, options_.threads);
+  }
+
+  bool factorize(const SparseMatrix& lower) override {
+    if (lower.cols() == 0) return true;
+    if (options_.precision == Precision::kDouble) return factorize_double(lower.valuePtr());
+    double_.clear();
+    if (!scale(lower)) return false;
+    std::vector<float> values(values_.begin(), values_.end());
+    if (single_.factorize(symbolic_, pattern_, values.data(), options_.threads,
+                          options_.checkpoint)) {
+      return true;
+    }
+    single_.clear();
+    return double_.factorize(symbolic_, pattern_, values_.data(), options_.threads,
+                             options_.checkpoint);
+  }
+
+  DenseMatrix solve(const DenseMatrix& rhs) const override {
+    const auto n = static_cast<std::size_t>(rhs.rows());
+    const auto columns = static_cast<int>(rhs.cols());
+    if (n == 0 || columns == 0) return rhs;
+    std::vector<double> x = permuted<double>(rhs);
+    if (!single_.empty()) {
+      const std::vector<double> b = x;
+      if (!iterate(b, x, columns)) {
+        if (!double_.factorize(symbolic_, pattern_, values_.data(), options_.threads,
+                               options_.checkpoint)) {
+          double_.clear();
+          throw Error(BELTRAMI_E_SOLVER, "a linear system is not definite in floating point");
+        }
+        single_.clear();
+        x = b;
+      }
+    }
+    if (single_.empty()) double_.solve(symbolic_, x.data(), columns, options_.threads);
+    return restored(x, columns);
+  }
+
+  DenseMatrix precondition(const DenseMatrix& rhs) const override {
+    if (single_.empty() || rhs.size() == 0) return solve(rhs);
+    // A power of two keeps the numbers in the range of single precision, and costs no bits.
+    DenseMatrix result = rhs;
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+      const double unit = unit_of(rhs.col(c).cwiseAbs().maxCoeff());
+      result.col(c) *= 1 / unit;
+    }
+    std::vector<float> x = permuted<float>(result);
+    single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), options_.threads);
+    result = restored(x, static_cast<int>(rhs.cols()));
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+      result.col(c) *= unit_of(rhs.col(c).cwiseAbs().maxCoeff());
+    }
+    return result;
+  }
+
+  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
+                         int threads) const override {
+    DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
+    if (rows.empty() || rhs.cols() == 0) return result;
+    if (single_.empty() && scaling_.empty()) {
+      return double_.solve_rows(symbolic_, rhs, rows, threads);
+    }
+    constexpr Eigen::Index kBlock = 32;
+    for (Eigen::Index first = 0; first < rhs.cols(); first += kBlock) {
+      const Eigen::Index count = std::min(kBlock, rhs.cols() - first);
+      const DenseMatrix block = solve(DenseMatrix(rhs.middleCols(first, count)));
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        result.row(static_cast<Eigen::Index>(i)).segment(first, count) = block.row(rows[i]);
+      }
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::int64_t kGrain = 16384;
+
+  static double unit_of(double largest) {
+    if (!(largest > 0) || !std::isfinite(largest)) return 1;
+    return std::ldexp(1.0, std::clamp(std::ilogb(largest), -1000, 1000));
+  }
+
+  int column_of(int row) const {
+    const int block = symbolic_.block_size;
+    return block == 1 ? symbolic_.place[row] : 2 * symbolic_.place[row / 2] + row % 2;
+  }
+
+  bool factorize_double(const double* values) {
+    std::vector<double> gathered(pattern_.source.size());
+    parallel_for(options_.threads, static_cast<std::int64_t>(gathered.size()), 4 * kGrain,
+                 [&](std::int64_t begin, std::int64_t end) {
+                   for (std::int64_t e = begin; e < end; ++e) {
+                     gathered[e] = values[pattern_.source[e]];
+                   }
+                 });
+    return double_.factorize(symbolic_, pattern_, gathered.data(), options_.threads,
+                             options_.checkpoint);
+  }
+
+  /// Scales the matrix to a diagonal near 1, by powers of two. False: the diagonal is not positive.
+  bool scale(const SparseMatrix& lower) {
+    const int n = static_cast<int>(lower.cols());
+    const double* given = lower.valuePtr();
+    values_.resize(pattern_.source.size());
+    scaling_.assign(n, 0);
+    for (int c = 0; c < n; ++c) {
+      for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
+        if (pattern_.row[e] != c) continue;
+        const double diagonal = given[pattern_.source[e]];
+        if (!(diagonal > 0) || !std::isfinite(diagonal)) return false;
+        scaling_[c] = std::ldexp(1.0, -(std::ilogb(diagonal) >> 1));
+      }
+      if (scaling_[c] == 0) return false;
+    }
+    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t c = begin; c < end; ++c) {
+        for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
+          values_[e] = given[pattern_.source[e]] * scaling_[c] * scaling_[pattern_.row[e]];
+        }
+      }
+    });
+    return true;
+  }
+
+  double scaling(int column) const { return scaling_.empty() ? 1 : scaling_[column]; }
+
+  /// In the order of L, scaled, column after column.
+  template <class T>
+  std::vector<T> permuted(const DenseMatrix& rhs) const {
+    const auto n = static_cast<int>(rhs.rows());
+    std::vector<T> x(static_cast<std::size_t>(rhs.size()));
+    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+      T* column = x.data() + c * n;
+      for (int i = 0; i < n; ++i) {
+        const int at = column_of(i);
+        column[at] = static_cast<T>(rhs(i, c) * scaling(at));
+      }
+    }
+    return x;
+  }
+
+  template <class T>
+  DenseMatrix restored(const std::vector<T>& x, int columns) const {
+    const auto n = static_cast<int>(x.size() / columns);
+    DenseMatrix result(n, columns);
+    for (int c = 0; c < columns; ++c) {
+      const T* column = x.data() + static_cast<std::size_t>(c) * n;
+      for (int i = 0; i < n; ++i) {
+        const int at = column_of(i);
+        result(i, c) = static_cast<double>(column[at]) * scaling(at);
+      }
+    }
+    return result;
+  }
+
+  /// y = A x, with A scaled and in the order of L.
+  void multiply(const double* x, double* y) const {
+    const int n = pattern_.count();
+    std::fill(y, y + n, 0.0);
+    for (int c = 0; c < n; ++c) {
+      double sum = y[c];
+      for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
+        const int r = pattern_.row[e];
+        sum += values_[e] * x[r];
+        if (r != c) y[r] += values_[e] * x[c];
+      }
+      y[c] = sum;
+    }
+  }
+
+  /// Conjugate gradients with the factor in single precision as preconditioner: one step per six
+  /// digits or so, and where rounding spoils the factor still convergence. False: no convergence.
+  bool iterate(const std::vector<double>& b, std::vector<double>& x, int columns) const {
+    const std::size_t n = b.size() / columns;
+    std::vector<double> residual = b, direction(b.size(), 0.0), product(n);
+    std::vector<float> correction(b.size());
+    std::vector<double> rho(columns, 0.0), goal(columns);
+    std::vector<bool> done(columns, false);
+    std::fill(x.begin(), x.end(), 0.0);
+    const auto norm_sq = [&](const double* r) {  // in the units of the matrix as it was given
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double value = r[i] / scaling_[i];
+        sum += value * value;
+      }
+      return sum;
+    };
+    for (int c = 0; c < columns; ++c) {
+      const double size_sq = norm_sq(b.data() + c * n);
+      if (!std::isfinite(size_sq)) return false;
+      goal[c] = kResidual * kResidual * size_sq;
+      done[c] = size_sq == 0;
+    }
+    for (int step = 0; step < kMaxSteps; ++step) {
+      if (std::all_of(done.begin(), done.end(), [](bool d) { return d; })) return true;
+      std::vector<double> unit(columns);
+      for (int c = 0; c < columns; ++c) {
+        const double* r = residual.data() + c * n;
+        double largest = 0;
+        for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(r[i]));
+        unit[c] = unit_of(largest);
+        for (std::size_t i = 0; i < n; ++i) correction[c * n + i] = static_cast<float>(r[i] / unit[c]);
+      }
+      single_.solve(symbolic_, correction.data(), columns, options_.threads);
+      for (int c = 0; c < columns; ++c) {
+        if (done[c]) continue;
+        double *r = residual.data() + c * n, *p = direction.data() + c * n;
+        const float* z = correction.data() + c * n;
+        double next = 0;
+        for (std::size_t i = 0; i < n; ++i) next += r[i] * (z[i] * unit[c]);
+        const double beta = rho[c] == 0 ? 0 : next / rho[c];
+        rho[c] = next;
+        for (std::size_t i = 0; i < n; ++i) p[i] = z[i] * unit[c] + beta * p[i];
+        multiply(p, product.data());
+        double curvature = 0;
+        for (std::size_t i = 0; i < n; ++i) curvature += p[i] * product[i];
+        if (!(curvature > 0) || !(next > 0) || !std::isfinite(next / curvature)) return false;
+        const double length = next / curvature;
+        for (std::size_t i = 0; i < n; ++i) {
+          x[c * n + i] += length * p[i];
+          r[i] -= length * product[i];
+        }
+        done[c] = norm_sq(r) <= goal[c];
+      }
+    }
+    return std::all_of(done.begin(), done.end(), [](bool d) { return d; });
+  }
+
+  SolverOptions options_;
+  Symbolic symbolic_;
+  PermutedPattern pattern_;
+  // The matrix in the order of L, scaled; with factors in single precision only, which need it.
+  std::vector<double> values_, scaling_;
+  // One of them is empty. A single one that turns out to be useless is replaced while solving.
+  mutable Factor<float> single_;
+  mutable Factor<double> double_;
+};
+
+}  // namespace
+
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options) {
+  return std::make_unique<NativeSolver>(options);
+}
+
+const char* spd_solver_name() {
+  return "native";
+}
+
+}  // namespace beltrami
