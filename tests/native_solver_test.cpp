@@ -154,18 +154,11 @@ double residual(const SparseMatrix& lower, const DenseMatrix& x, const DenseMatr
 
 bool same_bits(const DenseMatrix& a, const DenseMatrix& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
-         (a.size() == 0 ||
-          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
+         (a.size() == 0 || std::memcmp(a.data(), b.data(),
+                                       sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
 }
 
-/// What the other back ends need not do.
-class NativeSolver : public testing::Test {
-  void SetUp() override {
-    if (std::string(spd_solver_name()) != "native") GTEST_SKIP() << "another back end is built in";
-  }
-};
-
-TEST_F(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
+TEST(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
   Random random(12);
   for (const System& system : systems()) {
     const int n = static_cast<int>(system.lower.cols());
@@ -186,7 +179,7 @@ TEST_F(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
   }
 }
 
-TEST_F(NativeSolver, AgreesWithASimplicialFactor) {
+TEST(NativeSolver, AgreesWithASimplicialFactor) {
   Random random(13);
   for (const System& system : systems()) {
     if (system.lower.cols() == 0) continue;
@@ -200,7 +193,7 @@ TEST_F(NativeSolver, AgreesWithASimplicialFactor) {
   }
 }
 
-TEST_F(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
+TEST(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
   Random random(14);
   std::vector<System> list;
   list.push_back(grid(160, 150, 1, random));
@@ -235,7 +228,7 @@ TEST_F(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
   }
 }
 
-TEST_F(NativeSolver, GivesSingleRowsOfTheSolution) {
+TEST(NativeSolver, GivesSingleRowsOfTheSolution) {
   Random random(15);
   for (const System& system : systems()) {
     const int n = static_cast<int>(system.lower.cols());
@@ -252,7 +245,8 @@ TEST_F(NativeSolver, GivesSingleRowsOfTheSolution) {
       const auto solver = make_spd_solver({precision});
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower));
-      const DenseMatrix all = solver->solve(DenseMatrix(rhs)), some = solver->solve_rows(rhs, rows, 2);
+      const DenseMatrix all = solver->solve(DenseMatrix(rhs)),
+                        some = solver->solve_rows(rhs, rows, 2);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto expected = all.row(rows[i]);
         EXPECT_LE((some.row(static_cast<Eigen::Index>(i)) - expected).norm(), 1e-10 * all.norm())
@@ -263,7 +257,7 @@ TEST_F(NativeSolver, GivesSingleRowsOfTheSolution) {
   }
 }
 
-TEST_F(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
+TEST(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
   Random random(16);
   const System system = grid(30, 31, 1, random);
   const int n = static_cast<int>(system.lower.cols());
@@ -280,7 +274,7 @@ TEST_F(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
   EXPECT_EQ(solver->precondition(DenseMatrix::Zero(n, 1)).norm(), 0);
 }
 
-TEST_F(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
+TEST(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
   // Weights over twelve decades: the factor in single precision is a poor inverse, or none.
   Random random(17);
   System system = grid(30, 30, 1, random);
@@ -296,11 +290,16 @@ TEST_F(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, 900, 2);
-    EXPECT_LE(residual(system.lower, solver->solve(rhs), rhs), 1e-8) << excess;
+    const auto exact = make_spd_solver();
+    exact->analyze(system.lower, system.places);
+    ASSERT_TRUE(exact->factorize(system.lower));
+    const double attainable = residual(system.lower, exact->solve(rhs), rhs);
+    EXPECT_LE(residual(system.lower, solver->solve(rhs), rhs), std::max(1e-8, 4 * attainable))
+        << excess;
   }
 }
 
-TEST_F(NativeSolver, RefusesMatricesThatAreNotDefinite) {
+TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
   Random random(18);
   const System system = grid(40, 40, 1, random);
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
@@ -331,7 +330,7 @@ TEST_F(NativeSolver, RefusesMatricesThatAreNotDefinite) {
   }
 }
 
-TEST_F(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
+TEST(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
   SparseMatrix lower(3, 3);
   lower.insert(0, 0) = 1;
   lower.insert(2, 1) = 0.1;
@@ -344,11 +343,11 @@ TEST_F(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
   }
 }
 
-TEST_F(NativeSolver, TakesPlacesThatSayNothing) {
+TEST(NativeSolver, TakesPlacesThatSayNothing) {
   Random random(19);
   const float infinity = std::numeric_limits<float>::infinity();
   for (const Place& place : {Place{0, 0, 0}, Place{infinity, 0, 0}, Place{1e30F, -1e30F, 1e-30F}}) {
-    System system = grid(500, 450, 1, random);  // enough for nested dissection
+    System system = grid(510, 495, 1, random);  // enough for nested dissection
     std::fill(system.places.begin(), system.places.end(), place);
     const auto solver = make_spd_solver({Precision::kSingle, 2});
     solver->analyze(system.lower, system.places);
@@ -358,14 +357,14 @@ TEST_F(NativeSolver, TakesPlacesThatSayNothing) {
   }
 }
 
-TEST_F(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
+TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   struct Cancelled {};
   Random random(20);
-  const System system = grid(500, 450, 1, random);
+  const System system = grid(520, 490, 1, random);  // enough for nested dissection
   int calls = 0, allowed = std::numeric_limits<int>::max();
   SolverOptions options;
   options.threads = 2;
-  options.checkpoint = [&](double) {
+  options.poll = [&] {
     if (++calls > allowed) throw Cancelled();
   };
   const auto solver = make_spd_solver(options);
@@ -373,7 +372,7 @@ TEST_F(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   ASSERT_TRUE(solver->factorize(system.lower));
   const int all = calls;
   EXPECT_GE(all, 6);
-  for (int i = 0; i < all; ++i) {
+  for (const int i : {0, 3, all / 2, all - 1}) {
     calls = 0;
     allowed = i;
     const auto cancelled = make_spd_solver(options);
@@ -387,7 +386,7 @@ TEST_F(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   }
 }
 
-TEST_F(NativeSolver, SolvesTheLaplaciansOfMeshes) {
+TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
   Random random(21);
   for (const auto& list : {meshes::grid(60, 45), meshes::fan(50), meshes::cap(20, 60, 1.0)}) {
     const DiskMesh mesh = disks::disk(list);
@@ -396,7 +395,7 @@ TEST_F(NativeSolver, SolvesTheLaplaciansOfMeshes) {
       if (matrix.free_count() == 0) continue;
       for (Index f = 0; f < mesh.face_count(); ++f) {
         for (int i = 0; i < 3; ++i) {
-          const auto same = [](int r, int c) { return r == c ? 2.0 : 0.5; };
+          const auto same = [](int r, int c) { return r == c ? 3.0 : 0.5; };
           const auto other = [](int r, int c) { return r == c ? -0.7 : 0.1; };
           matrix.add(f, mesh.faces[f], i, i, same);
           matrix.add(f, mesh.faces[f], i, next_corner(i), other);

@@ -105,8 +105,8 @@ BELTRAMI_API uint32_t beltrami_version(void);
 /* One line on this build: version, solver, licence of what it links. Static, never NULL. */
 BELTRAMI_API const char* beltrami_build_info(void);
 
-/* 1 if this build has `feature`, else 0: "solver:eigen", "solver:cholmod", "gpl".
- * NULL and unknown names give 0. */
+/* 1 if this build has `feature`, else 0: "solver:native", "solver:eigen",
+ * "solver:cholmod", "gpl". NULL and unknown names give 0. */
 BELTRAMI_API int32_t beltrami_has(const char* feature);
 
 /* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static. */

@@ -94,9 +94,12 @@ uint32_t beltrami_version(void) {
 }
 
 const char* beltrami_build_info(void) {
-  return beltrami::has_gpl() ? BELTRAMI_BUILD_TEXT
-             ", solver cholmod, links GPL code: distribute under the GPL only"
-                             : BELTRAMI_BUILD_TEXT ", solver eigen, links no GPL code";
+  if (beltrami::has_gpl()) {
+    return BELTRAMI_BUILD_TEXT ", solver cholmod, links GPL code: distribute under the GPL only";
+  }
+  return std::string_view(beltrami::spd_solver_name()) == "eigen"
+             ? BELTRAMI_BUILD_TEXT ", solver eigen, links no GPL code"
+             : BELTRAMI_BUILD_TEXT ", solver native, links no GPL code";
 }
 
 int32_t beltrami_has(const char* feature) {

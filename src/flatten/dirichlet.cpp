@@ -52,7 +52,7 @@ std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu) 
 }
 
 void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs) {
+                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs, int threads) {
   MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
   if (laplacian.free_count() == 0) return;
   DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
@@ -70,8 +70,8 @@ void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
       if (rj != kNone && ri == kNone) rhs.row(rj) += weight * uvs[face[i]].transpose();
     }
   }
-  const auto solver = make_spd_solver();
-  solver->analyze(laplacian.matrix());
+  const auto solver = make_spd_solver({Precision::kSingle, threads});
+  solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver->factorize(laplacian.matrix())) {
     throw Error(BELTRAMI_E_SOLVER,
                 "the Laplacian of the fine mesh is not definite in floating point: its faces are "

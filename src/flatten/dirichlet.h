@@ -28,6 +28,6 @@ std::array<double, 3> modified_cotangents(const RestTriangle& rest, Complex mu);
 /// sides. Negative weights are kept; the matrix is definite all the same, being the stiffness
 /// matrix of a metric. Throws Error SOLVER.
 void solve_harmonic(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs);
+                    const std::vector<FaceMetric>& metric, std::vector<Vec2>& uvs, int threads = 1);
 
 }  // namespace beltrami

@@ -53,8 +53,8 @@ void fit_rotations(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const std::vector<FaceMetric>& metric,
-                                 const std::vector<bool>& held)
-    : solver_(make_spd_solver()) {
+                                 const std::vector<bool>& held, const SolverOptions& options)
+    : solver_(make_spd_solver(options)) {
   MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, held, 1);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto weights = edge_weights(rest[f], metric[f]);
@@ -69,7 +69,7 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
   row_ = laplacian.rows();
   free_count_ = laplacian.free_count();
   if (free_count_ == 0) return;
-  solver_->analyze(laplacian.matrix());
+  solver_->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver_->factorize(laplacian.matrix())) {
     throw Error(
         BELTRAMI_E_SOLVER,
@@ -79,12 +79,22 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTri
 }
 
 DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
+  return apply(rhs, &SpdSolver::solve);
+}
+
+DenseMatrix MetricLaplacian::precondition(const DenseMatrix& rhs) const {
+  return apply(rhs, &SpdSolver::precondition);
+}
+
+DenseMatrix MetricLaplacian::apply(const DenseMatrix& rhs,
+                                   DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&)
+                                       const) const {
   if (free_count_ == 0) return DenseMatrix::Zero(rhs.rows(), rhs.cols());
   DenseMatrix packed(free_count_, rhs.cols());
   for (Index v = 0; v < size_of(row_); ++v) {
     if (row_[v] != kNone) packed.row(row_[v]) = rhs.row(v);
   }
-  packed = solver_->solve(packed);
+  packed = (solver_.get()->*inverse)(packed);
   DenseMatrix result = DenseMatrix::Zero(rhs.rows(), rhs.cols());
   for (Index v = 0; v < size_of(row_); ++v) {
     if (row_[v] != kNone) result.row(v) = packed.row(row_[v]);

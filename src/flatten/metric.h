@@ -24,12 +24,18 @@ class MetricLaplacian {
  public:
   /// Assembles and factorizes. `held`: per vertex; at least one must be. Throws Error SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held);
+                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held,
+                  const SolverOptions& options = {Precision::kSingle});
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
+  /// The same roughly, at half the cost: see SpdSolver::precondition.
+  DenseMatrix precondition(const DenseMatrix& rhs) const;
 
  private:
+  DenseMatrix apply(const DenseMatrix& rhs,
+                    DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&) const) const;
+
   std::vector<Index> row_;
   std::unique_ptr<SpdSolver> solver_;
   Index free_count_ = 0;

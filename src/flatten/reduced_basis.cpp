@@ -41,7 +41,7 @@ ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<RestTriangle>
   pull_.resize(laplacian.free_count(), metas_.count());
   pull_.setFromTriplets(pull.begin(), pull.end());
   if (laplacian.free_count() == 0) return;
-  solver_->analyze(laplacian.matrix());
+  solver_->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver_->factorize(laplacian.matrix())) {
     throw Error(BELTRAMI_E_SOLVER,
                 "the Laplacian of the fine mesh is not definite in floating point: its faces are "

@@ -111,7 +111,9 @@ class PrunedSolve {
 
 class EigenSolver final : public SpdSolver {
  public:
-  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override { factor_.analyzePattern(lower); }
+  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
+    factor_.analyzePattern(lower);
+  }
 
   bool factorize(const SparseMatrix& lower) override {
     factor_.factorize(lower);

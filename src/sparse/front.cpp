@@ -372,26 +372,25 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
 }
 
 // The bodies above for one width of vectors: NAME and what the compiler may use.
-#define BELTRAMI_KERNELS(NAME, TARGET, BYTES)                                                  \
-  template <class T>                                                                           \
-  struct NAME {                                                                                \
-    static constexpr int kLanes = (BYTES) / static_cast<int>(sizeof(T));                       \
-    TARGET static bool run_eliminate(T* panel, std::int64_t height, int begin, int end,        \
-                                     T* buffer) {                                              \
-      return eliminate<T, kLanes>(panel, height, begin, end, buffer);                          \
-    }                                                                                          \
-    TARGET static void run_update(const T* packed, int depth, const Target<T>& target,         \
-                                  int begin, int end) {                                        \
-      update_rows<T, kLanes>(packed, depth, target, begin, end);                               \
-    }                                                                                          \
-    TARGET static void run_forward(const T* panel, int height, int width, T* x, int columns) { \
-      forward_all<T, kLanes>(panel, height, width, x, columns);                                \
-    }                                                                                          \
-    TARGET static void run_backward(const T* panel, int height, int width, T* x,               \
-                                    int columns) {                                             \
-      backward_all<T, kLanes>(panel, height, width, x, columns);                               \
-    }                                                                                          \
-    static constexpr Kernels<T> kAll = {run_eliminate, run_update, run_forward, run_backward}; \
+#define BELTRAMI_KERNELS(NAME, TARGET, BYTES)                                                     \
+  template <class T>                                                                              \
+  struct NAME {                                                                                   \
+    static constexpr int kLanes = (BYTES) / static_cast<int>(sizeof(T));                          \
+    TARGET static bool run_eliminate(T* panel, std::int64_t height, int begin, int end,           \
+                                     T* buffer) {                                                 \
+      return eliminate<T, kLanes>(panel, height, begin, end, buffer);                             \
+    }                                                                                             \
+    TARGET static void run_update(const T* packed, int depth, const Target<T>& target, int begin, \
+                                  int end) {                                                      \
+      update_rows<T, kLanes>(packed, depth, target, begin, end);                                  \
+    }                                                                                             \
+    TARGET static void run_forward(const T* panel, int height, int width, T* x, int columns) {    \
+      forward_all<T, kLanes>(panel, height, width, x, columns);                                   \
+    }                                                                                             \
+    TARGET static void run_backward(const T* panel, int height, int width, T* x, int columns) {   \
+      backward_all<T, kLanes>(panel, height, width, x, columns);                                  \
+    }                                                                                             \
+    static constexpr Kernels<T> kAll = {run_eliminate, run_update, run_forward, run_backward};    \
   };
 
 BELTRAMI_KERNELS(Baseline, , 16)
@@ -441,7 +440,8 @@ bool factorize(T* panel, int height, int width, T* update, T* buffer, const ForC
                    columns, below});
     }
     if (below > columns) {
-      apply(size, {update, padded(below - columns), columns, below, columns + padded(below - columns)});
+      apply(size,
+            {update, padded(below - columns), columns, below, columns + padded(below - columns)});
     }
   }
   return true;

@@ -31,8 +31,9 @@ using ForChunks = std::function<void(int count, const std::function<void(int, in
 template <class T>
 bool factorize(T* panel, int height, int width, T* update, T* buffer, const ForChunks& for_chunks);
 
-/// y -= L x for the rows below the diagonal block and x = L1^-1 x, where L1 is the diagonal block of
-/// a panel: `x` has `height` entries per right-hand side, one after the other, `x` first, then y.
+/// y -= L x for the rows below the diagonal block and x = L1^-1 x, where L1 is the diagonal block
+/// of a panel: `x` has `height` entries per right-hand side, one after the other, `x` first, then
+/// y.
 template <class T>
 void solve_forward(const T* panel, int height, int width, T* x, int columns);
 /// x = L1^-T (x - L^T y).

@@ -76,8 +76,7 @@ StackPlan plan_stacks(const Symbolic& symbolic) {
     }
   }
   for (int s = 0; s < symbolic.top_begin(); ++s) {
-    plan.buffer =
-        std::max(plan.buffer, front::buffer_size(symbolic.height(s), symbolic.width(s)));
+    plan.buffer = std::max(plan.buffer, front::buffer_size(symbolic.height(s), symbolic.width(s)));
   }
   return plan;
 }
@@ -96,7 +95,7 @@ class Numeric {
         kept_(symbolic.supernode_count() - symbolic.top_begin()),
         kept_of_task_(symbolic.tasks.size()) {}
 
-  bool run(const Checkpoint& checkpoint) {
+  bool run(const Poll& poll) {
     std::atomic<bool> positive{true};
     Pool<Workspace> pool;
     const auto make = [&] {
@@ -106,7 +105,7 @@ class Numeric {
       work->buffer = allocate_large<T>(plan_.buffer);
       return work;
     };
-    checkpoint(0);
+    poll();
     parallel_for(threads_, static_cast<std::int64_t>(symbolic_.tasks.size()), 1,
                  [&](std::int64_t t, std::int64_t) {
                    if (!positive) return;
@@ -119,7 +118,7 @@ class Numeric {
     auto work = pool.take(make);
     for (int d = 0; d < 2; ++d) work->stack[d].reset();
     for (int s = symbolic_.top_begin(); s < symbolic_.supernode_count(); ++s) {
-      checkpoint(static_cast<double>(s) / symbolic_.supernode_count());
+      poll();
       if (!run_top(s, *work)) return false;
     }
     return true;
@@ -199,7 +198,8 @@ class Numeric {
   /// Sums up a front: entries of the matrix in its panel, and the updates of its children.
   template <class UpdateOf>
   void assemble(int s, T* update, Workspace& work, const UpdateOf& update_of_child) {
-    const int height = symbolic_.height(s), width = symbolic_.width(s), block = symbolic_.block_size;
+    const int height = symbolic_.height(s), width = symbolic_.width(s),
+              block = symbolic_.block_size;
     const int begin = symbolic_.first_column[s], end = symbolic_.first_column[s + 1];
     const auto rows = symbolic_.rows_of(s);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -211,7 +211,8 @@ class Numeric {
     const int shift = block - 1;  // blocks are of one or two
     for (int j = 0; j < width; ++j) {
       T* column = columns + static_cast<std::int64_t>(j) * height;
-      for (int e = pattern_.start[block * begin + j]; e < pattern_.start[block * begin + j + 1]; ++e) {
+      for (int e = pattern_.start[block * begin + j]; e < pattern_.start[block * begin + j + 1];
+           ++e) {
         const int row = pattern_.row[e];
         column[work.place[row >> shift] + (row & shift)] = values_[e];
       }
@@ -225,7 +226,8 @@ class Numeric {
   }
 
   void add_child(int s, int c, const T* source, T* update, Workspace& work) {
-    const int width = symbolic_.width(s), height = symbolic_.height(s), block = symbolic_.block_size;
+    const int width = symbolic_.width(s), height = symbolic_.height(s),
+              block = symbolic_.block_size;
     const std::int64_t stride = update_stride(symbolic_, s), from = update_stride(symbolic_, c);
     const auto rows = symbolic_.rows_of(c);
     const int count = block * static_cast<int>(rows.size());
@@ -321,7 +323,8 @@ class TreeSolve {
   void forward(int s, T* above, Workspace& work) { forward(s, above, work, size_ - top_); }
 
   void forward(int s, T* above, Workspace& work, std::int64_t stride) {
-    const int height = symbolic_.height(s), width = symbolic_.width(s), block = symbolic_.block_size;
+    const int height = symbolic_.height(s), width = symbolic_.width(s),
+              block = symbolic_.block_size;
     const std::int64_t first = static_cast<std::int64_t>(block) * symbolic_.first_column[s];
     const auto rows = symbolic_.rows_of(s);
     const std::size_t inside = s >= symbolic_.top_begin() ? 0 : rows_inside(rows);
@@ -350,7 +353,8 @@ class TreeSolve {
   }
 
   void backward(int s, Workspace& work) {
-    const int height = symbolic_.height(s), width = symbolic_.width(s), block = symbolic_.block_size;
+    const int height = symbolic_.height(s), width = symbolic_.width(s),
+              block = symbolic_.block_size;
     const std::int64_t first = static_cast<std::int64_t>(block) * symbolic_.first_column[s];
     const auto rows = symbolic_.rows_of(s);
     T* front = work.front.data();
@@ -375,8 +379,8 @@ class TreeSolve {
     return static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), top) - rows.begin());
   }
 
-  /// Moves the sums of a task out of the workspace, which is left zero. A task touches only the rows
-  /// of its root.
+  /// Moves the sums of a task out of the workspace, which is left zero. A task touches only the
+  /// rows of its root.
   void collect(int t, Workspace& work) {
     const auto rows = symbolic_.rows_of(symbolic_.tasks[t].end - 1);
     const int block = symbolic_.block_size;
@@ -521,8 +525,7 @@ class PrunedSolve {
     collect_lanes(s, lanes, work);
     const int height = symbolic_.height(s), width = symbolic_.width(s);
     for (int j = width; j-- > 0;) {
-      const T* column =
-          factor_ + symbolic_.value_start[s] + static_cast<std::int64_t>(j) * height;
+      const T* column = factor_ + symbolic_.value_start[s] + static_cast<std::int64_t>(j) * height;
       Eigen::Array<T, kBlock, 1> sum = Lane(lanes[j]);
       for (int i = j + 1; i < height; ++i) sum -= column[i] * Lane(lanes[i]);
       Lane target(lanes[j]);
@@ -535,10 +538,10 @@ class PrunedSolve {
   const SparseMatrix& rhs_;
   const std::vector<int>& rows_;
   std::vector<int> supernode_;  // per column of L
-  std::vector<int> slot_;       // per column of L that matters: where its lanes are in the workspace
-  std::vector<int> visited_;    // supernodes that matter, ascending
-  std::vector<int> rank_;       // per supernode that matters: its place in `visited_`
-  std::vector<bool> wanted_;    // per entry of `visited_`: whether the backward solve needs it
+  std::vector<int> slot_;     // per column of L that matters: where its lanes are in the workspace
+  std::vector<int> visited_;  // supernodes that matter, ascending
+  std::vector<int> rank_;     // per supernode that matters: its place in `visited_`
+  std::vector<bool> wanted_;  // per entry of `visited_`: whether the backward solve needs it
   int slots_ = 0;
 };
 
@@ -575,14 +578,14 @@ PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbo
 
 template <class T>
 bool Factor<T>::factorize(const Symbolic& symbolic, const PermutedPattern& pattern, const T* values,
-                          int threads, const Checkpoint& checkpoint) {
+                          int threads, const Poll& poll) {
   const std::int64_t size = symbolic.value_start.back();
   if (capacity_ < size) {
     clear();
     values_ = allocate_large<T>(size);
     capacity_ = size;
   }
-  return Numeric<T>(symbolic, pattern, values, values_.get(), threads).run(checkpoint);
+  return Numeric<T>(symbolic, pattern, values, values_.get(), threads).run(poll);
 }
 
 template <class T>

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "sparse/large_array.h"
 #include "sparse/symbolic.h"
 
@@ -24,20 +23,21 @@ struct PermutedPattern {
 PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbolic, int threads);
 
 /// L, for one kind of numbers. Each front is a dense matrix that is made by one thread, or by
-/// several that share nothing, in an order given by the tree: the same bits at any number of threads.
+/// several that share nothing, in an order given by the tree: the same bits at any number of
+/// threads.
 template <class T>
 class Factor {
  public:
   /// `values`: per entry of the pattern. False if a pivot is not positive. The memory of the last
   /// factor is used again.
   [[nodiscard]] bool factorize(const Symbolic& symbolic, const PermutedPattern& pattern,
-                               const T* values, int threads, const Checkpoint& checkpoint);
+                               const T* values, int threads, const Poll& poll);
 
   /// x = A^-1 x for `columns` right-hand sides, one after the other, in the order of L.
   void solve(const Symbolic& symbolic, T* x, int columns, int threads) const;
 
-  /// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes that
-  /// right-hand sides or wanted rows reach are visited.
+  /// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes
+  /// that right-hand sides or wanted rows reach are visited.
   DenseMatrix solve_rows(const Symbolic& symbolic, const SparseMatrix& rhs,
                          const std::vector<int>& rows, int threads) const;
 

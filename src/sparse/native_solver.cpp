@@ -12,13 +12,13 @@
 namespace beltrami {
 namespace {
 
-// A map needs residuals of 1e-8 of the right-hand side: beyond that the set of flipped faces depends
-// on them.
+// A map needs residuals of 1e-8 of the right-hand side: beyond that the set of flipped faces
+// depends on them.
 constexpr double kResidual = 1e-9;
 constexpr int kMaxSteps = 16;
 
-// Below so many vertices minimum degree is as good as nested dissection, and takes no time.
-constexpr int kLeastDissected = 200000;
+// Below so many vertices minimum degree takes less time than nested dissection saves.
+constexpr int kLeastDissected = 250000;
 // Multiplications per vertex^(3/2) that nested dissection of a surface does not exceed, unless its
 // places mislead.
 constexpr double kMostWork = 20;
@@ -38,22 +38,22 @@ class NativeSolver final : public SpdSolver {
     double_.clear();
     const int block = block_size_of(lower);
     const Graph graph = graph_of(lower, block);
-    options_.checkpoint(0);
+    options_.poll();
     std::vector<int> order;
     bool doubtful = false;
     if (static_cast<int>(places.size()) == graph.count() && graph.count() >= kLeastDissected &&
         all_finite(places)) {
-      order = nested_dissection_order(graph, places, options_.threads, options_.checkpoint);
+      order = nested_dissection_order(graph, places, options_.threads, options_.poll);
       doubtful = true;
     } else {
       order = minimum_degree_order(graph);
     }
-    options_.checkpoint(0.3);
-    symbolic_ = analyze_pattern(graph, order, block, options_.threads, options_.checkpoint);
+    options_.poll();
+    symbolic_ = analyze_pattern(graph, order, block, options_.threads, options_.poll);
     if (doubtful && symbolic_.work > kMostWork * std::pow(graph.count(), 1.5)) {
       const std::vector<int> other = minimum_degree_order(graph);
       if (factor_work(graph, other) < symbolic_.work) {
-        symbolic_ = analyze_pattern(graph, other, block, options_.threads, options_.checkpoint);
+        symbolic_ = analyze_pattern(graph, other, block, options_.threads, options_.poll);
       }
     }
     pattern_ = permute_pattern(lower, symbolic_, options_.threads);
@@ -65,13 +65,11 @@ class NativeSolver final : public SpdSolver {
     double_.clear();
     if (!scale(lower)) return false;
     std::vector<float> values(values_.begin(), values_.end());
-    if (single_.factorize(symbolic_, pattern_, values.data(), options_.threads,
-                          options_.checkpoint)) {
+    if (single_.factorize(symbolic_, pattern_, values.data(), options_.threads, options_.poll)) {
       return true;
     }
     single_.clear();
-    return double_.factorize(symbolic_, pattern_, values_.data(), options_.threads,
-                             options_.checkpoint);
+    return double_.factorize(symbolic_, pattern_, values_.data(), options_.threads, options_.poll);
   }
 
   DenseMatrix solve(const DenseMatrix& rhs) const override {
@@ -83,7 +81,7 @@ class NativeSolver final : public SpdSolver {
       const std::vector<double> b = x;
       if (!iterate(b, x, columns)) {
         if (!double_.factorize(symbolic_, pattern_, values_.data(), options_.threads,
-                               options_.checkpoint)) {
+                               options_.poll)) {
           double_.clear();
           throw Error(BELTRAMI_E_SOLVER, "a linear system is not definite in floating point");
         }
@@ -151,8 +149,7 @@ class NativeSolver final : public SpdSolver {
                      gathered[e] = values[pattern_.source[e]];
                    }
                  });
-    return double_.factorize(symbolic_, pattern_, gathered.data(), options_.threads,
-                             options_.checkpoint);
+    return double_.factorize(symbolic_, pattern_, gathered.data(), options_.threads, options_.poll);
   }
 
   /// Scales the matrix to a diagonal near 1, by powers of two. False: the diagonal is not positive.
@@ -257,7 +254,8 @@ class NativeSolver final : public SpdSolver {
         double largest = 0;
         for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(r[i]));
         unit[c] = unit_of(largest);
-        for (std::size_t i = 0; i < n; ++i) correction[c * n + i] = static_cast<float>(r[i] / unit[c]);
+        for (std::size_t i = 0; i < n; ++i)
+          correction[c * n + i] = static_cast<float>(r[i] / unit[c]);
       }
       single_.solve(symbolic_, correction.data(), columns, options_.threads);
       for (int c = 0; c < columns; ++c) {

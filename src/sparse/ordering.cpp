@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -12,13 +11,19 @@
 #include "base/parallel.h"
 #include "sparse/vertex_separator.h"
 
+#if defined(__GNUC__) && defined(__x86_64__)
+#define BELTRAMI_DISPATCH_POPCNT 1
+#else
+#define BELTRAMI_DISPATCH_POPCNT 0
+#endif
+
 namespace beltrami {
 namespace {
 
 // Parts of up to this many vertices are ordered by minimum degree: they fit into the nearest cache.
-constexpr int kLeaf = 192;
+constexpr int kLeaf = 256;
 // Leaves see so many vertices in all, those of their separators included.
-constexpr int kMostInLeaf = 384;
+constexpr int kMostInLeaf = 448;
 // A part is split further on one thread; above, parts of a level are split side by side.
 constexpr int kParts = 64;
 
@@ -65,7 +70,23 @@ class LeafOrder {
 
   std::uint64_t* row(int i) { return rows_.data() + words_ * i; }
 
+#if BELTRAMI_DISPATCH_POPCNT
+  [[gnu::target("popcnt")]] void eliminate_popcnt(std::span<int> order) {
+    eliminate_with(order);
+  }
+#endif
+
   void eliminate(std::span<int> order) {
+#if BELTRAMI_DISPATCH_POPCNT
+    if (__builtin_cpu_supports("popcnt") != 0) {
+      eliminate_popcnt(order);
+      return;
+    }
+#endif
+    eliminate_with(order);
+  }
+
+  [[gnu::always_inline]] void eliminate_with(std::span<int> order) {
     constexpr std::int16_t kGone = std::numeric_limits<std::int16_t>::max();
     degree_.resize(count_);
     alive_.assign(words_, 0);
@@ -81,7 +102,8 @@ class LeafOrder {
     while (done < count_) {
       std::int16_t least = kGone;
       for (const std::int16_t d : degree_) least = std::min(least, d);
-      const int p = static_cast<int>(std::find(degree_.begin(), degree_.end(), least) - degree_.begin());
+      const int p =
+          static_cast<int>(std::find(degree_.begin(), degree_.end(), least) - degree_.begin());
       take(p);
       std::int16_t clique = 0;
       for (std::size_t w = 0; w < words_; ++w) {
@@ -111,14 +133,14 @@ class LeafOrder {
     }
   }
 
-  std::int16_t degree_of(int i) {
+  [[gnu::always_inline]] std::int16_t degree_of(int i) {
     int sum = 0;
     for (std::size_t w = 0; w < words_; ++w) sum += std::popcount(row(i)[w] & alive_[w]);
     return static_cast<std::int16_t>(sum);
   }
 
   template <class Visit>
-  void for_each_bit(Visit&& visit) {
+  [[gnu::always_inline]] void for_each_bit(Visit&& visit) {
     for (std::size_t w = 0; w < words_; ++w) {
       for (std::uint64_t bits = pivot_[w]; bits != 0; bits &= bits - 1) {
         visit(static_cast<int>(64 * w) + std::countr_zero(bits));
@@ -135,8 +157,8 @@ class LeafOrder {
   std::vector<std::int16_t> degree_;
 };
 
-/// The vertices along a curve through all places, neighbours close together: everything that follows
-/// walks memory in that order.
+/// The vertices along a curve through all places, neighbours close together: everything that
+/// follows walks memory in that order.
 std::vector<int> order_along_curve(std::span<const Place> places) {
   Place low, high;
   low.fill(std::numeric_limits<float>::max());
@@ -169,7 +191,8 @@ std::vector<int> order_along_curve(std::span<const Place> places) {
     }
     items[v] = {code, static_cast<int>(v)};
   }
-  for (int shift = 0; shift < 33; shift += 11) {  // least digit first, so equal codes keep their order
+  for (int shift = 0; shift < 33;
+       shift += 11) {  // least digit first, so equal codes keep their order
     std::array<std::size_t, 2049> first{};
     for (const Item& item : items) ++first[(item.code >> shift & 2047) + 1];
     for (int d = 0; d < 2048; ++d) first[d + 1] += first[d];
@@ -227,17 +250,17 @@ Coarse coarsen(const Graph& graph) {
 }
 
 struct Part {
-  int begin, end;  // of the order
+  int begin, end;  // of the members
 };
 
 /// Splits parts of a graph in two and a separator, in place: first part, second part, separator.
-/// The separator of a large part is sought among clusters first, in a wide band around the middle of
-/// the part, and then among the vertices near the best of them.
+/// The separator of a large part is sought among clusters first, in a wide band around the middle
+/// of the part, and then among the vertices near the best of them.
 class Dissection {
  public:
   Dissection(const Graph& graph, const std::vector<Place>& places)
-      : order(graph.count()), graph_(graph), places_(places), label_(graph.count(), kOutside) {
-    std::iota(order.begin(), order.end(), 0);
+      : graph_(graph), label_(graph.count(), kOutside), members_(graph.count()) {
+    for (int v = 0; v < graph.count(); ++v) members_[v] = {places[v], v};
     for (int level = 0; level < kLevels; ++level) {
       coarse_.push_back(coarsen(level == 0 ? graph : coarse_.back().graph));
       if (level == 0) continue;
@@ -248,64 +271,74 @@ class Dissection {
     }
   }
 
-  std::vector<int> order;
+  struct Member {
+    Place place;
+    int vertex;
+  };
 
   struct Scratch {
     struct Item {
       float key;
-      int vertex;
+      int index;
       bool operator<(const Item& other) const {
-        return key < other.key || (key == other.key && vertex < other.vertex);
+        return key < other.key || (key == other.key && index < other.index);
       }
     };
     struct Cluster {
       int name;
-      double key = 0;  // sum over its vertices in the part
-      int size = 0;
+      int size = 0;    // its vertices in the part
+      double key = 0;  // their sum
       int label = 0;
     };
-    std::vector<Item> items, cluster_items;
-    std::vector<Cluster> clusters;  // of the part
-    // Per level and cluster: its place in `clusters`, or -1.
-    std::array<std::vector<int>, 2> number;
-    std::vector<int> band;  // vertices or clusters, from the first side to the second
-    int own = 0;            // the rest of the band was taken from the first side
+    std::vector<Item> items;  // of the part: index among the members
+    std::vector<Item> band_items;
+    std::vector<int> cluster_of;  // per item: its place in `clusters`
+    std::vector<Cluster> clusters;
+    std::array<std::vector<int>, 2>
+        number;                           // per level and cluster: its place in `clusters`, or -1
+    std::vector<int> band;                // vertices or clusters, first side to second side
+    int own = 0;                          // the rest of the band was taken from the first side
+    std::array<std::int64_t, 2> sizes{};  // of the sides besides the band
+    std::vector<Member> second, separator;
+    std::vector<int> leaf_vertices;
     VertexSeparator separate;
     LeafOrder leaf;
   };
 
   std::pair<Part, Part> split(Part part, Scratch& scratch) {
     const Place direction = longest_direction(part);
-    auto& items = scratch.items;
     const int count = part.end - part.begin;
-    items.resize(count);
+    scratch.items.resize(count);
     for (int i = 0; i < count; ++i) {
-      const int v = order[part.begin + i];
-      items[i] = {dot(places_[v], direction), v};
+      scratch.items[i] = {dot(members_[part.begin + i].place, direction), part.begin + i};
     }
     if (count < kFewest[0] || !label_by_clusters(count < kFewest[1] ? 0 : 1, scratch)) {
       label_by_place(scratch);
     }
-    std::int64_t sizes[2] = {0, 0};
-    for (const Item& item : items) {
-      sizes[0] += label_[item.vertex] == kFirstCore ? 1 : 0;
-      sizes[1] += label_[item.vertex] == kSecondCore ? 1 : 0;
-    }
-    describe_band(graph_, [&](int v) { return label_[v]; }, scratch);
-    const auto& sides = scratch.separate.cut(sizes[0], sizes[1]);
+    describe_band(
+        graph_, [&](int v) { return label_[v]; }, scratch);
+    const auto& sides = scratch.separate.cut(scratch.sizes[0], scratch.sizes[1]);
 
-    int* target = order.data() + part.begin;
-    const auto append = [&](int label, int side) {
-      for (const Item& item : items) {
-        const int own = label_[item.vertex];
-        if (own == label || (own >= 0 && sides[own] == side)) *target++ = item.vertex;
+    scratch.second.clear();
+    scratch.separator.clear();
+    Member* target = members_.data() + part.begin;
+    for (int i = part.begin; i < part.end; ++i) {
+      const Member member = members_[i];
+      int& label = label_[member.vertex];
+      std::uint8_t side = VertexSeparator::kSourceSide;
+      if (label >= 0) side = sides[label];
+      if (label == kSecondCore) side = VertexSeparator::kSinkSide;
+      label = kOutside;
+      if (side == VertexSeparator::kSourceSide) {
+        *target++ = member;
+      } else {
+        (side == VertexSeparator::kSinkSide ? scratch.second : scratch.separator).push_back(member);
       }
-      return static_cast<int>(target - order.data());
-    };
-    const Part first = {part.begin, append(kFirstCore, VertexSeparator::kSourceSide)};
-    const Part second = {first.end, append(kSecondCore, VertexSeparator::kSinkSide)};
-    append(kNoCore, VertexSeparator::kSeparator);
-    for (const Item& item : items) label_[item.vertex] = kOutside;
+    }
+    const Part first = {part.begin, static_cast<int>(target - members_.data())};
+    target = std::copy(scratch.second.begin(), scratch.second.end(), target);
+    const Part second = {first.end, static_cast<int>(target - members_.data())};
+    std::copy(scratch.separator.begin(), scratch.separator.end(), target);
     sort_separator({second.end, part.end}, scratch);
     return {first, second};
   }
@@ -317,8 +350,7 @@ class Dissection {
       const Part next = waiting.back();
       waiting.pop_back();
       if (next.end - next.begin <= kLeaf) {
-        scratch.leaf.run(graph_, std::span(order).subspan(next.begin, next.end - next.begin),
-                         label_);
+        order_leaf(next, scratch);
         continue;
       }
       const auto [first, second] = split(next, scratch);
@@ -327,13 +359,17 @@ class Dissection {
     }
   }
 
+  const std::vector<Member>& members() const { return members_; }
+
  private:
   using Item = Scratch::Item;
   // What label_ says, besides the number of a vertex in the band (>= 0).
-  static constexpr int kOutside = -1, kFirstCore = -2, kSecondCore = -3, kNoCore = -4;
+  static constexpr int kOutside = -1, kFirstCore = -2, kSecondCore = -3;
   static constexpr int kLevels = 2;
   // Parts of so many vertices are split by clusters of about 5, and of about 25.
   static constexpr std::array<int, kLevels> kFewest = {800, 2500};
+  // In parts of so many, the band around a separator of clusters is three clusters wide, not one.
+  static constexpr int kWide = 4000;
   // The share of a part, on each side of its middle, where the separator is looked for: wider bands
   // hold smaller separators, and cost more.
   static constexpr double kHalfBand = 0.08, kHalfBandOfClusters = 0.2;
@@ -342,13 +378,21 @@ class Dissection {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
 
+  void order_leaf(Part part, Scratch& scratch) {
+    auto& vertices = scratch.leaf_vertices;
+    vertices.clear();
+    for (int i = part.begin; i < part.end; ++i) vertices.push_back(members_[i].vertex);
+    scratch.leaf.run(graph_, vertices, label_);
+    for (int i = part.begin; i < part.end; ++i) members_[i].vertex = vertices[i - part.begin];
+  }
+
   /// The direction in which the part extends the most, by power iterations on its covariance.
   Place longest_direction(Part part) const {
     std::array<double, 3> mean{};
     std::array<double, 6> moments{};
-    const Place& origin = places_[order[part.begin]];
+    const Place origin = members_[part.begin].place;
     for (int i = part.begin; i < part.end; ++i) {
-      Place p = places_[order[i]];
+      Place p = members_[i].place;
       for (int k = 0; k < 3; ++k) {
         p[k] -= origin[k];
         mean[k] += p[k];
@@ -391,99 +435,107 @@ class Dissection {
     std::nth_element(items.begin(), items.begin() + begin, items.end());
     std::nth_element(items.begin() + begin, items.begin() + (end - 1), items.end());
     std::sort(items.begin() + begin, items.begin() + end);
+    const auto vertex = [&](int i) { return members_[items[i].index].vertex; };
+    for (int i = 0; i < begin; ++i) label_[vertex(i)] = kFirstCore;
+    for (int i = end; i < count; ++i) label_[vertex(i)] = kSecondCore;
     scratch.band.clear();
-    const auto add_to_band = [&](int v) {
-      label_[v] = static_cast<int>(scratch.band.size());
-      scratch.band.push_back(v);
-    };
-    for (int i = 0; i < begin; ++i) label_[items[i].vertex] = kFirstCore;
-    for (int i = begin; i < end; ++i) add_to_band(items[i].vertex);
-    for (int i = end; i < count; ++i) label_[items[i].vertex] = kSecondCore;
-    scratch.own = static_cast<int>(scratch.band.size());
+    for (int i = begin; i < end; ++i) add_to_band(vertex(i), scratch);
+    scratch.own = end - begin;
     for (int i = 0; i < begin; ++i) {
-      for (const int w : graph_.neighbours(items[i].vertex)) {
+      for (const int w : graph_.neighbours(vertex(i))) {
         if (label_[w] != kSecondCore) continue;
-        add_to_band(items[i].vertex);
+        add_to_band(vertex(i), scratch);
         break;
       }
     }
+    scratch.sizes = {begin - (static_cast<int>(scratch.band.size()) - scratch.own), count - end};
   }
 
-  /// The same from a separator among clusters: the band is those clusters and the ones next to them.
-  /// False: the clusters are too few to have sides.
+  void add_to_band(int v, Scratch& scratch) {
+    label_[v] = static_cast<int>(scratch.band.size());
+    scratch.band.push_back(v);
+  }
+
+  /// The same from a separator among clusters: the band is those clusters and the ones next to
+  /// them. False: the clusters are too few to have sides.
   bool label_by_clusters(int level, Scratch& scratch) {
     const Coarse& coarse = coarse_[level];
     std::vector<int>& number = scratch.number[level];
     if (number.empty()) number.assign(coarse.graph.count(), -1);
     auto& clusters = scratch.clusters;
     clusters.clear();
+    scratch.cluster_of.clear();
     for (const Item& item : scratch.items) {
-      int& place = number[coarse.cluster[item.vertex]];
+      const int name = coarse.cluster[members_[item.index].vertex];
+      int& place = number[name];
       if (place < 0) {
         place = static_cast<int>(clusters.size());
-        clusters.push_back({coarse.cluster[item.vertex]});
+        clusters.push_back({name});
       }
       clusters[place].key += item.key;
       ++clusters[place].size;
+      scratch.cluster_of.push_back(place);
     }
     const auto label_of = [&](int name) {
       return number[name] < 0 ? kOutside : clusters[number[name]].label;
     };
     choose_band_of_clusters(coarse.graph, label_of, scratch);
     describe_band(coarse.graph, label_of, scratch);
-    std::int64_t sizes[2] = {0, 0};
+    std::array<std::int64_t, 2> cores{};
     for (const auto& c : clusters) {
-      sizes[0] += c.label == kFirstCore ? 1 : 0;
-      sizes[1] += c.label == kSecondCore ? 1 : 0;
+      if (c.label < 0) ++cores[c.label == kFirstCore ? 0 : 1];
     }
-    const auto& sides = scratch.separate.cut(sizes[0], sizes[1]);
+    const auto& sides = scratch.separate.cut(cores[0], cores[1]);
+    constexpr int kSeparator = 0, kBeside = 1;
     for (auto& c : clusters) {
       if (c.label < 0) continue;
       const std::uint8_t side = sides[c.label];
       c.label = side == VertexSeparator::kSourceSide ? kFirstCore
                 : side == VertexSeparator::kSinkSide ? kSecondCore
-                                                     : 0;
+                                                     : kSeparator;
     }
-    for (auto& c : clusters) {
-      if (c.label != 0) continue;
+    // In small parts the separators matter less than the time to find them.
+    const bool wide = static_cast<int>(scratch.items.size()) >= kWide;
+    for (const auto& c : clusters) {
+      if (c.label != kSeparator || !wide) continue;
       for (const int w : coarse.graph.neighbours(c.name)) {
-        if (number[w] >= 0 && clusters[number[w]].label < 0) clusters[number[w]].label = 1;
+        if (number[w] >= 0 && clusters[number[w]].label < 0) clusters[number[w]].label = kBeside;
       }
     }
-    bool first = false, second = false;
-    scratch.cluster_items.clear();
-    for (const Item& item : scratch.items) {
-      const int label = label_of(coarse.cluster[item.vertex]);
-      first = first || label == kFirstCore;
-      second = second || label == kSecondCore;
-      label_[item.vertex] = label;
-      if (label >= 0) scratch.cluster_items.push_back(item);
-    }
-    std::sort(scratch.cluster_items.begin(), scratch.cluster_items.end());
-    scratch.band.clear();
-    for (const Item& item : scratch.cluster_items) {
-      label_[item.vertex] = static_cast<int>(scratch.band.size());
-      scratch.band.push_back(item.vertex);
-    }
-    scratch.own = static_cast<int>(scratch.band.size());
     for (const auto& c : clusters) number[c.name] = -1;
-    return first && second;
+    scratch.sizes = {0, 0};
+    scratch.band_items.clear();
+    for (std::size_t i = 0; i < scratch.items.size(); ++i) {
+      const int label = clusters[scratch.cluster_of[i]].label;
+      if (label >= 0) {
+        scratch.band_items.push_back(scratch.items[i]);
+      } else {
+        ++scratch.sizes[label == kFirstCore ? 0 : 1];
+        label_[members_[scratch.items[i].index].vertex] = label;
+      }
+    }
+    std::sort(scratch.band_items.begin(), scratch.band_items.end());
+    scratch.band.clear();
+    for (const Item& item : scratch.band_items) add_to_band(members_[item.index].vertex, scratch);
+    scratch.own = static_cast<int>(scratch.band.size());
+    return scratch.sizes[0] > 0 && scratch.sizes[1] > 0;
   }
 
   template <class LabelOf>
   void choose_band_of_clusters(const Graph& graph, const LabelOf& label_of, Scratch& scratch) {
     auto& clusters = scratch.clusters;
-    auto& items = scratch.cluster_items;
+    auto& items = scratch.band_items;
     items.clear();
     for (std::size_t i = 0; i < clusters.size(); ++i) {
-      items.push_back({static_cast<float>(clusters[i].key / clusters[i].size), static_cast<int>(i)});
+      items.push_back(
+          {static_cast<float>(clusters[i].key / clusters[i].size), static_cast<int>(i)});
     }
     std::sort(items.begin(), items.end());
     const auto total = static_cast<double>(scratch.items.size());
     scratch.band.clear();
     double before = 0;
     for (const Item& item : items) {
-      auto& c = clusters[item.vertex];
+      auto& c = clusters[item.index];
       const double middle = (before + 0.5 * c.size) / total - 0.5;
       before += c.size;
       if (middle < -kHalfBandOfClusters) {
@@ -516,20 +568,26 @@ class Dissection {
     cut.terminal.clear();
     for (const int v : scratch.band) {
       std::uint8_t terminal = VertexSeparator::kNeither;
+      const std::size_t first = cut.neighbour.size();
       for (const int w : graph.neighbours(v)) {
         const int label = label_of(w);
         if (label >= 0) {
+          // The band is numbered from the sources to the sinks: onward first, by insertion.
+          std::size_t at = cut.neighbour.size();
           cut.neighbour.push_back(label);
+          for (; at > first && cut.neighbour[at - 1] < label; --at) {
+            cut.neighbour[at] = cut.neighbour[at - 1];
+          }
+          cut.neighbour[at] = label;
         } else if (label == kFirstCore) {
           terminal |= VertexSeparator::kSource;
         } else if (label == kSecondCore) {
           terminal |= VertexSeparator::kSink;
         }
       }
-      // The band is numbered from the sources to the sinks: onward first.
-      std::sort(cut.neighbour.begin() + cut.start.back(), cut.neighbour.end(), std::greater<>());
       cut.start.push_back(static_cast<int>(cut.neighbour.size()));
-      if (static_cast<int>(cut.terminal.size()) >= scratch.own) terminal |= VertexSeparator::kSource;
+      if (static_cast<int>(cut.terminal.size()) >= scratch.own)
+        terminal |= VertexSeparator::kSource;
       cut.terminal.push_back(terminal);
     }
   }
@@ -538,19 +596,21 @@ class Dissection {
   void sort_separator(Part part, Scratch& scratch) {
     if (part.end - part.begin < 2) return;
     const Place direction = longest_direction(part);
-    auto& items = scratch.items;
+    auto& items = scratch.band_items;
     items.clear();
     for (int i = part.begin; i < part.end; ++i) {
-      items.push_back({dot(places_[order[i]], direction), order[i]});
+      items.push_back({dot(members_[i].place, direction), i - part.begin});
     }
     std::sort(items.begin(), items.end());
-    for (int i = part.begin; i < part.end; ++i) order[i] = items[i - part.begin].vertex;
+    for (int i = part.begin; i < part.end; ++i) {
+      members_[i] = scratch.separator[items[i - part.begin].index];
+    }
   }
 
   const Graph& graph_;
-  const std::vector<Place>& places_;
   std::vector<int> label_;  // per vertex; parts at work side by side share no vertex and no edge
   std::vector<Coarse> coarse_;
+  std::vector<Member> members_;
 };
 
 }  // namespace
@@ -638,7 +698,7 @@ std::vector<int> minimum_degree_order(const Graph& graph) {
 }
 
 std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
-                                         int threads, const Checkpoint& checkpoint) {
+                                         int threads, const Poll& poll) {
   const std::vector<int> curve = order_along_curve(places);
   const Graph local = renumber(graph, curve, threads);
   std::vector<Place> local_places(places.size());
@@ -649,7 +709,7 @@ std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Pla
   std::vector<Part> parts = {{0, graph.count()}};
   Dissection::Scratch scratch;
   while (parts.size() < kParts) {
-    checkpoint(0);
+    poll();
     std::vector<Part> next(2 * parts.size());
     std::vector<Part> splittable;
     const int least = 4 * kLeaf;
@@ -667,14 +727,15 @@ std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Pla
                  });
     parts.swap(next);
   }
-  checkpoint(0);
+  poll();
   parallel_for(threads, static_cast<std::int64_t>(parts.size()), 1,
                [&](std::int64_t i, std::int64_t) {
                  Dissection::Scratch own;
                  dissection.finish(parts[i], own);
                });
-  std::vector<int> order = std::move(dissection.order);
-  for (int& v : order) v = curve[v];
+  std::vector<int> order;
+  order.reserve(curve.size());
+  for (const auto& member : dissection.members()) order.push_back(curve[member.vertex]);
   return order;
 }
 

@@ -4,11 +4,10 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include "base/checkpoint.h"
 
 namespace beltrami {
 
@@ -19,11 +18,15 @@ using DenseMatrix = Eigen::MatrixXd;
 /// Where the unknowns of a matrix are in space: only differences matter.
 using Place = std::array<float, 3>;
 
+/// Called now and then, always on the caller's thread, while a matrix is analyzed and factorized.
+/// May throw to cancel that; the solver can be given another matrix then.
+using Poll = std::function<void()>;
+
 enum class Precision {
   kDouble,
-  /// Half the memory and time where the back end can: the factor is in single precision, and solve()
-  /// takes the residual to 1e-9 of the right-hand side with it. For matrices that are definite by
-  /// construction: whether a matrix is definite is decided in single precision first.
+  /// Half the memory and time where the back end can: the factor is in single precision, and
+  /// solve() takes the residual to 1e-9 of the right-hand side with it. For matrices that are
+  /// definite by construction: whether a matrix is definite is decided in single precision first.
   kSingle,
 };
 
@@ -31,7 +34,7 @@ enum class Precision {
 struct SolverOptions {
   Precision precision = Precision::kDouble;
   int threads = 1;
-  Checkpoint checkpoint = no_checkpoint;  ///< called now and then while analyzing and factorizing
+  Poll poll = [] {};
 };
 
 /// A direct solver. The bits of a solution depend on the matrix, the places and the options other
@@ -39,8 +42,8 @@ struct SolverOptions {
 class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
-  /// Orders the pattern of `lower`. `places`, which may be empty: one per row, or one per block where
-  /// the matrix consists of dense 2 x 2 blocks; they help to order large matrices. Throws
+  /// Orders the pattern of `lower`. `places`, which may be empty: one per row, or one per block
+  /// where the matrix consists of dense 2 x 2 blocks; they help to order large matrices. Throws
   /// std::bad_alloc, or Error SOLVER.
   virtual void analyze(const SparseMatrix& lower, std::span<const Place> places) = 0;
   void analyze(const SparseMatrix& lower) { analyze(lower, {}); }
@@ -51,7 +54,8 @@ class SpdSolver {
   /// single precision turns out to be useless and there is none in double precision.
   virtual DenseMatrix solve(const DenseMatrix& rhs) const = 0;
   /// An approximate inverse times `rhs`, for preconditioning: linear, symmetric, definite, the same
-  /// until the next factorization. Good to single precision at least, and never slower than solve().
+  /// until the next factorization. Good to single precision at least, and never slower than
+  /// solve().
   virtual DenseMatrix precondition(const DenseMatrix& rhs) const { return solve(rhs); }
   /// The given rows of the solution alone, in the order of `rows`: rows(A^-1 rhs). A back end may
   /// skip the parts of the factor that neither the right-hand sides nor the rows reach;

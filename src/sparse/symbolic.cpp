@@ -232,13 +232,13 @@ void find_rows(const Graph& graph, const std::vector<int>& vertex, const std::ve
 }  // namespace
 
 Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int block_size,
-                         int threads, const Checkpoint& checkpoint) {
+                         int threads, const Poll& poll) {
   const int n = given.count();
   const Graph graph = renumber(given, order, threads);
   const std::vector<int> tree = elimination_tree(graph);
   const std::vector<int> post = postorder(tree);
   const std::vector<int> counts = column_counts(graph, tree, post);
-  checkpoint(0);
+  poll();
 
   Symbolic symbolic;
   symbolic.block_size = block_size;
@@ -247,8 +247,7 @@ Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int 
   for (int p = 0; p < n; ++p) {
     const int v = post[p];
     symbolic.work += static_cast<double>(counts[v]) * counts[v];
-    const bool joins =
-        p > 0 && tree[post[p - 1]] == v && counts[post[p - 1]] == counts[v] + 1;
+    const bool joins = p > 0 && tree[post[p - 1]] == v && counts[post[p - 1]] == counts[v] + 1;
     if (!joins) {
       node_start.push_back(p);
       nodes.push_back({0, 0});
@@ -310,7 +309,7 @@ Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int 
   for (int v = 0; v < n; ++v) symbolic.place[order[v]] = column[v];
 
   symbolic.rows.resize(symbolic.row_start[count]);
-  checkpoint(0);
+  poll();
   std::vector<int> seen(n, kRoot);
   for (int s = 0; s < count; ++s) find_rows(graph, vertex, column, symbolic, s, seen);
   return symbolic;

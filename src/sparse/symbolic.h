@@ -9,9 +9,9 @@
 
 namespace beltrami {
 
-/// The supernodes of L for a matrix of square blocks (all counts and numbers here are of block rows)
-/// in the order of elimination. A supernode is a run of columns that share the rows below them;
-/// stored explicitly, it holds some zeros where that costs less than one supernode more.
+/// The supernodes of L for a matrix of square blocks (all counts and numbers here are of block
+/// rows) in the order of elimination. A supernode is a run of columns that share the rows below
+/// them; stored explicitly, it holds some zeros where that costs less than one supernode more.
 /// Supernodes come in the order of elimination: children before parents; first the subtrees in
 /// `tasks` one after the other, which share nothing, then their common ancestors.
 struct Symbolic {
@@ -50,7 +50,7 @@ struct Symbolic {
 /// Elimination tree (Liu 1986), column counts (Gilbert, Ng, Peyton 1994), supernodes merged by what
 /// they would cost, and their rows. `order`: see minimum_degree_order.
 Symbolic analyze_pattern(const Graph& graph, const std::vector<int>& order, int block_size,
-                         int threads, const Checkpoint& checkpoint);
+                         int threads, const Poll& poll);
 
 /// The multiplications that factorizing in this order takes, as in Symbolic.
 double factor_work(const Graph& graph, const std::vector<int>& order);

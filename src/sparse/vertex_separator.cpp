@@ -40,8 +40,9 @@ bool VertexSeparator::augment(int source) {
     const int node = path_.back(), v = node / 2;
     int onward = kNone;
     if (node == in(v)) {
-      const int target =
-          previous_[v] == kNone ? out(v) : previous_[v] >= 0 ? out(previous_[v]) : kNone;
+      const int target = previous_[v] == kNone ? out(v)
+                         : previous_[v] >= 0   ? out(previous_[v])
+                                               : kNone;
       if (target != kNone && tried_[target] == 0) onward = target;
     } else {
       if ((terminal[v] & kSink) != 0 && next_[v] != kTerminal) {
@@ -145,7 +146,9 @@ void VertexSeparator::reach_from_sinks() {
     }
   }
   for (int v = 0; v < count_; ++v) {
-    other_side_[v] = reached_[in(v)] != 0 ? kSinkSide : reached_[out(v)] != 0 ? kSeparator : kSourceSide;
+    other_side_[v] = reached_[in(v)] != 0    ? kSinkSide
+                     : reached_[out(v)] != 0 ? kSeparator
+                                             : kSourceSide;
   }
 }
 

@@ -7,8 +7,8 @@
 namespace beltrami {
 
 /// The smallest set of vertices that separates the sources from the sinks, which may be part of it:
-/// a maximum flow of vertex-disjoint paths (Menger 1927; Ford & Fulkerson 1956). Fast where the first
-/// neighbours in the list lead towards the sinks: most paths are found at the first try then.
+/// a maximum flow of vertex-disjoint paths (Menger 1927; Ford & Fulkerson 1956). Fast where the
+/// first neighbours in the list lead towards the sinks: most paths are found at the first try then.
 /// Reusable, so that its buffers are allocated once. Fill the graph's arrays, call cut().
 class VertexSeparator {
  public:

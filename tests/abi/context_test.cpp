@@ -22,9 +22,9 @@ TEST(Library, TellsItsVersion) {
 }
 
 TEST(Library, HasOneSolver) {
-  EXPECT_EQ(beltrami_has("solver:native") + beltrami_has("solver:eigen") +
-                beltrami_has("solver:cholmod"),
-            1);
+  EXPECT_EQ(
+      beltrami_has("solver:native") + beltrami_has("solver:eigen") + beltrami_has("solver:cholmod"),
+      1);
   EXPECT_EQ(beltrami_has("gpl"), beltrami_has("solver:cholmod"));
   EXPECT_EQ(beltrami_has("solver:"), 0);
   EXPECT_EQ(beltrami_has(""), 0);
