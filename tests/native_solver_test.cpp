@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "mesh/rest_shape.h"
 #include "sparse/mesh_matrix.h"
-#include "sparse/spd_solver.h"
+#include "sparse/native_solver.h"
 #include "support/disks.h"
 
 namespace beltrami {
@@ -163,7 +163,7 @@ TEST(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
   for (const System& system : systems()) {
     const int n = static_cast<int>(system.lower.cols());
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_spd_solver({precision});
+      const auto solver = make_native_solver({precision});
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower)) << system.name;
       for (const int columns : {0, 1, 2, 3, 5}) {
@@ -186,7 +186,7 @@ TEST(NativeSolver, AgreesWithASimplicialFactor) {
     const DenseMatrix rhs = random_matrix(random, static_cast<int>(system.lower.cols()), 2);
     const Eigen::SimplicialLLT<SparseMatrix> reference(system.lower);
     const DenseMatrix expected = reference.solve(rhs);
-    const auto solver = make_spd_solver();
+    const auto solver = make_native_solver();
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     EXPECT_LE((solver->solve(rhs) - expected).norm(), 1e-9 * expected.norm()) << system.name;
@@ -210,7 +210,7 @@ TEST(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
       DenseMatrix x, p, h;
       for (const int threads : {1, 2, 3, 8}) {
-        const auto solver = make_spd_solver({precision, threads});
+        const auto solver = make_native_solver({precision, threads});
         solver->analyze(system.lower, system.places);
         ASSERT_TRUE(solver->factorize(system.lower));
         const DenseMatrix x_now = solver->solve(rhs), p_now = solver->precondition(rhs),
@@ -242,7 +242,7 @@ TEST(NativeSolver, GivesSingleRowsOfTheSolution) {
     std::vector<int> rows;
     for (int i = 0; i < 25; ++i) rows.push_back(random.below(n));  // repeats are allowed
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_spd_solver({precision});
+      const auto solver = make_native_solver({precision});
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower));
       const DenseMatrix all = solver->solve(DenseMatrix(rhs)),
@@ -261,7 +261,7 @@ TEST(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
   Random random(16);
   const System system = grid(30, 31, 1, random);
   const int n = static_cast<int>(system.lower.cols());
-  const auto solver = make_spd_solver({Precision::kSingle});
+  const auto solver = make_native_solver({Precision::kSingle});
   solver->analyze(system.lower, system.places);
   ASSERT_TRUE(solver->factorize(system.lower));
   const DenseMatrix rhs = random_matrix(random, n, 2);
@@ -286,11 +286,11 @@ TEST(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
   }
   for (const double excess : {1e-3, 1e-7, 1e-9}) {
     system.lower = dominant(900, entries, excess);
-    const auto solver = make_spd_solver({Precision::kSingle});
+    const auto solver = make_native_solver({Precision::kSingle});
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, 900, 2);
-    const auto exact = make_spd_solver();
+    const auto exact = make_native_solver();
     exact->analyze(system.lower, system.places);
     ASSERT_TRUE(exact->factorize(system.lower));
     const double attainable = residual(system.lower, exact->solve(rhs), rhs);
@@ -310,7 +310,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
         for (const int threads : {1, 2}) {
           SparseMatrix lower = system.lower;
           lower.coeffRef(at, at) = bad;
-          const auto solver = make_spd_solver({precision, threads});
+          const auto solver = make_native_solver({precision, threads});
           solver->analyze(system.lower, system.places);
           EXPECT_FALSE(solver->factorize(lower)) << bad;
           ASSERT_TRUE(solver->factorize(system.lower));  // and recovers
@@ -323,7 +323,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
     for (const double bad : {-100.0, std::numeric_limits<double>::quiet_NaN()}) {
       SparseMatrix lower = system.lower;
       lower.valuePtr()[lower.outerIndexPtr()[500] + 1] = bad;
-      const auto solver = make_spd_solver({precision});
+      const auto solver = make_native_solver({precision});
       solver->analyze(system.lower, system.places);
       EXPECT_FALSE(solver->factorize(lower)) << bad;
     }
@@ -337,7 +337,7 @@ TEST(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
   lower.insert(2, 2) = 1;
   lower.makeCompressed();
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-    const auto solver = make_spd_solver({precision});
+    const auto solver = make_native_solver({precision});
     solver->analyze(lower);
     EXPECT_FALSE(solver->factorize(lower));
   }
@@ -349,7 +349,7 @@ TEST(NativeSolver, TakesPlacesThatSayNothing) {
   for (const Place& place : {Place{0, 0, 0}, Place{infinity, 0, 0}, Place{1e30F, -1e30F, 1e-30F}}) {
     System system = grid(510, 495, 1, random);  // enough for nested dissection
     std::fill(system.places.begin(), system.places.end(), place);
-    const auto solver = make_spd_solver({Precision::kSingle, 2});
+    const auto solver = make_native_solver({Precision::kSingle, 2});
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, static_cast<int>(system.lower.cols()), 1);
@@ -367,7 +367,7 @@ TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   options.poll = [&] {
     if (++calls > allowed) throw Cancelled();
   };
-  const auto solver = make_spd_solver(options);
+  const auto solver = make_native_solver(options);
   solver->analyze(system.lower, system.places);
   ASSERT_TRUE(solver->factorize(system.lower));
   const int all = calls;
@@ -375,7 +375,7 @@ TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   for (const int i : {0, 3, all / 2, all - 1}) {
     calls = 0;
     allowed = i;
-    const auto cancelled = make_spd_solver(options);
+    const auto cancelled = make_native_solver(options);
     EXPECT_THROW(
         {
           cancelled->analyze(system.lower, system.places);
@@ -401,7 +401,7 @@ TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
           matrix.add(f, mesh.faces[f], i, next_corner(i), other);
         }
       }
-      const auto solver = make_spd_solver();
+      const auto solver = make_native_solver();
       solver->analyze(matrix.matrix(), matrix.places(mesh.positions));
       ASSERT_TRUE(solver->factorize(matrix.matrix()));
       const DenseMatrix rhs = random_matrix(random, size * matrix.free_count(), 2);

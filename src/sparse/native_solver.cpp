@@ -1,3 +1,5 @@
+#include "sparse/native_solver.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,7 +8,6 @@
 #include "base/parallel.h"
 #include "sparse/multifrontal.h"
 #include "sparse/ordering.h"
-#include "sparse/spd_solver.h"
 #include "sparse/symbolic.h"
 
 namespace beltrami {
@@ -294,12 +295,8 @@ class NativeSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options) {
+std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options) {
   return std::make_unique<NativeSolver>(options);
-}
-
-const char* spd_solver_name() {
-  return "native";
 }
 
 }  // namespace beltrami
