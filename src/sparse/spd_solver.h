@@ -25,7 +25,7 @@ using Poll = std::function<void()>;
 enum class Precision {
   kDouble,
   /// Half the memory and time where the back end can: the factor is in single precision, and
-  /// solve() takes the residual to 1e-9 of the right-hand side with it. For matrices that are
+  /// solve() takes the residual to 5e-9 of the right-hand side with it. For matrices that are
   /// definite by construction: whether a matrix is definite is decided in single precision first.
   kSingle,
 };
