@@ -372,6 +372,7 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
 }
 
 // The bodies above for one width of vectors: NAME and what the compiler may use.
+// NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot be put in parentheses.
 #define BELTRAMI_KERNELS(NAME, TARGET, BYTES)                                                     \
   template <class T>                                                                              \
   struct NAME {                                                                                   \
@@ -393,6 +394,7 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
     static constexpr Kernels<T> kAll = {run_eliminate, run_update, run_forward, run_backward};    \
   };
 
+// NOLINTEND(bugprone-macro-parentheses)
 BELTRAMI_KERNELS(Baseline, , 16)
 #if BELTRAMI_DISPATCH_AVX2
 BELTRAMI_KERNELS(Avx2, [[gnu::target("avx2")]], 32)
