@@ -372,7 +372,7 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
 }
 
 // The bodies above for one width of vectors: NAME and what the compiler may use.
-// NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot be put in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot be put in parentheses
 #define BELTRAMI_KERNELS(NAME, TARGET, BYTES)                                                     \
   template <class T>                                                                              \
   struct NAME {                                                                                   \
