@@ -39,7 +39,7 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
 }
 
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
-                    std::vector<Vec2>& uvs) {
+                    std::vector<Vec2>& uvs, int threads) {
   DenseMatrix rhs = DenseMatrix::Zero(mesh.vertex_count(), 2);
   MeshMatrix laplacian =
       assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
@@ -47,8 +47,8 @@ void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotange
                            rhs.row(row) += weight * uvs[vertex].transpose();
                          });
   if (laplacian.free_count() == 0) return;
-  const DenseMatrix solution =
-      factorize_laplacian(laplacian)->solve(rhs.topRows(laplacian.free_count()));
+  const auto solver = factorize_laplacian(laplacian, mesh.positions, {Precision::kSingle, threads});
+  const DenseMatrix solution = solver->solve(rhs.topRows(laplacian.free_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (laplacian.row(v) != kNone) uvs[v] = solution.row(laplacian.row(v)).transpose();
   }

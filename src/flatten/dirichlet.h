@@ -21,6 +21,6 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
 /// boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand sides. Throws
 /// Error SOLVER.
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
-                    std::vector<Vec2>& uvs);
+                    std::vector<Vec2>& uvs, int threads = 1);
 
 }  // namespace beltrami

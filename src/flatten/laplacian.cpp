@@ -34,10 +34,12 @@ std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& res
   return cotangents;
 }
 
-std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian) {
-  auto solver = make_spd_solver();
+std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian,
+                                               const std::vector<Vec3>& positions,
+                                               const SolverOptions& options) {
+  auto solver = make_spd_solver(options);
   poll_interrupt();
-  solver->analyze(laplacian.matrix());
+  solver->analyze(laplacian.matrix(), laplacian.places(positions));
   refactorize_laplacian(*solver, laplacian);
   return solver;
 }

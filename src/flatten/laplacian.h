@@ -57,9 +57,12 @@ MeshMatrix assemble_laplacian(Index vertex_count, const std::vector<Triangle>& f
   return laplacian;
 }
 
-/// A factor of an assembled Laplacian; where rounding left it indefinite, with the least shift of
-/// its diagonal that mends it. Throws Error SOLVER where none does.
-std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian);
+/// A factor of an assembled Laplacian of the vertices at `positions`, which help to order it; where
+/// rounding left it indefinite, with the least shift of its diagonal that mends it. Throws Error
+/// SOLVER where none does.
+std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian,
+                                               const std::vector<Vec3>& positions,
+                                               const SolverOptions& options);
 
 /// The same with the solver of an earlier Laplacian of the same pattern.
 void refactorize_laplacian(SpdSolver& solver, MeshMatrix& laplacian);

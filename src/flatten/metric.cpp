@@ -72,12 +72,12 @@ void fit_rotations(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const std::vector<FaceMetric>& metric,
-                                 const std::vector<bool>& held)
+                                 const std::vector<bool>& held, const SolverOptions& options)
     : matrix_(mesh.vertex_count(), mesh.faces, held, 1) {
   for (Index f = 0; f < mesh.face_count(); ++f) {
     add_stiffness(matrix_, f, mesh.faces[f], edge_weights(rest[f], metric[f]));
   }
-  if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_);
+  if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_, mesh.positions, options);
 }
 
 void MetricLaplacian::refit(Energy energy, const DiskMesh& mesh,
@@ -102,6 +102,16 @@ void MetricLaplacian::refit(Energy energy, const DiskMesh& mesh,
 }
 
 DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
+  return apply(rhs, &SpdSolver::solve);
+}
+
+DenseMatrix MetricLaplacian::precondition(const DenseMatrix& rhs) const {
+  return apply(rhs, &SpdSolver::precondition);
+}
+
+DenseMatrix MetricLaplacian::apply(const DenseMatrix& rhs,
+                                   DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&)
+                                       const) const {
   DenseMatrix result = DenseMatrix::Zero(rhs.rows(), rhs.cols());
   if (matrix_.free_count() == 0) return result;
   const std::vector<Index>& row = matrix_.rows();
@@ -109,7 +119,7 @@ DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
   for (Index v = 0; v < size_of(row); ++v) {
     if (row[v] != kNone) packed.row(row[v]) = rhs.row(v);
   }
-  packed = solver_->solve(packed);
+  packed = (solver_.get()->*inverse)(packed);
   for (Index v = 0; v < size_of(row); ++v) {
     if (row[v] != kNone) result.row(v) = packed.row(row[v]);
   }

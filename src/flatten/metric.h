@@ -25,7 +25,8 @@ class MetricLaplacian {
   /// the identity it approximates the Hessian of the sum of that energy at a map that has the
   /// metric. `held`: per vertex; at least one must be. Throws Error SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held);
+                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held,
+                  const SolverOptions& options = {Precision::kSingle});
 
   /// Factorizes anew for an approximate Hessian of the sum of `energy` at the map `uvs`: per face
   /// the mean of the Hessian's radial and angular parts along each singular direction, the same for
@@ -36,8 +37,13 @@ class MetricLaplacian {
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
+  /// The same roughly, at half the cost: see SpdSolver::precondition.
+  DenseMatrix precondition(const DenseMatrix& rhs) const;
 
  private:
+  DenseMatrix apply(const DenseMatrix& rhs,
+                    DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&) const) const;
+
   MeshMatrix matrix_;
   std::unique_ptr<SpdSolver> solver_;
 };

@@ -20,7 +20,7 @@ ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& 
   row_ = laplacian.rows();
   pull_.resize(laplacian.free_count(), metas_.count());
   pull_.setFromTriplets(pull.begin(), pull.end());
-  if (laplacian.free_count() > 0) solver_ = factorize_laplacian(laplacian);
+  if (laplacian.free_count() > 0) solver_ = factorize_laplacian(laplacian, mesh.positions, {});
 }
 
 DenseMatrix ReducedBasis::rows(const std::vector<Index>& vertices, int threads) const {

@@ -56,7 +56,7 @@ class NewtonStepper {
         threads_(threads),
         density_(density),
         hessian_(static_cast<Index>(fixed.size()), faces, fixed, 2),
-        solver_(make_spd_solver()) {
+        solver_(make_spd_solver({Precision::kDouble, threads})) {
     double total = 0;
     for (Index f = 0; f < counted; ++f) total += weights_[f];
     for (double& w : weights_) w /= total;

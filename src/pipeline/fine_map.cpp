@@ -125,7 +125,7 @@ std::vector<Vec2> Run::flatten_dirichlet(const FineProblem& fine) {
   std::vector<Vec2> uvs;
   stage("flatten", 0.85, [&](StageStatistics&, const Checkpoint&) {
     uvs = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
-    solve_harmonic(*disk_, fine.cotangents, uvs);
+    solve_harmonic(*disk_, fine.cotangents, uvs, options_.threads);
   });
   mend(fine, keeps_boundary_simple(), 0.95, uvs);
   return uvs;
@@ -210,14 +210,16 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   std::vector<Vec2> uvs = carried;
   std::unique_ptr<MetricLaplacian> laplacian;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    laplacian = std::make_unique<MetricLaplacian>(*disk_, fine.rest, fine.metric, held);
+    laplacian = std::make_unique<MetricLaplacian>(
+        *disk_, fine.rest, fine.metric, held, SolverOptions{Precision::kSingle, options_.threads});
     checkpoint(0.75);
     solve_metric(*disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
     const auto flips = non_positive_faces(disk_->faces, uvs, options_.threads).size();
     if (flips <= kManyFlips) return;
     // On extreme models the free map flips far more than the harmonic one.
     std::vector<Vec2> harmonic = carried;
-    solve_harmonic(*disk_, modified_cotangents(fine.rest, fine.metric, options_.threads), harmonic);
+    solve_harmonic(*disk_, modified_cotangents(fine.rest, fine.metric, options_.threads), harmonic,
+                   options_.threads);
     if (non_positive_faces(disk_->faces, harmonic, options_.threads).size() < flips) {
       uvs.swap(harmonic);
     }
@@ -238,7 +240,7 @@ void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::v
     double step =
         area / with_density(options_.energy, [](auto density) { return density.kCurvature; });
     const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
-      return step * laplacian.solve(gradient);
+      return step * laplacian.precondition(gradient);
     };
     PolishOptions polish_options;
     polish_options.energy = options_.energy;

@@ -116,7 +116,8 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     const auto metric = prolong_metric(
         coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh, options_.threads);
     std::vector<Vec2> uvs = carry_boundary(mesh, coarse, map);
-    solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs);
+    solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
+                   options_.threads);
     const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
                              .threads = options_.threads};
     if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;

@@ -28,7 +28,7 @@ class CholmodSolver final : public SpdSolver {
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
 
-  void analyze(const SparseMatrix& lower) override {
+  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
     cholmod_free_factor(&factor_, &common_);
     cholmod_sparse view = view_of(lower);
     factor_ = cholmod_analyze(&view, &common_);
@@ -106,7 +106,7 @@ class CholmodSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver() {
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/) {
   return std::make_unique<CholmodSolver>();
 }
 

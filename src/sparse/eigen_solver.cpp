@@ -112,7 +112,9 @@ class PrunedSolve {
 
 class EigenSolver final : public SpdSolver {
  public:
-  void analyze(const SparseMatrix& lower) override { factor_.analyzePattern(lower); }
+  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
+    factor_.analyzePattern(lower);
+  }
 
   bool factorize(const SparseMatrix& lower) override {
     factor_.factorize(lower);
@@ -153,7 +155,7 @@ class EigenSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver() {
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/) {
   return std::make_unique<EigenSolver>();
 }
 

@@ -20,6 +20,8 @@ class MeshMatrix {
   Index row(Index vertex) const { return row_[vertex]; }
   Index free_count() const { return free_count_; }
   const std::vector<Index>& rows() const { return row_; }
+  /// The places of the free vertices in the order of their rows, for SpdSolver::analyze.
+  std::vector<Place> places(const std::vector<Vec3>& positions) const;
 
   void set_zero();
   /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be

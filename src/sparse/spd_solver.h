@@ -1,10 +1,15 @@
 // Sparse symmetric positive definite systems behind one interface; the back end is chosen when the
-// library is built (-DBELTRAMI_SOLVER=eigen|cholmod).
+// library is built (-DBELTRAMI_SOLVER=native|eigen|cholmod).
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <array>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
+
+#include "base/interrupt.h"
 
 namespace beltrami {
 
@@ -12,19 +17,48 @@ namespace beltrami {
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 using DenseMatrix = Eigen::MatrixXd;
 
-/// A direct solver with an approximate minimum degree (AMD) ordering: METIS costs more than it
-/// saves where a pattern is factorized only a few times. The bits of a solution depend on the
-/// matrix only, not on the number of threads.
+/// Where the unknowns of a matrix are in space: only differences matter.
+using Place = std::array<float, 3>;
+
+/// Called now and then, always on the caller's thread, while a matrix is analyzed and factorized.
+/// May throw to cancel that; the solver can be given another matrix then.
+using Poll = std::function<void()>;
+
+enum class Precision {
+  kDouble,
+  /// Half the memory and time where the back end can: the factor is in single precision, and
+  /// solve() takes the residual to 5e-9 of the right-hand side with it. For matrices that are
+  /// definite by construction: whether a matrix is definite is decided in single precision first.
+  kSingle,
+};
+
+/// How systems are solved. Back ends may ignore all of it.
+struct SolverOptions {
+  Precision precision = Precision::kDouble;
+  int threads = 1;
+  Poll poll = poll_interrupt;
+};
+
+/// A direct solver. The bits of a solution depend on the matrix, the places and the options other
+/// than `threads`.
 class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
-  /// Orders the pattern of `lower`. Throws std::bad_alloc, or Error SOLVER.
-  virtual void analyze(const SparseMatrix& lower) = 0;
+  /// Orders the pattern of `lower`. `places`, which may be empty: one per row, or one per block
+  /// where the matrix consists of dense 2 x 2 blocks; they help to order large matrices. Throws
+  /// std::bad_alloc, or Error SOLVER.
+  virtual void analyze(const SparseMatrix& lower, std::span<const Place> places) = 0;
+  void analyze(const SparseMatrix& lower) { analyze(lower, {}); }
   /// Factorizes a matrix of the analyzed pattern. False: it is not positive definite in floating
   /// point.
   [[nodiscard]] virtual bool factorize(const SparseMatrix& lower) = 0;
-  /// Solves for every column of `rhs` with the last factor.
+  /// Solves for every column of `rhs` with the last factor. Throws Error SOLVER if a factor in
+  /// single precision turns out to be useless and there is none in double precision.
   virtual DenseMatrix solve(const DenseMatrix& rhs) const = 0;
+  /// An approximate inverse times `rhs`, for preconditioning: linear, symmetric, definite, the same
+  /// until the next factorization. Good to single precision at least, and never slower than
+  /// solve().
+  virtual DenseMatrix precondition(const DenseMatrix& rhs) const { return solve(rhs); }
   /// The given rows of the solution alone, in the order of `rows`: rows(A^-1 rhs). A back end may
   /// skip the parts of the factor that neither the right-hand sides nor the rows reach;
   /// neighbouring columns should have their nonzeros close together. Same bits at any number of
@@ -33,9 +67,9 @@ class SpdSolver {
                                  int threads) const = 0;
 };
 
-std::unique_ptr<SpdSolver> make_spd_solver();
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options = {});
 
-/// "eigen" or "cholmod".
+/// "native", "eigen" or "cholmod".
 const char* spd_solver_name();
 
 }  // namespace beltrami

@@ -1,0 +1,17 @@
+// The solver of this library's own, which is there whatever back end the library is built with.
+#pragma once
+
+#include <memory>
+
+#include "sparse/spd_solver.h"
+
+namespace beltrami {
+
+/// A multifrontal Cholesky factorization. Small matrices are ordered by minimum degree, large ones
+/// by nested dissection where their places are known and make it the better order.
+/// Smaller matrices than `least_single` are factorized in double precision whatever the options
+/// say: their factors stay in the caches, and iterating would cost more than it saves.
+std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options = {},
+                                              int least_single = 50000);
+
+}  // namespace beltrami
