@@ -80,7 +80,7 @@ beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
   result.global_fixes = static_cast<std::uint64_t>(flattening.global_fixes);
   result.cleaned_patches = static_cast<std::uint64_t>(flattening.cleaned_patches);
   result.restarts = static_cast<std::uint64_t>(flattening.restarts);
-  result.float32_moves = flattening.single_moves.size();
+  result.float32_moves = static_cast<std::uint64_t>(flattening.float32_moves);
   result.delaunay_flips = static_cast<std::uint64_t>(flattening.delaunay_flips);
   result.delaunay_refused = static_cast<std::uint64_t>(flattening.delaunay_refused);
   result.degenerate_faces = mesh.degenerate_faces;

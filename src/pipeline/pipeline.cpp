@@ -205,6 +205,7 @@ void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
     SinglePrecision single =
         round_to_single(*disk_, uvs, result_.certificate, options_.threads, checkpoint);
     result_.single_certificate = single.certificate;
+    result_.float32_moves = single.moved;
     if (options_.float32) {
       if (!single.certificate.injective() && result_.certificate.injective()) {
         result_.status = BELTRAMI_NOT_INJECTIVE_FLOAT32;

@@ -46,8 +46,8 @@ struct Flattening {
   std::vector<Vec2> uvs;                 ///< one per vertex of the disk, as delivered
   Certificate certificate;               ///< of `uvs`
   Certificate single_certificate;        ///< of `uvs` in single precision
-  /// The vertices that are not at the nearest single-precision place there, increasing, and where
-  /// they are instead.
+  std::int64_t float32_moves = 0;        ///< vertices that are not at the nearest place there
+  /// These vertices, increasing, and where they are instead; empty where `uvs` are there already.
   std::vector<std::pair<Index, Vec2>> single_moves;
   Distortion distortion;                ///< of `uvs` against the input in its own unit
   std::vector<double> face_energies;    ///< symmetric Dirichlet, one per face

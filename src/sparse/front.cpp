@@ -5,6 +5,7 @@
 #include <cstring>
 
 #if defined(__GNUC__) && defined(__x86_64__)
+#include <cpuid.h>
 #define BELTRAMI_DISPATCH_AVX2 1
 #else
 #define BELTRAMI_DISPATCH_AVX2 0
@@ -401,19 +402,37 @@ BELTRAMI_KERNELS(Avx2, [[gnu::target("avx2")]], 32)
 #endif
 
 template <class T>
-const Kernels<T>& kernels() {
+const Kernels<T>& kernels([[maybe_unused]] Vectors vectors) {
 #if BELTRAMI_DISPATCH_AVX2
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  if (has_avx2) return Avx2<T>::kAll;
+  if (vectors == Vectors::kAvx2) return Avx2<T>::kAll;
 #endif
   return Baseline<T>::kAll;
 }
 
 }  // namespace
 
+Vectors widest_vectors() {
+#if BELTRAMI_DISPATCH_AVX2
+  // Not __builtin_cpu_supports, which keeps its answer in variables of the library.
+  constexpr unsigned kSystemSavesState = 1u << 27, kAvx = 1u << 28, kAvx2 = 1u << 5;
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0) return Vectors::kBaseline;
+  if ((c & kSystemSavesState) == 0 || (c & kAvx) == 0) return Vectors::kBaseline;
+  unsigned low = 0, high = 0;
+  __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+  constexpr unsigned kUpperHalves = 6;  // the system keeps the registers of SSE and AVX
+  if ((low & kUpperHalves) != kUpperHalves) return Vectors::kBaseline;
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0) return Vectors::kBaseline;
+  return (b & kAvx2) != 0 ? Vectors::kAvx2 : Vectors::kBaseline;
+#else
+  return Vectors::kBaseline;
+#endif
+}
+
 template <class T>
-bool factorize(T* panel, int height, int width, T* update, T* buffer, const ForChunks& for_chunks) {
-  const Kernels<T>& kernel = kernels<T>();
+bool factorize(Vectors vectors, T* panel, int height, int width, T* update, T* buffer,
+               const ForChunks& for_chunks) {
+  const Kernels<T>& kernel = kernels<T>(vectors);
   const auto apply = [&](int depth, const Target<T>& target) {
     const int first = target.first / kGroup, last = padded(target.rows_end) / kGroup;
     if (!for_chunks) {
@@ -450,20 +469,20 @@ bool factorize(T* panel, int height, int width, T* update, T* buffer, const ForC
 }
 
 template <class T>
-void solve_forward(const T* panel, int height, int width, T* x, int columns) {
-  kernels<T>().forward(panel, height, width, x, columns);
+void solve_forward(Vectors vectors, const T* panel, int height, int width, T* x, int columns) {
+  kernels<T>(vectors).forward(panel, height, width, x, columns);
 }
 
 template <class T>
-void solve_backward(const T* panel, int height, int width, T* x, int columns) {
-  kernels<T>().backward(panel, height, width, x, columns);
+void solve_backward(Vectors vectors, const T* panel, int height, int width, T* x, int columns) {
+  kernels<T>(vectors).backward(panel, height, width, x, columns);
 }
 
-template bool factorize(float*, int, int, float*, float*, const ForChunks&);
-template bool factorize(double*, int, int, double*, double*, const ForChunks&);
-template void solve_forward(const float*, int, int, float*, int);
-template void solve_forward(const double*, int, int, double*, int);
-template void solve_backward(const float*, int, int, float*, int);
-template void solve_backward(const double*, int, int, double*, int);
+template bool factorize(Vectors, float*, int, int, float*, float*, const ForChunks&);
+template bool factorize(Vectors, double*, int, int, double*, double*, const ForChunks&);
+template void solve_forward(Vectors, const float*, int, int, float*, int);
+template void solve_forward(Vectors, const double*, int, int, double*, int);
+template void solve_backward(Vectors, const float*, int, int, float*, int);
+template void solve_backward(Vectors, const double*, int, int, double*, int);
 
 }  // namespace beltrami::front

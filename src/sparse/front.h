@@ -21,6 +21,11 @@ inline std::int64_t buffer_size(int height, int width) {
   return static_cast<std::int64_t>(padded(height)) * (width < kOuterBlock ? width : kOuterBlock);
 }
 
+/// The vectors that the kernels use.
+enum class Vectors { kBaseline, kAvx2 };
+/// The widest of this machine. Asking the processor takes microseconds: ask once for a sweep.
+Vectors widest_vectors();
+
 /// Calls body(begin, end) over [0, count) in chunks, maybe side by side.
 using ForChunks = std::function<void(int count, const std::function<void(int, int)>& body)>;
 
@@ -29,15 +34,16 @@ using ForChunks = std::function<void(int count, const std::function<void(int, in
 /// padded(height - width); becomes the Schur complement. Above the diagonals anything may be
 /// written. False: a pivot is not positive (or NaN). `for_chunks` may be empty.
 template <class T>
-bool factorize(T* panel, int height, int width, T* update, T* buffer, const ForChunks& for_chunks);
+bool factorize(Vectors vectors, T* panel, int height, int width, T* update, T* buffer,
+               const ForChunks& for_chunks);
 
 /// y -= L x for the rows below the diagonal block and x = L1^-1 x, where L1 is the diagonal block
 /// of a panel: `x` has `height` entries per right-hand side, one after the other, `x` first, then
 /// y.
 template <class T>
-void solve_forward(const T* panel, int height, int width, T* x, int columns);
+void solve_forward(Vectors vectors, const T* panel, int height, int width, T* x, int columns);
 /// x = L1^-T (x - L^T y).
 template <class T>
-void solve_backward(const T* panel, int height, int width, T* x, int columns);
+void solve_backward(Vectors vectors, const T* panel, int height, int width, T* x, int columns);
 
 }  // namespace beltrami::front

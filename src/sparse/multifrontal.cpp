@@ -144,7 +144,7 @@ class Numeric {
       assemble(s, update, work, [&](int c) -> const T* {
         return work.stack[plan_.depth[c]].get() + plan_.offset[c];
       });
-      if (!front::factorize(panel(s), symbolic_.height(s), symbolic_.width(s), update,
+      if (!front::factorize(vectors_, panel(s), symbolic_.height(s), symbolic_.width(s), update,
                             work.buffer.get(), {})) {
         return false;
       }
@@ -181,8 +181,8 @@ class Numeric {
         });
       };
     }
-    return front::factorize(panel(s), height, width, kept_[s - top].get(), work.buffer.get(),
-                            for_chunks);
+    return front::factorize(vectors_, panel(s), height, width, kept_[s - top].get(),
+                            work.buffer.get(), for_chunks);
   }
 
   /// The task whose root is supernode c.
@@ -255,6 +255,7 @@ class Numeric {
     }
   }
 
+  const front::Vectors vectors_ = front::widest_vectors();
   const Symbolic& symbolic_;
   const PermutedPattern& pattern_;
   const T* values_;
@@ -341,7 +342,8 @@ class TreeSolve {
         for (int b = 0; b < block; ++b) *y++ = from[b];
       }
     }
-    front::solve_forward(factor_ + symbolic_.value_start[s], height, width, front, columns_);
+    front::solve_forward(vectors_, factor_ + symbolic_.value_start[s], height, width, front,
+                         columns_);
     for (int c = 0; c < columns_; ++c) {
       std::copy_n(front + static_cast<std::int64_t>(c) * height, width, x_ + c * size_ + first);
       const T* y = front + static_cast<std::int64_t>(c) * height + width;
@@ -366,7 +368,8 @@ class TreeSolve {
         for (int b = 0; b < block; ++b) *y++ = from[b];
       }
     }
-    front::solve_backward(factor_ + symbolic_.value_start[s], height, width, front, columns_);
+    front::solve_backward(vectors_, factor_ + symbolic_.value_start[s], height, width, front,
+                          columns_);
     for (int c = 0; c < columns_; ++c) {
       std::copy_n(front + static_cast<std::int64_t>(c) * height, width, x_ + c * size_ + first);
     }
@@ -409,6 +412,7 @@ class TreeSolve {
     }
   }
 
+  const front::Vectors vectors_ = front::widest_vectors();
   const Symbolic& symbolic_;
   const T* factor_;
   T* const x_;

@@ -21,7 +21,7 @@ TEST(Options, KeysCountWithoutGapsAndDescribeThemselves) {
     EXPECT_EQ(info.struct_size, sizeof info);
     EXPECT_EQ(beltrami_option_find(info.name), key);
     EXPECT_TRUE(names.insert(info.name).second);
-    EXPECT_EQ(std::string(info.name).find_first_not_of("abcdefghijklmnopqrstuvwxyz-"),
+    EXPECT_EQ(std::string(info.name).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-"),
               std::string::npos);
     EXPECT_EQ(std::string(info.summary).back(), '.');
     EXPECT_LE(info.minimum, info.default_value);
