@@ -83,6 +83,7 @@ beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
   result.float32_moves = static_cast<std::uint64_t>(flattening.float32_moves);
   result.delaunay_flips = static_cast<std::uint64_t>(flattening.delaunay_flips);
   result.delaunay_refused = static_cast<std::uint64_t>(flattening.delaunay_refused);
+  result.coarse_energy = flattening.coarse_energy;
   result.degenerate_faces = mesh.degenerate_faces;
   result.first_degenerate_face = element_or_none(mesh.first_degenerate_face);
   return result;

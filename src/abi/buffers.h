@@ -25,7 +25,7 @@ BELTRAMI_FIRST_SIZE(beltrami_option_info, summary);
 BELTRAMI_FIRST_SIZE(beltrami_mesh, indices);
 BELTRAMI_FIRST_SIZE(beltrami_certificate, reserved);
 BELTRAMI_FIRST_SIZE(beltrami_energy, left_out);
-BELTRAMI_FIRST_SIZE(beltrami_result, first_degenerate_face);
+BELTRAMI_FIRST_SIZE(beltrami_result, coarse_energy);
 BELTRAMI_FIRST_SIZE(beltrami_stage, name);
 #undef BELTRAMI_FIRST_SIZE
 

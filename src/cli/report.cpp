@@ -155,23 +155,25 @@ void Report::set_failure(const Failure& failure) {
 }
 
 std::string to_json(const Report& report) {
-  const Json json = {{"schema", kReportSchema},
-                     {"version", library_version()},
-                     {"command", report.command},
-                     {"status", report.status},
-                     {"message", report.message.empty() ? Json(nullptr) : Json(report.message)},
-                     {"element", element_json(report)},
-                     {"input", input_json(report)},
-                     {"options", report.options},
-                     {"injective", injective_json(report)},
-                     {"energy", energy_json(report)},
-                     {"coarse_faces", optional(report.coarse_faces)},
-                     {"flips_before_repair", optional(report.flips_before_repair)},
-                     {"repair", repair_json(report)},
-                     {"stages", stages_json(report)},
-                     {"seconds", number(report.seconds)},
-                     {"peak_memory_bytes", peak_memory_bytes()},
-                     {"threads", optional(report.threads)}};
+  const Json json = {
+      {"schema", kReportSchema},
+      {"version", library_version()},
+      {"command", report.command},
+      {"status", report.status},
+      {"message", report.message.empty() ? Json(nullptr) : Json(report.message)},
+      {"element", element_json(report)},
+      {"input", input_json(report)},
+      {"options", report.options},
+      {"injective", injective_json(report)},
+      {"energy", energy_json(report)},
+      {"coarse_faces", optional(report.coarse_faces)},
+      {"coarse_energy", report.result ? number(report.result->coarse_energy) : Json(nullptr)},
+      {"flips_before_repair", optional(report.flips_before_repair)},
+      {"repair", repair_json(report)},
+      {"stages", stages_json(report)},
+      {"seconds", number(report.seconds)},
+      {"peak_memory_bytes", peak_memory_bytes()},
+      {"threads", optional(report.threads)}};
   // Paths need not be UTF-8, but JSON must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -152,6 +152,7 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
         }
       }
     }
+    result_.coarse_energy = done.energies.back();
     if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   });
   return uvs;

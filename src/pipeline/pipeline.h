@@ -53,6 +53,7 @@ struct Flattening {
   std::vector<double> face_energies;    ///< symmetric Dirichlet, one per face
   std::vector<StageStatistics> stages;  ///< in the order in which they ran
   std::int64_t coarse_faces = 0;        ///< of the mesh that CM ran on
+  double coarse_energy = 0;             ///< its mean energy there, 0 where CM did not run
   std::int64_t flips_before_repair = 0;
   std::int64_t kernel_fixes = 0, patch_fixes = 0, global_fixes = 0;  ///< see repair.h
   std::int64_t restarts = 0;  ///< with a coarser mesh, after a map that broke its promise

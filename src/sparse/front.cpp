@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/processor.h"
+
 #if defined(__GNUC__) && defined(__x86_64__)
-#include <cpuid.h>
 #define BELTRAMI_DISPATCH_AVX2 1
 #else
 #define BELTRAMI_DISPATCH_AVX2 0
@@ -412,21 +413,7 @@ const Kernels<T>& kernels([[maybe_unused]] Vectors vectors) {
 }  // namespace
 
 Vectors widest_vectors() {
-#if BELTRAMI_DISPATCH_AVX2
-  // Not __builtin_cpu_supports, which keeps its answer in variables of the library.
-  constexpr unsigned kSystemSavesState = 1u << 27, kAvx = 1u << 28, kAvx2 = 1u << 5;
-  unsigned a = 0, b = 0, c = 0, d = 0;
-  if (__get_cpuid(1, &a, &b, &c, &d) == 0) return Vectors::kBaseline;
-  if ((c & kSystemSavesState) == 0 || (c & kAvx) == 0) return Vectors::kBaseline;
-  unsigned low = 0, high = 0;
-  __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
-  constexpr unsigned kUpperHalves = 6;  // the system keeps the registers of SSE and AVX
-  if ((low & kUpperHalves) != kUpperHalves) return Vectors::kBaseline;
-  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0) return Vectors::kBaseline;
-  return (b & kAvx2) != 0 ? Vectors::kAvx2 : Vectors::kBaseline;
-#else
-  return Vectors::kBaseline;
-#endif
+  return has_avx2() ? Vectors::kAvx2 : Vectors::kBaseline;
 }
 
 template <class T>

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "base/processor.h"
 #include "sparse/vertex_separator.h"
 
 #if defined(__GNUC__) && defined(__x86_64__)
@@ -68,6 +69,8 @@ class LeafOrder {
     return around_[at].second;
   }
 
+  const bool popcnt_ = has_popcnt();
+
   std::uint64_t* row(int i) { return rows_.data() + words_ * i; }
 
 #if BELTRAMI_DISPATCH_POPCNT
@@ -78,7 +81,7 @@ class LeafOrder {
 
   void eliminate(std::span<int> order) {
 #if BELTRAMI_DISPATCH_POPCNT
-    if (__builtin_cpu_supports("popcnt") != 0) {
+    if (popcnt_) {
       eliminate_popcnt(order);
       return;
     }

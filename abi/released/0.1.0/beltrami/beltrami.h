@@ -365,6 +365,7 @@ typedef struct beltrami_result {
   uint64_t delaunay_refused;      /* edges that are not Delaunay: their flip would repeat an edge */
   uint64_t degenerate_faces;      /* of the input: faces without area, which no energy counts */
   uint64_t first_degenerate_face; /* the first of them, or BELTRAMI_NO_ELEMENT */
+  double coarse_energy;           /* mean energy of the coarse map; 0 where CM did not run */
 } beltrami_result;
 
 typedef struct beltrami_stage {
