@@ -18,12 +18,14 @@
 namespace beltrami {
 namespace {
 
+constexpr int kNewtonSteps = 10;
+constexpr double kNewtonTolerance = 1e-3;  // relative decrease, of the steps after a blocked polish
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
 constexpr int kRotations = 2;           // ARAP rounds after the Poisson solve
 constexpr std::size_t kManyFlips = 20;  // beyond which the harmonic map is looked at too
 constexpr int kPolishIterations = 30;
-constexpr int kPolishRounds = 10;     // more, each after faces that blocked the steps
+constexpr int kPolishRounds = 3;      // more, each after faces that blocked the steps
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -228,13 +230,28 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   // Polishing a map that crosses itself already would be in vain.
   if (global && count_crossings(disk_->boundary, uvs).count > 0) return uvs;
 
-  polish_map(fine, *laplacian, uvs);
+  polish_map(fine, held, *laplacian, uvs);
   return uvs;
 }
 
+/// A few steps of composite majorization: they cost most, and are not held up by nearly singular
+/// faces. Returns their number.
+int Run::take_newton_steps(const FineProblem& fine, const std::vector<bool>& held,
+                           std::vector<Vec2>& uvs, const Checkpoint& checkpoint) {
+  NewtonOptions newton = newton_options(*disk_);
+  newton.proxy_steps = 0;
+  newton.max_iterations = kNewtonSteps;
+  newton.tolerance = std::max(newton.tolerance, kNewtonTolerance);
+  const NewtonResult done =
+      minimise_energy(disk_->faces, fine.rest, held, uvs, newton, [&](double) { checkpoint(0.9); });
+  return done.iterations();
+}
+
 /// L-BFGS with the factor of the flattening at first. Where nearly singular faces block its steps,
-/// these are cleaned and the factor is fitted to the map as it is by then.
-void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
+/// these are cleaned and the factor is fitted to the map as it is by then; where that does not help
+/// either, Newton steps end it.
+void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
+                     MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const double area = surface_area(*disk_);
     double step =
@@ -254,8 +271,9 @@ void Run::polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::v
       statistics.iterations += polished.iterations();
       result_.cleaned_patches +=
           clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
-      if (!polished.blocked || round == kPolishRounds ||
-          statistics.iterations >= kPolishIterations) {
+      if (!polished.blocked || statistics.iterations >= kPolishIterations) break;
+      if (round == kPolishRounds) {
+        statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
         break;
       }
       checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);

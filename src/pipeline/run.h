@@ -76,7 +76,10 @@ class Run {
   std::vector<Vec2> flatten_boundary_first(const FineProblem& fine);
   std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
                                      const std::vector<bool>& held, bool global);
-  void polish_map(const FineProblem& fine, MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
+  void polish_map(const FineProblem& fine, const std::vector<bool>& held,
+                  MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
+  int take_newton_steps(const FineProblem& fine, const std::vector<bool>& held,
+                        std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
   void hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                  std::vector<bool>& held) const;
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
