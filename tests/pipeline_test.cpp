@@ -18,6 +18,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "exact/certificate.h"
+#include "fullspace/tutte.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 
@@ -361,6 +363,18 @@ TEST(Pipeline, IsInjectiveOnDifficultDisks) {
     expect_injective(run(mesh, coarse_to_fine(60)), name + ", coarse to fine");
     expect_injective(run(mesh, coarse_to_fine(60, BELTRAMI_FLATTEN_DIRICHLET)),
                      name + ", harmonic");
+  }
+}
+
+TEST(Pipeline, StartsFromCoarserMeshesWhereTutteIsLostInRounding) {
+  // Each ring of the tube is smaller by a factor in Tutte's embedding: long before the last one
+  // doubles cannot tell its vertices apart.
+  for (const Index sectors : {4, 7}) {
+    const TriangleList mesh = disks::tube(400, sectors, 0.5);
+    const DiskMesh disk = disks::disk(mesh);
+    ASSERT_GT(non_positive_faces(disk.faces, tutte_embedding(disk), 1).size(), 0u);
+    expect_injective(run(mesh), "tube of " + std::to_string(sectors));
+    expect_injective(run(mesh, coarse_to_fine(800)), "coarse tube of " + std::to_string(sectors));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "abi/host.h"
+#include "support/disks.h"
 
 namespace beltrami {
 namespace {
@@ -70,6 +71,78 @@ TEST_P(EveryMethod, FlattensInjectively) {
     EXPECT_EQ(std::memcmp(&checked, &certificate, sizeof checked), 0)
         << "the certificate is of the UVs as returned";
   }
+}
+
+TEST(Run, CertifiesTheFloatsThatItHandsOut) {
+  for (const TriangleList& mesh :
+       {disks::slivers(12, 12), disks::tube(40, 6, 0.2), disks::ramp(50, 4), disks::punctured(3)}) {
+    const Context context = whole_pipeline(mesh);
+    ASSERT_EQ(run(context), BELTRAMI_OK);
+    std::vector<std::array<float, 2>> got(mesh.positions.size());
+    ASSERT_EQ(beltrami_get_uvs(context.get(), got.data(), BELTRAMI_F32, 0), BELTRAMI_OK);
+    auto certificate = sized<beltrami_certificate>(), checked = certificate;
+    ASSERT_EQ(beltrami_get_float32_certificate(context.get(), &certificate), BELTRAMI_OK);
+    EXPECT_EQ(certificate.injective, 1);
+    const beltrami_mesh mesh_view = view(mesh);
+    const beltrami_buffer uv_view = view(got);
+    EXPECT_EQ(beltrami_check_injective(&mesh_view, &uv_view, &checked), BELTRAMI_OK);
+    EXPECT_EQ(std::memcmp(&checked, &certificate, sizeof checked), 0);
+
+    ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_FLOAT32, 1), BELTRAMI_OK);
+    ASSERT_EQ(run(context), BELTRAMI_OK);
+    const auto wide = uvs(context, mesh.positions.size());
+    for (std::size_t v = 0; v < wide.size(); ++v) {
+      EXPECT_EQ(wide[v], (std::array<double, 2>{got[v][0], got[v][1]}));
+    }
+  }
+}
+
+TEST(Run, HandsOutTheTrianglesThatItsCertificateSpeaksOf) {
+  TriangleList mesh = disks::slivers(24, 24);
+  Context context = whole_pipeline(mesh);
+  beltrami_context* c = context.get();
+  std::vector<Triangle> faces(mesh.faces.size());
+  ASSERT_EQ(run(context), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_get_faces(c, faces.data(), BELTRAMI_U32, 0), BELTRAMI_OK);
+  EXPECT_EQ(faces, mesh.faces);
+
+  for (const int32_t flatten : {BELTRAMI_FLATTEN_DIRICHLET, BELTRAMI_FLATTEN_METRIC}) {
+    ASSERT_EQ(beltrami_set_int(c, BELTRAMI_OPTION_DELAUNAY, 1), BELTRAMI_OK);
+    ASSERT_EQ(beltrami_set_int(c, BELTRAMI_OPTION_FLATTEN, flatten), BELTRAMI_OK);
+    ASSERT_EQ(run(context), BELTRAMI_OK);
+    auto result = sized<beltrami_result>();
+    ASSERT_EQ(beltrami_get_result(c, &result), BELTRAMI_OK);
+    EXPECT_GT(result.delaunay_flips, 0u);
+    ASSERT_EQ(beltrami_get_faces(c, faces.data(), BELTRAMI_U32, 0), BELTRAMI_OK);
+    EXPECT_NE(faces, mesh.faces);
+    TriangleList flipped = mesh;
+    flipped.faces = faces;
+    const beltrami_mesh mesh_view = view(flipped);
+    const auto got = uvs(context, mesh.positions.size());
+    const beltrami_buffer uv_view = view(got);
+    auto checked = sized<beltrami_certificate>();
+    EXPECT_EQ(beltrami_check_injective(&mesh_view, &uv_view, &checked), BELTRAMI_OK);
+  }
+  std::vector<std::array<uint64_t, 4>> wide(faces.size(), {9, 9, 9, 9});
+  ASSERT_EQ(beltrami_get_faces(c, wide.data(), BELTRAMI_U64, sizeof wide[0]), BELTRAMI_OK);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(wide[f][k], static_cast<uint64_t>(faces[f][k]));
+    EXPECT_EQ(wide[f][3], 9u);
+  }
+  EXPECT_EQ(beltrami_get_faces(c, nullptr, BELTRAMI_U32, 0), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_EQ(beltrami_get_faces(c, wide.data(), BELTRAMI_F64, 0), BELTRAMI_E_INVALID_ARGUMENT);
+}
+
+TEST(Run, NamesTheFacesWithoutArea) {
+  const Context context = whole_pipeline(disks::degenerate_faces(12));
+  ASSERT_EQ(run(context), BELTRAMI_OK);
+  auto result = sized<beltrami_result>();
+  ASSERT_EQ(beltrami_get_result(context.get(), &result), BELTRAMI_OK);
+  EXPECT_GT(result.degenerate_faces, 0u);
+  EXPECT_LT(result.first_degenerate_face, result.faces);
+  auto energy = sized<beltrami_energy>();
+  ASSERT_EQ(beltrami_get_energy(context.get(), &energy), BELTRAMI_OK);
+  EXPECT_TRUE(std::isfinite(energy.symmetric_dirichlet));
 }
 
 TEST_P(EveryMethod, ReportsItsStages) {
