@@ -359,11 +359,11 @@ typedef struct beltrami_result {
   uint64_t patch_fixes;           /* patches that repair untangled */
   uint64_t global_fixes;          /* layouts that repair embedded anew, with a scaffold */
   uint64_t cleaned_patches;       /* patches optimised around faces of enormous energy */
-  uint64_t restarts;              /* tries with a coarser mesh, after a map that was not injective */
-  uint64_t float32_moves;         /* vertices that are not at the nearest float in F32 */
-  uint64_t delaunay_flips;        /* with the option delaunay: edges flipped */
-  uint64_t delaunay_refused;      /* edges that are not Delaunay: their flip would repeat an edge */
-  uint64_t degenerate_faces;      /* of the input: faces without area, which no energy counts */
+  uint64_t restarts;         /* tries with a coarser mesh, after a map that was not injective */
+  uint64_t float32_moves;    /* vertices that are not at the nearest float in F32 */
+  uint64_t delaunay_flips;   /* with the option delaunay: edges flipped */
+  uint64_t delaunay_refused; /* edges that are not Delaunay: their flip would repeat an edge */
+  uint64_t degenerate_faces; /* of the input: faces without area, which no energy counts */
   uint64_t first_degenerate_face; /* the first of them, or BELTRAMI_NO_ELEMENT */
   double coarse_energy;           /* mean energy of the coarse map; 0 where CM did not run */
 } beltrami_result;
@@ -386,7 +386,8 @@ BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, belt
  * or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
  * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for
  * the vertices that must move a little further for the map to stay injective (float32_moves in
- * beltrami_result): beltrami_get_float32_certificate tells. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+ * beltrami_result): beltrami_get_float32_certificate tells. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
                                               uint64_t stride);
 

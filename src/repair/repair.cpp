@@ -115,7 +115,7 @@ class Repair {
     mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
     const std::optional<Vec2> centre = kernel_centroid(ring);
     if (!centre) return false;
-    const Vec2 target = *centre;
+    const Vec2& target = *centre;
     double ring_area = 0, least = std::numeric_limits<double>::infinity();
     bool all_positive = true;
     for (std::size_t i = 0; i < ring.size(); ++i) {

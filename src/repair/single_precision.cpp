@@ -165,7 +165,7 @@ struct Surrounded {
 std::optional<Surrounded> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   Surrounded all;
-  for (Vec2 w : circle_around(polygon, kCircleFactor, kCirclePoints)) {
+  for (const Vec2& w : circle_around(polygon, kCircleFactor, kCirclePoints)) {
     all.circle.push_back(nearest_single(w));
   }
   std::vector<Triangle> faces = mesh.faces;
