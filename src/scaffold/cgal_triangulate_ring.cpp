@@ -97,7 +97,13 @@ void flip_to_unique(Triangulation& triangulation) {
 }
 
 /// The faces that are reached from outside without crossing the inner polygon.
-std::vector<Triangle> ring_of(const Triangulation& triangulation, std::size_t expected) {
+std::vector<Triangle> ring_of(const Triangulation& triangulation, Index inner_count,
+                              std::size_t expected) {
+  auto vertex = triangulation.incident_vertices(triangulation.infinite_vertex());
+  const auto first_vertex = vertex;
+  do {
+    if (vertex->info() < inner_count) fail_ring("the inner polygon is not inside the outer one.");
+  } while (++vertex != first_vertex);
   std::vector<Triangle> found;
   std::vector<Triangulation::Face_handle> front;
   CGAL::Unique_hash_map<Triangulation::Face_handle, bool> seen(false);
@@ -140,7 +146,7 @@ RingTriangulation triangulate_ring(const std::vector<Vec2>& inner, const std::ve
   insert_loop(count, size_of(ring.points), "outer", triangulation, handles);
   if (!turns_left(inner)) fail_ring("the inner polygon runs clockwise.");
   flip_to_unique(triangulation);
-  ring.faces = ring_of(triangulation, ring.points.size());
+  ring.faces = ring_of(triangulation, count, ring.points.size());
   return ring;
 }
 
