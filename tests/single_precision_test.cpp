@@ -84,6 +84,15 @@ TEST(SinglePrecision, LeavesWhatWasWrongBefore) {
   EXPECT_EQ(rounded.moved, 0);
 }
 
+TEST(SinglePrecision, SaysSoBeyondItsRange) {
+  const DiskMesh mesh = disks::disk(meshes::triangle());
+  const std::vector<Vec2> uvs = {{0, 0}, {1e300, 0}, {0, 1e300}};
+  const SinglePrecision rounded = round(mesh, uvs);
+  for (const Vec2& w : rounded.uvs) EXPECT_TRUE(std::isfinite(static_cast<float>(w.x())));
+  const std::vector<Vec2> far = {{1e300, 0}, {2e300, 0}, {1e300, 1e300}};
+  EXPECT_FALSE(round(mesh, far).certificate.injective());
+}
+
 TEST(SinglePrecision, HasTheSameBitsOnTwoThreads) {
   const DiskMesh mesh = disks::disk(meshes::grid(20, 20));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);

@@ -26,9 +26,10 @@ constexpr int kCrossingRounds = 4;
 constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
 constexpr int kCirclePoints = 48;
 
+constexpr double kGreatest = std::numeric_limits<float>::max();
+
 double to_single(double x) {
-  const auto rounded = static_cast<double>(static_cast<float>(x));
-  return std::isfinite(rounded) ? rounded : x;
+  return static_cast<double>(static_cast<float>(std::clamp(x, -kGreatest, kGreatest)));
 }
 
 /// The distance to the next single-precision number away from zero.
@@ -243,13 +244,16 @@ SinglePrecision round_to_single(const DiskMesh& mesh, const std::vector<Vec2>& u
   for (const Vec2& w : uvs) result.uvs.push_back(nearest_single(w));
   const std::vector<Vec2> nearest = result.uvs;
 
-  const bool had_flips = exact.orientations.first_bad_face != kNone;
+  const bool beyond = std::any_of(uvs.begin(), uvs.end(), [](const Vec2& w) {
+    return w.cwiseAbs().maxCoeff() > kGreatest;  // nothing to mend: the numbers are not there
+  });
+  const bool had_flips = beyond || exact.orientations.first_bad_face != kNone;
   auto bad = non_positive_faces(mesh.faces, result.uvs, threads);
   if (!bad.empty() && !had_flips) {
     Rounding(mesh, result.uvs, threads).mend(std::move(bad), checkpoint);
   }
   result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, threads);
-  if (exact.injective() && !result.certificate.injective()) {
+  if (!beyond && exact.injective() && !result.certificate.injective()) {
     mend_with_ring(mesh, uvs, threads, checkpoint, result);
   }
   for (std::size_t v = 0; v < uvs.size(); ++v) result.moved += result.uvs[v] != nearest[v];

@@ -12,7 +12,7 @@
 namespace beltrami {
 
 /// The nearest place whose coordinates are single-precision numbers; coordinates beyond their range
-/// stay.
+/// go to its end.
 Vec2 nearest_single(const Vec2& place);
 
 struct SinglePrecision {
