@@ -301,8 +301,9 @@ BELTRAMI_API beltrami_status beltrami_set_mesh(beltrami_context* context,
 typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* stage);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
- * Returns OK, NOT_CONVERGED or NOT_INJECTIVE with a result; errors: INVALID_STATE (no mesh),
- * CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
+ * Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32; errors:
+ * INVALID_STATE (no mesh), CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL (also if `progress` throws a
+ * C++ exception). */
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
 
