@@ -59,6 +59,23 @@ beltrami_status check(Scope scope, const beltrami_mesh* mesh, const beltrami_buf
   return status;
 }
 
+/// What a measure takes: any triangles, with positions and UVs.
+struct Measured {
+  InputTriangles triangles;
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+};
+
+/// Throws Error.
+Measured read_measured(const beltrami_mesh* theirs, const beltrami_buffer* uvs) {
+  const beltrami_mesh mesh = read_mesh_header(theirs);
+  Measured input{read_triangles(mesh), {}, {}};
+  input.positions = read_positions(mesh, input.triangles.original);
+  validate_positions(input.positions);
+  input.uvs = read_uvs(uvs, mesh.vertex_count, input.triangles.original);
+  return input;
+}
+
 }  // namespace
 }  // namespace beltrami
 
@@ -82,16 +99,29 @@ beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffe
   beltrami::Failure unused;
   return beltrami::guarded(unused, [&] {
     beltrami::require_sized(out, "out");
-    const beltrami_mesh header = beltrami::read_mesh_header(mesh);
-    const beltrami::InputTriangles triangles = beltrami::read_triangles(header);
-    const std::vector<beltrami::Vec3> positions =
-        beltrami::read_positions(header, triangles.original);
-    beltrami::validate_positions(positions);
-    const std::vector<beltrami::Vec2> points =
-        beltrami::read_uvs(uvs, header.vertex_count, triangles.original);
-    beltrami::write_sized(
-        out, beltrami::describe_distortion(beltrami::measure_distortion(
-                 positions, triangles.faces, points, beltrami::kThreads, face_energies)));
+    const beltrami::Measured input = beltrami::read_measured(mesh, uvs);
+    beltrami::write_sized(out, beltrami::describe_distortion(beltrami::measure_distortion(
+                                   input.positions, input.triangles.faces, input.uvs,
+                                   beltrami::kThreads, face_energies)));
+    return BELTRAMI_OK;
+  });
+}
+
+beltrami_status beltrami_measure_faces(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
+                                       void* out, uint64_t stride) {
+  beltrami::Failure unused;
+  return beltrami::guarded(unused, [&] {
+    const beltrami::Measured input = beltrami::read_measured(mesh, uvs);
+    const std::vector<beltrami::Triangle>& faces = input.triangles.faces;
+    beltrami::Writer writer(out, BELTRAMI_F64, stride, faces.size(), 4);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto [a, b, c] = faces[f];
+      const beltrami::FaceDistortion found =
+          beltrami::measure_face({input.positions[a], input.positions[b], input.positions[c]},
+                                 {input.uvs[a], input.uvs[b], input.uvs[c]});
+      const double item[] = {found.s1, found.s2, found.symmetric_dirichlet, found.symmetric_arap};
+      writer.write(f, item);
+    }
     return BELTRAMI_OK;
   });
 }

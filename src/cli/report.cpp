@@ -186,7 +186,7 @@ std::string to_summary(const Report& report, const std::string& written) {
     append(text, "welded     %llu corners\n",
            static_cast<unsigned long long>(*report.welded_vertices));
   }
-  if (report.energy) {
+  if (report.energy && std::isfinite(report.energy->symmetric_dirichlet)) {
     append(text, "energy     %.6g mean, %.6g max (symmetric Dirichlet; 2 is isometric)\n",
            report.energy->symmetric_dirichlet, report.energy->max);
   }

@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::int64_t kGrain = 8192;
 
-struct FaceDistortion {
-  double area, symmetric_dirichlet, symmetric_arap;
-};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Energies of one face from its corners; not finite where the face is left out.
-FaceDistortion face_distortion(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w) {
+}  // namespace
+
+FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w) {
   // The longest edge as x axis keeps the height of slivers accurate.
   int k = 0;
   for (int i = 1; i < 3; ++i) {
@@ -27,23 +27,23 @@ FaceDistortion face_distortion(const std::array<Vec3, 3>& p, const std::array<Ve
   const double length = e1.norm();
   const double height = e1.cross(e2).norm() / length;
   const double along = e1.dot(e2) / length;
+  const double area = 0.5 * length * height;
+  if (!(area > 0)) return {0, kNaN, kNaN, kNaN, kNaN};
   const Vec2 du = (w[k1] - w[k]) / length;
   const Vec2 dv = ((w[k2] - w[k]) - along * du) / height;
   const double det = du.x() * dv.y() - du.y() * dv.x();
-  FaceDistortion result{0.5 * length * height, std::numeric_limits<double>::infinity(), 0};
-  if (!(result.area > 0) || !(det > 0)) return result;
   const double a = 0.5 * std::hypot(du.x() + dv.y(), du.y() - dv.x());
   const double b = 0.5 * std::hypot(du.x() - dv.y(), du.y() + dv.x());
-  const double s1 = a + b, s2 = det / s1;  // a - b would cancel on stretched faces
-  result.symmetric_dirichlet = 0.5 * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2));
+  const double s1 = a + b;
+  const double s2 = s1 > 0 ? det / s1 : 0;  // a - b would cancel on stretched faces
+  FaceDistortion result{area, s1, s2, kInfinity, kInfinity};
+  if (!(det > 0)) return result;
+  const double energy = 0.5 * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2));
+  if (!std::isfinite(energy)) return result;
+  result.symmetric_dirichlet = energy;
   result.symmetric_arap = (s1 - 1) * (s1 - 1) + (1 / s2 - 1) * (1 / s2 - 1);
-  if (!std::isfinite(result.symmetric_dirichlet)) {
-    result.symmetric_dirichlet = std::numeric_limits<double>::infinity();
-  }
   return result;
 }
-
-}  // namespace
 
 Distortion measure_distortion(const std::vector<Vec3>& positions,
                               const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
@@ -57,10 +57,11 @@ Distortion measure_distortion(const std::vector<Vec3>& positions,
     Partial& part = partials[begin / kGrain];
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = faces[f];
-      const FaceDistortion d = face_distortion({positions[t[0]], positions[t[1]], positions[t[2]]},
-                                               {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
-      if (face_energies) face_energies[f] = d.symmetric_dirichlet;
-      if (!std::isfinite(d.symmetric_dirichlet)) {
+      const FaceDistortion d = measure_face({positions[t[0]], positions[t[1]], positions[t[2]]},
+                                            {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+      const bool counts = std::isfinite(d.symmetric_dirichlet);
+      if (face_energies) face_energies[f] = counts ? d.symmetric_dirichlet : kInfinity;
+      if (!counts) {
         ++part.sum.left_out;
         continue;
       }
@@ -85,10 +86,8 @@ Distortion measure_distortion(const std::vector<Vec3>& positions,
       total.worst_face = part.sum.worst_face;
     }
   }
-  if (area > 0) {
-    total.symmetric_dirichlet /= area;
-    total.symmetric_arap /= area;
-  }
+  total.symmetric_dirichlet = area > 0 ? total.symmetric_dirichlet / area : kNaN;
+  total.symmetric_arap = area > 0 ? total.symmetric_arap / area : kNaN;
   return total;
 }
 

@@ -1,6 +1,7 @@
 // Distortion of a given map, as delivered to the user.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,14 +9,26 @@
 
 namespace beltrami {
 
+/// Distortion of one face. Without 3D area all but `area` are NaN.
+struct FaceDistortion {
+  double area;                 ///< in 3D
+  double s1, s2;               ///< singular values, s1 >= |s2|; s2 < 0 where the face is flipped
+  double symmetric_dirichlet;  ///< infinite where it is flipped or degenerate in the plane
+  double symmetric_arap;       ///< likewise
+};
+
+/// Distortion of the face with corners `p` in space and `w` in the plane, at the scale of both.
+FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w);
+
 /// Means over the faces weighted by 3D area. A face is left out if it has no 3D area, or if its
 /// energy is not finite (flipped or degenerate in the plane).
 struct Distortion {
-  double symmetric_dirichlet = 0;  ///< 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2
-  double symmetric_arap = 0;       ///< (s1 - 1)^2 + (1/s2 - 1)^2, >= 0
-  double max = 0;                  ///< greatest symmetric Dirichlet energy of a face
-  Index worst_face = kNone;        ///< where
-  std::int64_t left_out = 0;       ///< faces left out
+  double symmetric_dirichlet =
+      0;                      ///< 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), >= 2; NaN: no face is left
+  double symmetric_arap = 0;  ///< (s1 - 1)^2 + (1/s2 - 1)^2, >= 0; NaN: no face is left
+  double max = 0;             ///< greatest symmetric Dirichlet energy of a face
+  Index worst_face = kNone;   ///< where
+  std::int64_t left_out = 0;  ///< faces left out
 };
 
 /// Measures `uvs` (one per vertex) against `positions`, at the scale of both as given.

@@ -208,6 +208,43 @@ TEST(Measure, KnowsIsometriesStretchesAndFlips) {
   EXPECT_NEAR(energy.symmetric_dirichlet, 2, 1e-14);
 }
 
+TEST(Measure, GivesSingularValuesOfEveryFace) {
+  TriangleList mesh = meshes::quad();
+  mesh.faces.push_back({0, 1, 1});  // without area
+  Uvs uvs = flat_uvs(mesh);
+  for (auto& uv : uvs) uv[0] *= 2;
+  const beltrami_mesh mesh_view = view(mesh);
+  const beltrami_buffer uv_view = view(uvs);
+  double faces[3][5];
+  ASSERT_EQ(beltrami_measure_faces(&mesh_view, &uv_view, faces, sizeof faces[0]), BELTRAMI_OK);
+  for (int f = 0; f < 2; ++f) {
+    EXPECT_NEAR(faces[f][0], 2, 1e-14);
+    EXPECT_NEAR(faces[f][1], 1, 1e-14);
+    EXPECT_NEAR(faces[f][2], 3.125, 1e-14);
+    EXPECT_NEAR(faces[f][3], 1, 1e-14);
+  }
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(faces[2][i]));
+
+  for (auto& uv : uvs) uv[0] *= -1;  // a mirror image
+  ASSERT_EQ(beltrami_measure_faces(&mesh_view, &uv_view, faces, sizeof faces[0]), BELTRAMI_OK);
+  EXPECT_NEAR(faces[0][0], 2, 1e-14);
+  EXPECT_NEAR(faces[0][1], -1, 1e-14);
+  EXPECT_TRUE(std::isinf(faces[0][2]) && std::isinf(faces[0][3]));
+
+  for (auto& uv : uvs) uv = {1, 1};  // to a point
+  ASSERT_EQ(beltrami_measure_faces(&mesh_view, &uv_view, faces, sizeof faces[0]), BELTRAMI_OK);
+  EXPECT_EQ(faces[0][0], 0);
+  EXPECT_EQ(faces[0][1], 0);
+  auto energy = sized<beltrami_energy>();
+  ASSERT_EQ(beltrami_measure(&mesh_view, &uv_view, &energy, nullptr), BELTRAMI_OK);
+  EXPECT_EQ(energy.left_out, 3u);
+  EXPECT_TRUE(std::isnan(energy.symmetric_dirichlet));
+
+  EXPECT_EQ(beltrami_measure_faces(&mesh_view, &uv_view, nullptr, 0), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_EQ(beltrami_measure_faces(nullptr, &uv_view, faces, 0), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_EQ(beltrami_measure_faces(&mesh_view, nullptr, faces, 0), BELTRAMI_E_INVALID_ARGUMENT);
+}
+
 TEST(Measure, AgreesWithTheRun) {
   const TriangleList mesh = meshes::bumps(7, 6);
   const Context context = loaded(mesh);

@@ -31,6 +31,7 @@ static uint32_t indices[FACES][3];
 static uint32_t triangles[FACES + 1][3];
 static double uvs[VERTICES + 1][2];
 static double energies[FACES + 1];
+static double distortions[FACES + 1][4];
 
 static int untouched(const unsigned char* canary) {
   int i;
@@ -190,6 +191,9 @@ static void check_without_a_context(void) {
   REQUIRE(beltrami_measure(&mesh, &buffer, &energy.value, energies) == BELTRAMI_OK);
   ALIVE(energy);
   REQUIRE(energy.value.symmetric_dirichlet >= 2 && energies[FACES] == -7);
+  distortions[FACES][0] = -7;
+  REQUIRE(beltrami_measure_faces(&mesh, &buffer, distortions, 0) == BELTRAMI_OK);
+  REQUIRE(distortions[0][2] == energies[0] && distortions[FACES][0] == -7);
 }
 
 int main(void) {

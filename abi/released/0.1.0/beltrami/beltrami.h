@@ -330,7 +330,8 @@ typedef struct beltrami_certificate {
   int32_t reserved;            /* 0 */
 } beltrami_certificate;
 
-/* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given.
+/* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given
+ * (NaN where no face is left to count).
  * s1 >= s2 are the singular values of the map of a face. Faces without 3D area, or whose map has no
  * finite energy (flipped or degenerate), are left out and counted. */
 typedef struct beltrami_energy {
@@ -426,9 +427,10 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
 
 /* ---- Checks without a context ----------------------------------------------------------- */
 /* They judge the caller's own arrays, keep nothing and need no run. `uvs`: vertex_count items of 2,
- * F32 or F64, judged as stored. `mesh->positions` may be empty (data NULL) except for
- * beltrami_measure. Each returns OK, or NOT_INJECTIVE where it found something, or an error with
- * out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
+ * F32 or F64, judged as stored. `mesh->positions` may be empty (data NULL) except for the
+ * beltrami_measure functions. Each returns OK, or NOT_INJECTIVE where it found something, or an
+ * error with out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh
+ * statuses. */
 
 /* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
  * that, so out->injective stays 0. Errors: as above, of the mesh INDEX_OUT_OF_RANGE. */
@@ -452,6 +454,15 @@ BELTRAMI_API beltrami_status beltrami_check_injective(const beltrami_mesh* mesh,
  * INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
                                               beltrami_energy* out, double* face_energies);
+
+/* Distortion of every face of any UVs, in the positions' unit of length: face_count items of 4
+ * doubles, `stride` bytes from one face to the next (0: packed): the singular values s1 >= |s2| of
+ * the map of the face (s2 < 0 where it is flipped), its symmetric Dirichlet and its symmetric ARAP
+ * energy (infinite where it is flipped or degenerate in the plane). All four are NaN where a face
+ * has no 3D area. Needs no topology. Errors: as of beltrami_measure. */
+BELTRAMI_API beltrami_status beltrami_measure_faces(const beltrami_mesh* mesh,
+                                                    const beltrami_buffer* uvs, void* out,
+                                                    uint64_t stride);
 
 #ifdef __cplusplus
 }
