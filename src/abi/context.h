@@ -19,7 +19,7 @@ struct LoadedMesh {
   std::uint64_t vertex_count = 0;      ///< of the input, unused vertices included
   double area = 0;                     ///< in the input's unit squared
   std::uint64_t degenerate_faces = 0;  ///< without area
-  Index first_degenerate_face = kNone;
+  Index first_degenerate_face = kNone;  ///< in the input
 };
 
 /// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.
