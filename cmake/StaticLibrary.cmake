@@ -35,7 +35,7 @@ function(beltrami_add_static_library target)
   mark_as_advanced(BELTRAMI_GMP_LIBRARY)
   target_link_libraries(${target} INTERFACE Threads::Threads
     $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
-  if(BELTRAMI_SOLVER STREQUAL "cholmod")
+  if(BELTRAMI_SOLVER MATCHES "^cholmod")
     target_link_libraries(${target} INTERFACE
       $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)
   endif()
