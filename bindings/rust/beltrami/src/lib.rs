@@ -1,7 +1,4 @@
-//! Flattens disk-like triangle meshes to UV coordinates that are injective and low in distortion.
-//!
-//! The safe interface to the library [beltrami](https://github.com/beltrami/beltrami).
-#![cfg_attr(docsrs, feature(doc_cfg))]
+#![doc = include_str!("../README.md")]
 
 mod check;
 mod control;

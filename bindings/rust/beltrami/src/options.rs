@@ -137,7 +137,7 @@ macro_rules! options {
             },
         )*];
 
-        impl crate::Options {
+        impl Options {
             $(
                 $(#[doc = $doc])*
                 pub fn $option(self, value: $type) -> Self {

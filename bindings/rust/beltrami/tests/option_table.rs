@@ -274,7 +274,7 @@ fn render(table: &[Entry], comments: &HashMap<String, String>) -> String {
     let mut source = String::from(
         "// The options of the library, written by tests/option_table.rs from its table and header.\n\n\
          use std::time::Duration;\n\n\
-         use super::{choice, options};\n\n",
+         use super::{choice, options, Options};\n\n",
     );
     for option in table.iter().filter(|option| option.kind == OptionKind::Choice) {
         source += &render_choice(option, comments);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{choice, options};
+use super::{choice, options, Options};
 
 choice! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
