@@ -59,16 +59,20 @@ fn link() -> Installation {
 
 /// Links the library in `folder`, with the header in `BELTRAMI_INCLUDE_DIR` or `folder/../include`.
 fn link_folder(folder: &Path) -> Installation {
-    let holds = |names: [&str; 3]| names.iter().any(|name| folder.join(name).is_file());
-    let shared = holds(["libbeltrami.so", "libbeltrami.dylib", "beltrami.dll"]);
-    if !shared && !holds(["libbeltrami.a", "beltrami.lib", "beltrami_static.lib"]) {
-        fail(format!("there is no beltrami in BELTRAMI_LIB_DIR, {}", folder.display()));
-    }
+    let find = |names: &[&str]| names.iter().map(|name| folder.join(name)).find(|p| p.is_file());
+    // On Windows a .lib may be either; the linker knows which.
+    let shared =
+        find(&["libbeltrami.so", "libbeltrami.dylib", "libbeltrami.dll.a", "beltrami.lib"]);
+    let archive = find(&["libbeltrami.a", "beltrami.lib"]);
     println!("cargo::rustc-link-search=native={}", folder.display());
-    if wants_static() || !shared {
-        link_static(&[]);
-    } else {
-        println!("cargo::rustc-link-lib=dylib=beltrami");
+    match (shared, archive) {
+        (Some(_), _) if !wants_static() => println!("cargo::rustc-link-lib=dylib=beltrami"),
+        (_, Some(archive)) => {
+            // It is copied into the crate, so a new one makes a new crate.
+            println!("cargo::rerun-if-changed={}", archive.display());
+            link_static(&[]);
+        }
+        _ => fail(format!("the library is not in BELTRAMI_LIB_DIR, {}", folder.display())),
     }
     let root = folder.parent().unwrap_or(folder).to_owned();
     let include =
