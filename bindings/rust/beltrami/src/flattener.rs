@@ -159,20 +159,18 @@ impl Flattener {
             return Err(Error::new(ErrorKind::Cancelled, "the run was cancelled before it began"));
         };
         let mut status = self.run_raw(&mut trampoline);
-        let for_this_run =
-            |trampoline: &Trampoline<'_>| trampoline.broke || control.token.is_cancelled();
-        if status == sys::BELTRAMI_E_CANCELLED
-            && self.maybe_late_request
-            && !for_this_run(&trampoline)
-        {
+        let late_request = self.maybe_late_request
+            && status == sys::BELTRAMI_E_CANCELLED
+            && !trampoline.broke
+            && !control.token.is_cancelled();
+        if late_request {
             status = self.run_raw(&mut trampoline); // the request is used up
         }
         drop(watch);
+        self.maybe_late_request = control.token.is_cancelled();
         if let Some(payload) = trampoline.panic.take() {
             resume_unwind(payload);
         }
-        self.maybe_late_request =
-            control.token.is_cancelled() && status != sys::BELTRAMI_E_CANCELLED;
         self.check(status)?;
         Ok(Parameterization::new(self))
     }

@@ -184,25 +184,9 @@ impl Options {
             Error::argument(format!("there is no option {name}: see beltrami::OPTIONS"))
         })?;
         let option = &OPTIONS[key];
-        let number = match option.kind {
-            OptionKind::Float => value.parse().ok().map(Value::Float),
-            OptionKind::Choice => {
-                option.choices.iter().position(|choice| *choice == value).map(index)
-            }
-            OptionKind::Switch => {
-                ["false", "true"].iter().position(|text| *text == value).map(index)
-            }
-            OptionKind::Int => None,
-        };
-        let number = number.or_else(|| match option.kind {
-            OptionKind::Float => None,
-            _ => value.parse().ok().map(Value::Int),
-        });
-        let number = number.ok_or_else(|| {
-            Error::argument(format!(
-                "{value:?} is no value for the option {name}: {}",
-                option.takes()
-            ))
+        let number = option.parse(value).ok_or_else(|| {
+            let takes = option.takes();
+            Error::argument(format!("{value:?} is no value for the option {name}: {takes}"))
         })?;
         Ok(self.with(key, number))
     }
@@ -218,11 +202,6 @@ impl Options {
             .zip(&self.values)
             .filter_map(|(key, value)| Some((key, (*value).or_else(|| default(key))?)))
     }
-}
-
-/// A number that came from a short list.
-fn index(position: usize) -> Value {
-    Value::Int(position as i64)
 }
 
 /// The default of the library at run time, which may be newer or older than the table here.
@@ -242,6 +221,20 @@ fn default(key: i32) -> Option<Value> {
 }
 
 impl OptionInfo {
+    /// The value that a text stands for, whatever the range.
+    fn parse(&self, text: &str) -> Option<Value> {
+        let names: &[&str] = match self.kind {
+            OptionKind::Float => return text.parse().ok().map(Value::Float),
+            OptionKind::Switch => &["false", "true"],
+            OptionKind::Int | OptionKind::Choice => self.choices,
+        };
+        let number = match names.iter().position(|name| *name == text) {
+            Some(position) => position as i64,
+            None => text.parse().ok()?,
+        };
+        Some(Value::Int(number))
+    }
+
     /// What a value may be, in words.
     fn takes(&self) -> String {
         match self.kind {

@@ -119,6 +119,19 @@ fn one_token_ends_several_runs() {
 }
 
 #[test]
+fn the_closure_may_use_the_token_of_its_run() {
+    let (positions, faces) = sheet(6);
+    let token = CancelToken::new();
+    let control = Control::new().cancel_token(&token).on_progress(|progress| {
+        token.cancel();
+        go_on(progress)
+    });
+    let mesh = Mesh::new(&positions, &faces);
+    let cancelled = Flattener::new().unwrap().flatten_with(&mesh, control).map(drop);
+    assert_eq!(cancelled.unwrap_err().kind, ErrorKind::Cancelled);
+}
+
+#[test]
 fn a_token_outlives_its_flattener() {
     let (positions, faces) = sheet(4);
     let token = CancelToken::new();
