@@ -18,7 +18,7 @@ pub struct Orientations {
     pub negative: usize,
     /// Faces of no area.
     pub degenerate: usize,
-    /// The first face that is not positive.
+    /// A face that is not positive, if there is one.
     pub first_bad_face: Option<usize>,
 }
 
@@ -80,7 +80,7 @@ impl Certificate {
         }
     }
 
-    pub(crate) fn first_bad_face(&self) -> Option<Element> {
+    pub(crate) fn bad_face(&self) -> Option<Element> {
         self.orientations.first_bad_face.map(Element::Face)
     }
 }

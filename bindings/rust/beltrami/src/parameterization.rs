@@ -188,19 +188,17 @@ impl<'a> Parameterization<'a> {
     ///
     /// # Errors
     ///
-    /// [`NotInjective`](ErrorKind::NotInjective), with the first face that is not positive where
-    /// there is one; with the option `float32`
+    /// [`NotInjective`](ErrorKind::NotInjective), with a face that is not positive where there is
+    /// one; with the option `float32`
     /// [`NotInjectiveFloat32`](ErrorKind::NotInjectiveFloat32).
     pub fn ensure_injective(self) -> Result<Self, Error> {
-        let status = self.status();
-        if self.is_injective() && matches!(status, Status::Injective | Status::NotConverged) {
-            return Ok(self);
-        }
-        let raw = match status {
-            Status::NotInjectiveFloat32 => status.raw(),
-            _ => ErrorKind::NotInjective.status(),
+        let certificate = self.certificate();
+        let kind = match self.status() {
+            Status::NotInjectiveFloat32 => ErrorKind::NotInjectiveFloat32,
+            _ if certificate.injective => return Ok(self),
+            _ => ErrorKind::NotInjective,
         };
-        Err(Error::from_status(raw, self.certificate().first_bad_face()))
+        Err(Error::from_status(kind.status(), certificate.bad_face()))
     }
 
     /// One (u, v) for every vertex, in the order of the vertices: in the mesh's unit of length, or

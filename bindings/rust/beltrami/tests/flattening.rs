@@ -167,6 +167,20 @@ fn float32_delivers_numbers_that_single_precision_holds() {
 }
 
 #[test]
+fn a_map_beyond_single_precision_is_no_injective_one_in_it() {
+    let (mut positions, faces) = sheet(6);
+    positions.iter_mut().flatten().for_each(|x| *x *= 1e50);
+    let mesh = Mesh::new(&positions, &faces);
+    let mut flattener = Flattener::with_options(&Options::new().float32(true)).unwrap();
+    let map = flattener.flatten(&mesh).unwrap();
+    assert_eq!(map.status(), Status::NotInjectiveFloat32);
+    let refused = map.ensure_injective().map(drop).unwrap_err();
+    assert_eq!(refused.kind, ErrorKind::NotInjectiveFloat32);
+    flattener.set_options(&Options::new()).unwrap();
+    assert!(flattener.flatten(&mesh).unwrap().ensure_injective().is_ok());
+}
+
+#[test]
 fn with_delaunay_the_faces_are_those_of_the_triangulation() {
     let (mut positions, faces) = sheet(10);
     for position in &mut positions {
