@@ -89,9 +89,17 @@ beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
   return result;
 }
 
+/// The face's number in the input.
+std::uint64_t input_face(const LoadedMesh& mesh, Index face) {
+  return face == kNone
+             ? BELTRAMI_NO_ELEMENT
+             : static_cast<std::uint64_t>(mesh.input.original_face[static_cast<std::size_t>(face)]);
+}
+
 beltrami_certificate describe(const LoadedMesh& mesh, const Certificate& certificate) {
   beltrami_certificate report = empty_certificate();
   describe_orientations(report, certificate.orientations);
+  report.first_bad_face = input_face(mesh, certificate.orientations.first_bad_face);
   describe_crossings(report, certificate.crossings, mesh.input.original);
   report.injective = certificate.injective() ? 1 : 0;
   return report;
@@ -99,14 +107,13 @@ beltrami_certificate describe(const LoadedMesh& mesh, const Certificate& certifi
 
 void write_uvs(const LoadedMesh& mesh, const std::vector<Vec2>& uvs, Writer& writer) {
   const std::vector<Index>& original = mesh.input.original;
-  constexpr double origin[2] = {0, 0};
-  std::size_t next = 0;  // `original` increases: the vertices between its members are unused
-  for (std::size_t i = 0; i < original.size(); ++i) {
-    const auto vertex = static_cast<std::size_t>(original[i]);
-    while (next < vertex) writer.write(next++, origin);
-    writer.write(next++, uvs[i].data());
+  if (original.size() < mesh.vertex_count) {
+    constexpr double origin[2] = {0, 0};
+    for (std::size_t i = 0; i < mesh.vertex_count; ++i) writer.write(i, origin);
   }
-  while (next < mesh.vertex_count) writer.write(next++, origin);
+  for (std::size_t i = 0; i < original.size(); ++i) {
+    writer.write(static_cast<std::size_t>(original[i]), uvs[i].data());
+  }
 }
 
 }  // namespace
@@ -272,7 +279,7 @@ beltrami_status beltrami_get_faces(beltrami_context* context, void* out, int32_t
     const beltrami::Flattening& results = self.results();
     const beltrami::InputDisk& input = self.mesh->input;
     const auto& faces = results.faces.empty() ? input.disk.faces : results.faces;
-    beltrami::write_faces(faces, input.original, out, type, stride);
+    beltrami::write_faces(faces, input.original, input.original_face, out, type, stride);
     return BELTRAMI_OK;
   });
 }
@@ -280,7 +287,10 @@ beltrami_status beltrami_get_faces(beltrami_context* context, void* out, int32_t
 beltrami_status beltrami_get_energy(beltrami_context* context, beltrami_energy* out) {
   return enter(context, [&](beltrami_context& self) {
     beltrami::require_sized(out, "out");
-    beltrami::write_sized(out, beltrami::describe_distortion(self.results().distortion));
+    const beltrami::Distortion& distortion = self.results().distortion;
+    beltrami_energy energy = beltrami::describe_distortion(distortion);
+    energy.worst_face = beltrami::input_face(*self.mesh, distortion.worst_face);
+    beltrami::write_sized(out, energy);
     return BELTRAMI_OK;
   });
 }
@@ -289,7 +299,10 @@ beltrami_status beltrami_get_face_energies(beltrami_context* context, void* out,
   return enter(context, [&](beltrami_context& self) {
     const std::vector<double>& energies = self.results().face_energies;
     beltrami::Writer writer(out, BELTRAMI_F64, stride, energies.size(), 1);
-    for (std::size_t f = 0; f < energies.size(); ++f) writer.write(f, &energies[f]);
+    const std::vector<beltrami::Index>& original = self.mesh->input.original_face;
+    for (std::size_t f = 0; f < energies.size(); ++f) {
+      writer.write(static_cast<std::size_t>(original[f]), &energies[f]);
+    }
     return BELTRAMI_OK;
   });
 }

@@ -149,13 +149,16 @@ std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_coun
   return points;
 }
 
-void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original, void* out,
-                 std::int32_t type, std::uint64_t stride) {
+void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original,
+                 const std::vector<Index>& original_face, void* out, std::int32_t type,
+                 std::uint64_t stride) {
   if (out == nullptr) refuse("the memory to write to is NULL");
   require_type(type, BELTRAMI_U32, BELTRAMI_U64, "output");
   const std::size_t step = checked_stride(stride, type, 3, faces.size(), "output");
-  auto* item = static_cast<unsigned char*>(out);
-  for (const Triangle& face : faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Triangle& face = faces[f];
+    auto* item =
+        static_cast<unsigned char*>(out) + step * static_cast<std::size_t>(original_face[f]);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto wide = static_cast<std::uint64_t>(original[static_cast<std::size_t>(face[k])]);
       const auto narrow = static_cast<std::uint32_t>(wide);
@@ -165,7 +168,6 @@ void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& o
         std::memcpy(item + k * sizeof wide, &wide, sizeof wide);
       }
     }
-    item += step;
   }
 }
 

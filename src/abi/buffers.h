@@ -80,10 +80,12 @@ std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<In
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
                            const std::vector<Index>& original);
 
-/// Writes faces, their vertices as `original` numbers them, as items of 3 elements of `type` U32 or
-/// U64, `stride` bytes apart (0: packed). Throws Error INVALID_ARGUMENT.
-void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original, void* out,
-                 std::int32_t type, std::uint64_t stride);
+/// Writes faces as items of 3 elements of `type` U32 or U64, `stride` bytes apart (0: packed): face
+/// i as item `original_face[i]`, its vertices as `original` numbers them. Throws Error
+/// INVALID_ARGUMENT.
+void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original,
+                 const std::vector<Index>& original_face, void* out, std::int32_t type,
+                 std::uint64_t stride);
 
 /// A strided array in the caller's memory to write to.
 class Writer {

@@ -26,7 +26,7 @@ beltrami_status judge(Scope scope, const beltrami_mesh* theirs, const beltrami_b
     describe_orientations(report, found);
     return found.negative + found.degenerate == 0 ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
   }
-  const InputDisk input = read_disk(mesh, Positions::kZeros);
+  const InputDisk input = read_topology(mesh);
   const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, input.original);
   if (scope == Scope::kBoundary) {
     const Crossings found = count_crossings(input.disk.boundary, points);

@@ -66,14 +66,17 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
   LoadedMesh loaded;
   loaded.vertex_count = mesh.vertex_count;
-  loaded.input = read_disk(mesh, Positions::kRead);
+  loaded.input = read_disk(mesh);
   DiskMesh& disk = loaded.input.disk;
   loaded.frame = normalise(disk.positions, disk.faces);
   loaded.area = surface_area(disk) / loaded.frame.scale / loaded.frame.scale;
   for (Index f = 0; f < disk.face_count(); ++f) {
     const Triangle& t = disk.faces[f];
     if (!is_degenerate(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]])) continue;
-    if (loaded.degenerate_faces++ == 0) loaded.first_degenerate_face = f;
+    ++loaded.degenerate_faces;
+    const Index original = loaded.input.original_face[f];
+    Index& first = loaded.first_degenerate_face;
+    if (first == kNone || original < first) first = original;
   }
   return loaded;
 }

@@ -16,10 +16,10 @@ namespace beltrami {
 struct LoadedMesh {
   InputDisk input;
   Normalisation frame;
-  std::uint64_t vertex_count = 0;      ///< of the input, unused vertices included
-  double area = 0;                     ///< in the input's unit squared
-  std::uint64_t degenerate_faces = 0;  ///< without area
-  Index first_degenerate_face = kNone;
+  std::uint64_t vertex_count = 0;       ///< of the input, unused vertices included
+  double area = 0;                      ///< in the input's unit squared
+  std::uint64_t degenerate_faces = 0;   ///< without area
+  Index first_degenerate_face = kNone;  ///< in the input
 };
 
 /// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.

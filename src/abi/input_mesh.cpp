@@ -4,26 +4,43 @@
 
 #include "abi/buffers.h"
 #include "base/error.h"
+#include "mesh/locality.h"
 
 namespace beltrami {
 namespace {
 
-/// Builds the disk from the faces as the input numbers them, only to fail: renumbering keeps the
-/// order of the vertices, so it meets the same defect, and names it by the input's numbers.
-/// Costs a second pass over an invalid mesh and saves rewriting sentences.
-void fail_in_input_numbers(const beltrami_mesh& mesh, const std::vector<Index>& original,
+/// Builds the disk from the faces as the input numbers them, only to fail: it meets a defect that
+/// the renumbered mesh has too, and names it by the input's numbers. Costs a second pass over an
+/// invalid mesh and saves rewriting sentences.
+void fail_in_input_numbers(const beltrami_mesh& mesh, const InputDisk& input,
                            const std::vector<Vec3>& used_positions) {
   std::vector<Vec3> positions(mesh.vertex_count, Vec3::Zero());
   for (std::size_t i = 0; i < used_positions.size(); ++i) {
-    positions[static_cast<std::size_t>(original[i])] = used_positions[i];
+    positions[static_cast<std::size_t>(input.original[i])] = used_positions[i];
   }
   build_disk(std::move(positions), read_faces(mesh));
 }
 
-std::vector<Vec3> used_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
-                                 Positions positions) {
-  return positions == Positions::kRead ? read_positions(mesh, original)
-                                       : std::vector<Vec3>(original.size(), Vec3::Zero());
+/// The items of `order`, one after the other.
+template <class Item>
+std::vector<Item> arranged(const std::vector<Item>& items, const std::vector<Index>& order) {
+  std::vector<Item> result;
+  result.reserve(order.size());
+  for (const Index i : order) result.push_back(items[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+/// Renumbers vertices and faces by where they are. Precondition: finite positions.
+void arrange(const std::vector<Vec3>& positions, InputDisk& input, std::vector<Triangle>& faces) {
+  const std::vector<Index> order = along_hilbert_curve(positions);
+  std::vector<Index> place(order.size());
+  for (Index i = 0; i < size_of(order); ++i) place[order[i]] = i;
+  for (Triangle& face : faces) {
+    for (Index& v : face) v = place[v];
+  }
+  input.original = arranged(input.original, order);
+  input.original_face = by_least_vertex(size_of(order), faces);
+  faces = arranged(faces, input.original_face);
 }
 
 }  // namespace
@@ -36,17 +53,37 @@ InputTriangles read_triangles(const beltrami_mesh& mesh) {
   return triangles;
 }
 
-InputDisk read_disk(const beltrami_mesh& mesh, Positions positions) {
+InputDisk read_disk(const beltrami_mesh& mesh) {
   InputTriangles triangles = read_triangles(mesh);
   InputDisk input;
   input.original = std::move(triangles.original);
+  std::vector<Vec3> positions = read_positions(mesh, input.original);
   try {
-    input.disk =
-        build_disk(used_positions(mesh, input.original, positions), std::move(triangles.faces));
+    validate_indices(size_of(positions), triangles.faces);
+    validate_positions(positions);
+    arrange(positions, input, triangles.faces);
+    positions = read_positions(mesh, input.original);
+    input.disk = build_disk(std::move(positions), std::move(triangles.faces));
+  } catch (const Error& error) {
+    if (error.element().kind != BELTRAMI_ELEMENT_NONE) {
+      fail_in_input_numbers(mesh, input, read_positions(mesh, input.original));
+    }
+    throw;
+  }
+  return input;
+}
+
+InputDisk read_topology(const beltrami_mesh& mesh) {
+  InputTriangles triangles = read_triangles(mesh);
+  InputDisk input;
+  input.original = std::move(triangles.original);
+  const std::vector<Vec3> positions(input.original.size(), Vec3::Zero());
+  try {
+    input.disk = build_disk(positions, std::move(triangles.faces));
   } catch (const Error& error) {
     const bool renumbered = input.original.size() != mesh.vertex_count;
     if (renumbered && error.element().kind != BELTRAMI_ELEMENT_NONE) {
-      fail_in_input_numbers(mesh, input.original, used_positions(mesh, input.original, positions));
+      fail_in_input_numbers(mesh, input, positions);
     }
     throw;
   }

@@ -22,16 +22,16 @@ InputTriangles read_triangles(const beltrami_mesh& mesh);
 /// A disk over the vertices that the input's faces use.
 struct InputDisk {
   DiskMesh disk;
-  std::vector<Index> original;  ///< per vertex of `disk`: its number in the input
+  std::vector<Index> original;       ///< per vertex of `disk`: its number in the input
+  std::vector<Index> original_face;  ///< per face of `disk`: likewise
 };
 
-enum class Positions {
-  kRead,   ///< from the caller
-  kZeros,  ///< where topology alone matters
-};
+/// Reads and validates the caller's mesh, and numbers its vertices and faces by where they are.
+/// Throws Error INVALID_ARGUMENT or a mesh status, whose element and message count as the input
+/// does. Positions of unused vertices are not looked at.
+InputDisk read_disk(const beltrami_mesh& mesh);
 
-/// Reads and validates the caller's mesh. Throws Error INVALID_ARGUMENT or a mesh status, whose
-/// element and message count as the input does. Positions of unused vertices are not looked at.
-InputDisk read_disk(const beltrami_mesh& mesh, Positions positions);
+/// The same for checks of the topology alone: all positions zero, the order as in the input.
+InputDisk read_topology(const beltrami_mesh& mesh);
 
 }  // namespace beltrami

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "beltrami/closest_point.h"
 #include "beltrami/frame.h"
+#include "beltrami/surface_walk.h"
 
 namespace beltrami {
 namespace {
@@ -29,7 +30,7 @@ void accumulate(FaceMetric& sum, const FaceMetric& metric, double weight) {
 }
 
 void normalise_phase(FaceMetric& metric) {
-  const double length = std::abs(metric.phase);
+  const double length = modulus(metric.phase);
   metric.phase = length > 0 ? metric.phase / length : Complex(1);
 }
 
@@ -105,18 +106,29 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
     const LinearMap map = linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
     const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
     if (!(area_factor > 0)) continue;
-    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / std::abs(map.fz)};
+    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / modulus(map.fz)};
   }
   return metrics;
 }
 
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
                                        const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
-                                       int threads, const Checkpoint& checkpoint) {
+                                       const std::vector<Index>& nearby, int threads,
+                                       const Checkpoint& checkpoint) {
   std::vector<FrameOfFace> coarse_frames(coarse.face_count());
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
   const ClosestPoint tree(coarse.positions, coarse.faces);
+  const SurfaceWalk walk(coarse);
+  // The face to start at: the last one found where it touches the coarse vertex nearby.
+  const auto start_at = [&](Index fine_vertex, Index last) {
+    const Index home = nearby[fine_vertex];
+    if (last != kNone) {
+      const Triangle& t = coarse.faces[last];
+      if (t[0] == home || t[1] == home || t[2] == home) return last;
+    }
+    return coarse.outgoing[home] / 3;
+  };
 
   std::vector<FaceMetric> result(fine.face_count());
   for (std::int64_t first = 0; first < fine.face_count(); first += kBatch) {
@@ -131,7 +143,9 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
         const Triangle& t = fine.faces[f];
         const Vec3 centroid =
             (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3;
-        const SurfacePoint hit = tree.find(centroid, to.frame.n, seed);
+        SurfacePoint hit;
+        if (!nearby.empty()) hit = walk.find(centroid, to.frame.n, start_at(t[0], seed));
+        if (hit.face == kNone) hit = tree.find(centroid, to.frame.n, seed);
         seed = hit.face;
         FaceMetric sum = zero_metric();
         for (int k = 0; k < 3; ++k) {

@@ -13,6 +13,7 @@ namespace beltrami {
 struct CoarseDisk {
   DiskMesh mesh;
   std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
+  std::vector<Index> nearby;  ///< per fine vertex: the coarse vertex that it was collapsed into
 };
 
 /// Collapses half-edges in passes until at most `target_faces` faces are left or no collapse is
@@ -20,7 +21,7 @@ struct CoarseDisk {
 /// (proved by build_disk). Kept whatever the target: at least 8 boundary vertices (or all), the
 /// tips of ears, both ends of every bridge and one boundary vertex between successive bridge ends,
 /// since what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces,
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads = 1,
                     const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

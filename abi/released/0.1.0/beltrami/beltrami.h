@@ -323,7 +323,7 @@ typedef struct beltrami_certificate {
   uint64_t negative;
   uint64_t degenerate;
   uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not */
-  uint64_t first_bad_face;     /* first face that is not positive, or BELTRAMI_NO_ELEMENT */
+  uint64_t first_bad_face;     /* a face that is not positive, or BELTRAMI_NO_ELEMENT */
   uint64_t first_crossing[2];  /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
   uint64_t error_element;      /* the element of an error status, or BELTRAMI_NO_ELEMENT */
   int32_t error_element_kind;  /* BELTRAMI_ELEMENT_ */

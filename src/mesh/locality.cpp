@@ -1,0 +1,96 @@
+#include "mesh/locality.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace beltrami {
+namespace {
+
+constexpr int kBits = 16;  // per axis
+constexpr int kDigit = 16;
+
+using Cell = std::array<std::uint32_t, 3>;
+
+/// Where a cell comes on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
+std::uint64_t hilbert_key(Cell x) {
+  for (std::uint32_t q = 1u << (kBits - 1); q > 1; q >>= 1) {
+    const std::uint32_t below = q - 1;
+    for (int i = 0; i < 3; ++i) {
+      if (x[i] & q) {
+        x[0] ^= below;
+      } else {
+        const std::uint32_t swapped = (x[0] ^ x[i]) & below;
+        x[0] ^= swapped;
+        x[i] ^= swapped;
+      }
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t parity = 0;
+  for (std::uint32_t q = 1u << (kBits - 1); q > 1; q >>= 1) {
+    if (x[2] & q) parity ^= q - 1;
+  }
+  std::uint64_t key = 0;
+  for (int bit = kBits; bit-- > 0;) {
+    for (int i = 0; i < 3; ++i) key = key << 1 | ((x[i] ^ parity) >> bit & 1);
+  }
+  return key;
+}
+
+/// Writes to `to` what `from` has, stably by `bucket`, which is below `buckets`.
+template <class Item, class Bucket>
+void counting_sort(const std::vector<Item>& from, std::vector<Item>& to, std::size_t buckets,
+                   Bucket&& bucket) {
+  std::vector<Index> start(buckets + 1, 0);
+  for (const Item& item : from) ++start[bucket(item) + 1];
+  for (std::size_t b = 0; b < buckets; ++b) start[b + 1] += start[b];
+  for (const Item& item : from) to[start[bucket(item)]++] = item;
+}
+
+}  // namespace
+
+std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points) {
+  if (points.empty()) return {};
+  Vec3 low = points.front(), high = points.front();
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  // Halves, since the sides of a box of the largest numbers overflow.
+  const double side = (0.5 * high - 0.5 * low).maxCoeff();
+  constexpr double kCells = (1 << kBits) - 1;
+  using Keyed = std::pair<std::uint64_t, Index>;
+  std::vector<Keyed> keyed(points.size()), sorted(points.size());
+  for (Index v = 0; v < size_of(points); ++v) {
+    Cell cell{};
+    for (int i = 0; i < 3 && side > 0; ++i) {
+      cell[i] = static_cast<std::uint32_t>(
+          std::clamp((0.5 * points[v][i] - 0.5 * low[i]) / side, 0.0, 1.0) * kCells);
+    }
+    keyed[v] = {hilbert_key(cell), v};
+  }
+  for (int shift = 0; shift < 3 * kBits; shift += kDigit) {
+    counting_sort(keyed, sorted, std::size_t{1} << kDigit, [=](const Keyed& item) {
+      return static_cast<std::size_t>(item.first >> shift & ((1u << kDigit) - 1));
+    });
+    keyed.swap(sorted);
+  }
+  std::vector<Index> order(points.size());
+  std::transform(keyed.begin(), keyed.end(), order.begin(),
+                 [](const Keyed& k) { return k.second; });
+  return order;
+}
+
+std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces) {
+  std::vector<Index> order(faces.size()), sorted(faces.size());
+  for (Index f = 0; f < size_of(faces); ++f) order[f] = f;
+  counting_sort(order, sorted, static_cast<std::size_t>(vertex_count), [&](Index f) {
+    return static_cast<std::size_t>(*std::min_element(faces[f].begin(), faces[f].end()));
+  });
+  return sorted;
+}
+
+}  // namespace beltrami
