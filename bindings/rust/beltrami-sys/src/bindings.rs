@@ -448,7 +448,7 @@ pub struct beltrami_certificate {
     pub degenerate: u64,
     /// pairs of boundary edges that meet where they should not
     pub boundary_crossings: u64,
-    /// first face that is not positive, or BELTRAMI_NO_ELEMENT
+    /// a face that is not positive, or BELTRAMI_NO_ELEMENT
     pub first_bad_face: u64,
     /// a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT
     pub first_crossing: [u64; 2usize],
