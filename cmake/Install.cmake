@@ -28,7 +28,7 @@ install(EXPORT beltrami-targets NAMESPACE beltrami:: DESTINATION ${package_dir}
   COMPONENT development)
 
 set(BELTRAMI_STATIC_NEEDS gmp)
-if(BELTRAMI_SOLVER STREQUAL "cholmod")
+if(BELTRAMI_SOLVER MATCHES "^cholmod")
   list(APPEND BELTRAMI_STATIC_NEEDS cholmod)
 endif()
 set(BELTRAMI_HAS_SHARED FALSE)
@@ -56,7 +56,7 @@ install(FILES
 
 # pkg-config: relative to where the file lies, so that the folder can be moved.
 set(BELTRAMI_PC_PRIVATE "-lgmp -l${BELTRAMI_CXX_RUNTIME} -lm ${CMAKE_THREAD_LIBS_INIT}")
-if(BELTRAMI_SOLVER STREQUAL "cholmod")
+if(BELTRAMI_SOLVER MATCHES "^cholmod")
   string(PREPEND BELTRAMI_PC_PRIVATE "-lcholmod ")
 endif()
 string(STRIP "${BELTRAMI_PC_PRIVATE}" BELTRAMI_PC_PRIVATE)

@@ -20,6 +20,7 @@ function(beltrami_add_static_library target)
       DEPENDS ${objects} ${symbols} COMMAND_EXPAND_LISTS VERBATIM
       COMMENT "Linking the objects of the static library into one")
     add_library(${target} STATIC ${one_object})
+    add_dependencies(${target} ${ARGN}) # Makefiles do not see that the objects are these targets'
     set_source_files_properties(${one_object} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
     set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
   else()
@@ -34,7 +35,7 @@ function(beltrami_add_static_library target)
   mark_as_advanced(BELTRAMI_GMP_LIBRARY)
   target_link_libraries(${target} INTERFACE Threads::Threads
     $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
-  if(BELTRAMI_SOLVER STREQUAL "cholmod")
+  if(BELTRAMI_SOLVER MATCHES "^cholmod")
     target_link_libraries(${target} INTERFACE
       $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)
   endif()

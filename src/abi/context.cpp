@@ -43,8 +43,8 @@ class RunMark {
  public:
   explicit RunMark(beltrami_context& context) : context_(context) { context_.running = true; }
   ~RunMark() {
-    context_.running = false;
     if (!used_) context_.cancelled.store(false);
+    context_.running = false;
   }
   RunMark(const RunMark&) = delete;
   RunMark& operator=(const RunMark&) = delete;

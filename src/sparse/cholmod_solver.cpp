@@ -9,6 +9,15 @@
 namespace beltrami {
 namespace {
 
+// The supernodal factorization, the faster one, is under the GPL; the simplicial one is not.
+#ifdef BELTRAMI_CHOLMOD_SIMPLICIAL
+constexpr int kFactorization = CHOLMOD_SIMPLICIAL;
+constexpr const char* kName = "cholmod-simplicial";
+#else
+constexpr int kFactorization = CHOLMOD_AUTO;
+constexpr const char* kName = "cholmod";
+#endif
+
 class CholmodSolver final : public SpdSolver {
  public:
   CholmodSolver() {
@@ -17,7 +26,7 @@ class CholmodSolver final : public SpdSolver {
     common_.nmethods = 1;
     common_.method[0].ordering = CHOLMOD_AMD;
     common_.postorder = 1;
-    common_.supernodal = CHOLMOD_AUTO;
+    common_.supernodal = kFactorization;
     common_.final_ll = 1;  // L L^T: L D L^T would take an indefinite matrix for a definite one
     common_.quick_return_if_not_posdef = 1;
   }
@@ -111,7 +120,7 @@ std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/) {
 }
 
 const char* spd_solver_name() {
-  return "cholmod";
+  return kName;
 }
 
 }  // namespace beltrami

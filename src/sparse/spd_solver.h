@@ -1,5 +1,5 @@
 // Sparse symmetric positive definite systems behind one interface; the back end is chosen when the
-// library is built (-DBELTRAMI_SOLVER=native|eigen|cholmod).
+// library is built (-DBELTRAMI_SOLVER=native|eigen|cholmod|cholmod-simplicial).
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -73,7 +73,7 @@ class SpdSolver {
 
 std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options = {});
 
-/// "native", "eigen" or "cholmod".
+/// "native", "eigen", "cholmod" or "cholmod-simplicial".
 const char* spd_solver_name();
 
 }  // namespace beltrami

@@ -22,9 +22,9 @@ TEST(Library, TellsItsVersion) {
 }
 
 TEST(Library, HasOneSolver) {
-  EXPECT_EQ(
-      beltrami_has("solver:native") + beltrami_has("solver:eigen") + beltrami_has("solver:cholmod"),
-      1);
+  EXPECT_EQ(beltrami_has("solver:native") + beltrami_has("solver:eigen") +
+                beltrami_has("solver:cholmod") + beltrami_has("solver:cholmod-simplicial"),
+            1);
   EXPECT_EQ(beltrami_has("scaffold:own") + beltrami_has("scaffold:cgal"), 1);
   EXPECT_EQ(beltrami_has("gpl"), beltrami_has("solver:cholmod") || beltrami_has("scaffold:cgal"));
   EXPECT_EQ(beltrami_has("solver:"), 0);

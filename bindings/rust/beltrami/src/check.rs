@@ -1,0 +1,262 @@
+//! Checks and measures of any UVs, whoever made them.
+
+use std::mem::size_of;
+
+use beltrami_sys as sys;
+
+use crate::error::{Element, Error};
+use crate::mesh::{topology, Faces, Mesh, Uvs};
+use crate::parameterization::{count, element};
+
+/// Orientation of the faces of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Orientations {
+    /// Faces of positive area in UV.
+    pub positive: usize,
+    /// Faces of negative area: flipped.
+    pub negative: usize,
+    /// Faces of no area.
+    pub degenerate: usize,
+    /// A face that is not positive, if there is one.
+    pub first_bad_face: Option<usize>,
+}
+
+impl Orientations {
+    /// Whether every face is positive.
+    pub fn all_positive(&self) -> bool {
+        self.first_bad_face.is_none()
+    }
+}
+
+/// Crossings of the boundary of a map with itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Crossings {
+    /// Pairs of boundary edges that meet where they should not.
+    pub count: usize,
+    /// A vertex of each of two edges that cross.
+    pub first: Option<[usize; 2]>,
+}
+
+/// The exact verdict on a map. Signs of areas and crossings are decided by exact predicates on the
+/// very numbers given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+#[must_use = "it may say that the map is not injective"]
+pub struct Certificate {
+    /// Whether every face is positive and no boundary edges cross, on one oriented disk: then the
+    /// map is injective.
+    pub injective: bool,
+    /// Orientation of the faces.
+    pub orientations: Orientations,
+    /// Crossings of the boundary.
+    pub crossings: Crossings,
+}
+
+impl Certificate {
+    /// An empty one for the library to fill.
+    pub(crate) fn raw() -> sys::beltrami_certificate {
+        sys::beltrami_certificate {
+            struct_size: size_of::<sys::beltrami_certificate>() as u32,
+            ..Default::default()
+        }
+    }
+
+    pub(crate) fn new(raw: &sys::beltrami_certificate) -> Certificate {
+        let [first, second] = raw.first_crossing.map(element);
+        Certificate {
+            injective: raw.injective != 0,
+            orientations: Orientations {
+                positive: count(raw.positive),
+                negative: count(raw.negative),
+                degenerate: count(raw.degenerate),
+                first_bad_face: element(raw.first_bad_face),
+            },
+            crossings: Crossings {
+                count: count(raw.boundary_crossings),
+                first: first.zip(second).map(|(first, second)| [first, second]),
+            },
+        }
+    }
+
+    pub(crate) fn bad_face(&self) -> Option<Element> {
+        self.orientations.first_bad_face.map(Element::Face)
+    }
+}
+
+/// Distortion of a map: means over the faces weighted by 3D area, at the scale of the UVs as given;
+/// NaN where there is no face to count. `s1 >= s2` are the singular values of the map of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Distortion {
+    /// 1/2 (s1² + s2² + s1⁻² + s2⁻²), at least 2.
+    pub symmetric_dirichlet: f64,
+    /// (s1 - 1)² + (1/s2 - 1)², at least 0.
+    pub symmetric_arap: f64,
+    /// The greatest symmetric Dirichlet energy of a face.
+    pub max: f64,
+    /// The face that has it.
+    pub worst_face: Option<usize>,
+    /// Faces left out: those without 3D area, and those that are flipped or degenerate in UV.
+    pub left_out: usize,
+}
+
+impl Distortion {
+    /// An empty one for the library to fill.
+    pub(crate) fn raw() -> sys::beltrami_energy {
+        sys::beltrami_energy {
+            struct_size: size_of::<sys::beltrami_energy>() as u32,
+            ..Default::default()
+        }
+    }
+
+    pub(crate) fn new(raw: &sys::beltrami_energy) -> Distortion {
+        Distortion {
+            symmetric_dirichlet: raw.symmetric_dirichlet,
+            symmetric_arap: raw.symmetric_arap,
+            max: raw.max,
+            worst_face: element(raw.worst_face),
+            left_out: count(raw.left_out),
+        }
+    }
+}
+
+/// Distortion of the map of one face. All four are NaN where the face has no 3D area.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+pub struct FaceDistortion {
+    /// The greater singular value: 1 is an isometry.
+    pub s1: f64,
+    /// The smaller singular value, `|s2| <= s1`; negative where the face is flipped.
+    pub s2: f64,
+    /// 1/2 (s1² + s2² + s1⁻² + s2⁻²), at least 2; infinite where the face is flipped or degenerate.
+    pub symmetric_dirichlet: f64,
+    /// (s1 - 1)² + (1/s2 - 1)², at least 0; infinite where the face is flipped or degenerate.
+    pub symmetric_arap: f64,
+}
+
+type Check = unsafe extern "C" fn(
+    *const sys::beltrami_mesh,
+    *const sys::beltrami_buffer,
+    *mut sys::beltrami_certificate,
+) -> sys::beltrami_status;
+
+/// Judges UVs, one per vertex, by one of the library's checks.
+fn judge(check: Check, faces: Faces<'_>, uvs: Uvs<'_>) -> Result<Certificate, Error> {
+    let mesh = topology(faces, uvs.len());
+    let mut raw = Certificate::raw();
+    // SAFETY: the views are borrowed, all their items are there; `raw` has the size that it says.
+    let status = unsafe { check(&mesh, &uvs.0.raw(), &mut raw) };
+    if status < 0 {
+        return Err(Error::from_status(
+            status,
+            Element::new(raw.error_element_kind, raw.error_element),
+        ));
+    }
+    Ok(Certificate::new(&raw))
+}
+
+/// Judges whether the map with these UVs, one per vertex, is injective.
+///
+/// They are judged as they are stored: give the very array that goes into the asset, since rounding
+/// to single precision can flip a sliver.
+///
+/// ```
+/// let faces = [[0_u32, 1, 2], [0, 2, 3]];
+/// let square = [[0.0_f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+/// assert!(beltrami::check_injective(&faces, &square)?.injective);
+///
+/// let folded = [[0.0_f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.75, 0.25]];
+/// let certificate = beltrami::check_injective(&faces, &folded)?;
+/// assert_eq!(certificate.orientations.first_bad_face, Some(1));
+/// # Ok::<(), beltrami::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`NonFinite`](crate::ErrorKind::NonFinite) for a UV, and the kinds of a mesh that is not one
+/// oriented disk, with the element that is the cause; [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
+pub fn check_injective<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+) -> Result<Certificate, Error> {
+    judge(sys::beltrami_check_injective, faces.into(), uvs.into())
+}
+
+/// Judges the orientation of every face. Any list of triangles will do: it needs no topology.
+///
+/// # Errors
+///
+/// [`IndexOutOfRange`](crate::ErrorKind::IndexOutOfRange),
+/// [`NonFinite`](crate::ErrorKind::NonFinite) for a UV, [`Empty`](crate::ErrorKind::Empty),
+/// [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
+pub fn check_triangles<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+) -> Result<Orientations, Error> {
+    Ok(judge(sys::beltrami_check_triangles, faces.into(), uvs.into())?.orientations)
+}
+
+/// Judges whether the boundary loop is simple, and verifies that the faces form one oriented disk.
+///
+/// # Errors
+///
+/// As of [`check_injective`].
+pub fn check_boundary<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+) -> Result<Crossings, Error> {
+    Ok(judge(sys::beltrami_check_boundary, faces.into(), uvs.into())?.crossings)
+}
+
+/// Distortion of any UVs, one per vertex, in the unit of length of the positions.
+///
+/// # Errors
+///
+/// [`InvalidArgument`](crate::ErrorKind::InvalidArgument) unless there is one UV per vertex,
+/// [`IndexOutOfRange`](crate::ErrorKind::IndexOutOfRange),
+/// [`NonFinite`](crate::ErrorKind::NonFinite), [`Empty`](crate::ErrorKind::Empty),
+/// [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
+pub fn measure<'a>(mesh: &Mesh<'_>, uvs: impl Into<Uvs<'a>>) -> Result<Distortion, Error> {
+    let uvs = uvs.into();
+    mesh.require_one_uv_per_vertex(&uvs)?;
+    let mut raw = Distortion::raw();
+    // SAFETY: the views are borrowed, all their items are there; `raw` has the size that it says;
+    // no energies of faces are asked for.
+    let status =
+        unsafe { sys::beltrami_measure(&mesh.raw(), &uvs.0.raw(), &mut raw, std::ptr::null_mut()) };
+    if status < 0 {
+        return Err(Error::from_status(status, None));
+    }
+    Ok(Distortion::new(&raw))
+}
+
+/// Distortion of every face of any UVs, one per vertex, in the unit of length of the positions. It
+/// needs no topology.
+///
+/// # Errors
+///
+/// As of [`measure`].
+pub fn measure_faces<'a>(
+    mesh: &Mesh<'_>,
+    uvs: impl Into<Uvs<'a>>,
+) -> Result<Vec<FaceDistortion>, Error> {
+    let uvs = uvs.into();
+    mesh.require_one_uv_per_vertex(&uvs)?;
+    let mut faces = vec![FaceDistortion::default(); mesh.faces.len()];
+    // SAFETY: the views are borrowed, all their items are there; a FaceDistortion is the four
+    // numbers that the library writes per face.
+    let status = unsafe {
+        sys::beltrami_measure_faces(
+            &mesh.raw(),
+            &uvs.0.raw(),
+            faces.as_mut_ptr().cast(),
+            size_of::<FaceDistortion>() as u64,
+        )
+    };
+    if status < 0 {
+        return Err(Error::from_status(status, None));
+    }
+    Ok(faces)
+}

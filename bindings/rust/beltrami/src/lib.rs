@@ -1,0 +1,30 @@
+#![doc = include_str!("../README.md")]
+
+mod check;
+mod control;
+mod error;
+mod flattener;
+#[cfg(feature = "glam")]
+mod glam;
+mod library;
+mod mesh;
+#[cfg(feature = "ndarray")]
+mod ndarray;
+mod options;
+mod parameterization;
+mod view;
+
+pub use check::{
+    check_boundary, check_injective, check_triangles, measure, measure_faces, Certificate,
+    Crossings, Distortion, FaceDistortion, Orientations,
+};
+pub use control::{CancelToken, Control, Progress};
+pub use error::{Element, Error, ErrorKind};
+pub use flattener::Flattener;
+pub use library::{build_info, has, version};
+pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
+pub use options::{
+    Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, OPTIONS,
+};
+pub use parameterization::{Parameterization, Stage, Status, Summary};
+pub use view::{Index, Real, Scalar, View, ViewMut};

@@ -1,0 +1,210 @@
+// The options of the library, written by tests/option_table.rs from its table and header.
+
+use std::time::Duration;
+
+use super::{choice, options, Options};
+
+choice! {
+    /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
+    /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
+    /// baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
+    /// coarse UVs (bff and uv-prolongation may flip). See [`Options::method`].
+    Method {
+        /// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their
+        /// metric.
+        Beltrami = "beltrami",
+        /// Composite majorization on the full mesh: the slow reference.
+        Cm = "cm",
+        /// Tutte's embedding into a circle: injective, fast, highly distorted.
+        Tutte = "tutte",
+        /// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+        Gif = "gif",
+        /// Baseline: boundary first flattening, conformal. May flip and overlap.
+        Bff = "bff",
+        /// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+        UvProlongation = "uv-prolongation",
+    }
+}
+
+choice! {
+    /// The distortion that is minimised. See [`Options::energy`].
+    Energy {
+        /// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
+        SymmetricDirichlet = "symmetric-dirichlet",
+        /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
+        SymmetricArap = "symmetric-arap",
+    }
+}
+
+choice! {
+    /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
+    /// and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
+    /// higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
+    /// local injectivity only) or bff (conformal, may flip). See [`Options::flatten`].
+    Flatten {
+        /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
+        Metric = "metric",
+        /// Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map:
+        /// faster, and 0.3% to 3% higher in energy.
+        Dirichlet = "dirichlet",
+        /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
+        Gif = "gif",
+        /// The same without a scaffold: no flips, but the boundary may overlap itself.
+        Flim = "flim",
+        /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
+        Bff = "bff",
+    }
+}
+
+choice! {
+    /// What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
+    /// parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
+    /// is left as the literature has it). See [`Options::injectivity`].
+    Injectivity {
+        /// Global, but for the method CM: that is left as the literature has it, the reference.
+        Auto = "auto",
+        /// No flips, and no part of the boundary may cross another.
+        Global = "global",
+        /// No flips; the boundary may overlap itself, at a slightly lower energy.
+        Local = "local",
+    }
+}
+
+choice! {
+    /// [`On`](Delaunay::On) flips edges to the intrinsic Delaunay triangulation of the prolonged
+    /// metric before the fine mesh is flattened: what is injective then are its own triangles on
+    /// the same vertices. See [`Options::delaunay`].
+    Delaunay {
+        /// Off.
+        Off = "off",
+        /// On.
+        On = "on",
+    }
+}
+
+options! {
+    /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
+    /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
+    /// baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
+    /// coarse UVs (bff and uv-prolongation may flip).
+    ///
+    /// Default: [`Beltrami`](Method::Beltrami).
+    method(Method) = 0 "method"
+        "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs (bff and uv-prolongation may flip)."
+        Choice(Method::NAMES), 0..=5, default 0;
+
+    /// The distortion that is minimised.
+    ///
+    /// Default: [`SymmetricDirichlet`](Energy::SymmetricDirichlet).
+    energy(Energy) = 1 "energy"
+        "The distortion that is minimised."
+        Choice(Energy::NAMES), 0..=1, default 0;
+
+    /// Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
+    /// at least 10,000.
+    ///
+    /// From 0 to 700000000.
+    ///
+    /// Default: 0.
+    coarse_faces(u32) = 2 "coarse-faces"
+        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000."
+        Int(&[]), 0..=700000000, default 0;
+
+    /// Relative decrease of the energy in one iteration below which composite majorization stops.
+    ///
+    /// From 0 to 1.
+    ///
+    /// Default: 0.0001.
+    tolerance(f64) = 3 "tolerance"
+        "Relative decrease of the energy in one iteration below which composite majorization stops."
+        Float(&[]), 0..=1, default 0.0001;
+
+    /// Iterations after which composite majorization stops even if it has not converged.
+    ///
+    /// From 1 to 1000000.
+    ///
+    /// Default: 500.
+    max_iterations(u32) = 4 "max-iterations"
+        "Iterations after which composite majorization stops even if it has not converged."
+        Int(&[]), 1..=1000000, default 500;
+
+    /// Threads to use, the calling one included; the result does not depend on it.
+    ///
+    /// From 1 to 1024.
+    ///
+    /// Default: 1.
+    threads(u32) = 5 "threads"
+        "Threads to use, the calling one included; the result does not depend on it."
+        Int(&[]), 1..=1024, default 1;
+
+    /// `true` scales and shifts the UVs into the unit square; `false` keeps them in the mesh's unit
+    /// of length.
+    ///
+    /// Default: `false`.
+    unit_square(bool) = 6 "unit-square"
+        "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's unit of length."
+        Switch(&[]), 0..=1, default 0;
+
+    /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
+    /// and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
+    /// higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
+    /// local injectivity only) or bff (conformal, may flip).
+    ///
+    /// Default: [`Metric`](Flatten::Metric).
+    flatten(Flatten) = 7 "flatten"
+        "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local injectivity only) or bff (conformal, may flip)."
+        Choice(Flatten::NAMES), 0..=4, default 0;
+
+    /// What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
+    /// parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
+    /// is left as the literature has it).
+    ///
+    /// Default: [`Auto`](Injectivity::Auto).
+    injectivity(Injectivity) = 8 "injectivity"
+        "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which is left as the literature has it)."
+        Choice(Injectivity::NAMES), 0..=2, default 0;
+
+    /// `true` goes on with composite majorization on the fine mesh from the result, to a little
+    /// less energy in much more time.
+    ///
+    /// Default: `false`.
+    refine(bool) = 9 "refine"
+        "1 goes on with composite majorization on the fine mesh from the result, to a little less energy in much more time."
+        Switch(&[]), 0..=1, default 0;
+
+    /// Iterations after which the refinement stops; 0 leaves it to the tolerance.
+    ///
+    /// From 0 to 1000000.
+    ///
+    /// Default: 0.
+    refine_iterations(u32) = 10 "refine-iterations"
+        "Iterations after which the refinement stops; 0 leaves it to the tolerance."
+        Int(&[]), 0..=1000000, default 0;
+
+    /// Seconds since the start of the run after which the refinement stops with what it has; 0 sets
+    /// no limit.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: [`Duration::ZERO`].
+    time_limit(Duration) = 11 "time-limit"
+        "Seconds since the start of the run after which the refinement stops with what it has; 0 sets no limit."
+        Float(&[]), 0..=1000000000, default 0;
+
+    /// `true` delivers UVs that single precision holds exactly, rounded so that the map stays
+    /// injective.
+    ///
+    /// Default: `false`.
+    float32(bool) = 12 "float32"
+        "1 delivers UVs that single precision holds exactly, rounded so that the map stays injective."
+        Switch(&[]), 0..=1, default 0;
+
+    /// [`On`](Delaunay::On) flips edges to the intrinsic Delaunay triangulation of the prolonged
+    /// metric before the fine mesh is flattened: what is injective then are its own triangles on
+    /// the same vertices.
+    ///
+    /// Default: [`Off`](Delaunay::Off).
+    delaunay(Delaunay) = 13 "delaunay"
+        "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the fine mesh is flattened: what is injective then are its own triangles on the same vertices."
+        Choice(Delaunay::NAMES), 0..=1, default 0;
+}
