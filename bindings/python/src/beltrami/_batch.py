@@ -12,7 +12,7 @@ import signal
 import subprocess
 import tempfile
 import threading
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Mapping
 from concurrent import futures
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -195,33 +195,32 @@ def batch(
     Cancelled, KeyboardInterrupt
         Jobs under way are ended; another call resumes.
     """
-    arguments = _library.arguments(
-        {
-            # options: items
-            "method": method,
-            "energy": energy,
-            "coarse_faces": coarse_faces,
-            "tolerance": tolerance,
-            "max_iterations": max_iterations,
-            "threads": threads,
-            "unit_square": unit_square,
-            "flatten": flatten,
-            "injectivity": injectivity,
-            "refine": refine,
-            "refine_iterations": refine_iterations,
-            "time_limit": time_limit,
-            "float32": float32,
-            "delaunay": delaunay,
-            # end of options
-        }
-    )
+    options: dict[str, object] = {
+        # options: items
+        "method": method,
+        "energy": energy,
+        "coarse_faces": coarse_faces,
+        "tolerance": tolerance,
+        "max_iterations": max_iterations,
+        "threads": threads,
+        "unit_square": unit_square,
+        "flatten": flatten,
+        "injectivity": injectivity,
+        "refine": refine,
+        "refine_iterations": refine_iterations,
+        "time_limit": time_limit,
+        "float32": float32,
+        "delaunay": delaunay,
+        # end of options
+    }
+    _library.arguments(options)  # refuses what is out of range, before any work
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    work = [_job(Path(path), folder, suffix, root, arguments) for path in paths]
+    work = [_job(Path(path), folder, suffix, root, options) for path in paths]
     _require_distinct(work)
     known = _read_log(folder / LOG)
     done = {job.name: known[job.name] for job in work if _is_done(job, known.get(job.name))}
-    left = [job for job in work if job.name not in done]
+    left = list({job.name: job for job in work if job.name not in done}.values())
     if jobs is None:
         jobs = max(1, (os.cpu_count() or 1) // threads)
     run = _on_processes(left, jobs) if scheduler is None else _on_dask(left, scheduler)
@@ -232,7 +231,7 @@ def batch(
                 fresh[job.name] = line
                 log.write(json.dumps(line).encode() + b"\n")
                 log.flush()
-                if hook((len(done) + len(fresh)) / len(work), job.input):
+                if hook((len(done) + len(fresh)) / (len(done) + len(left)), job.input):
                     raise Cancelled(
                         "the batch was cancelled", _REQUEST_TO_CANCEL, "BELTRAMI_E_CANCELLED"
                     )
@@ -252,7 +251,7 @@ def _job(
     folder: Path,
     suffix: str,
     root: str | os.PathLike[str] | None,
-    arguments: list[str],
+    options: Mapping[str, object],
 ) -> Job:
     path = path.absolute()
     below = path.relative_to(Path(root).absolute()) if root is not None else Path(path.name)
@@ -265,9 +264,11 @@ def _job(
         identity = {
             "size": status.st_size,
             "mtime_ns": status.st_mtime_ns,
-            "arguments": arguments,
+            # The result does not depend on the number of threads.
+            "options": {key: value for key, value in options.items() if key != "threads"},
             "version": _library.version(),
         }
+    arguments = _library.arguments(options)
     return Job(str(path), str((folder / name).absolute()), name.as_posix(), arguments, identity)
 
 
