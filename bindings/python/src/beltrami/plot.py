@@ -355,7 +355,8 @@ def _boundary(triangles: Array) -> Array:
     low, high = sides.min(axis=1), sides.max(axis=1)
     keys = low * (int(high.max()) + 1) + high
     _, first, counts = np.unique(keys, return_index=True, return_counts=True)
-    return sides[first[counts == 1]]
+    boundary: Array = sides[first[counts == 1]]
+    return boundary
 
 
 # ---- Matplotlib ---------------------------------------------------------------------------
@@ -422,6 +423,7 @@ class _Scale:
 
 
 def _logarithm(values: Array) -> Array:
+    """Return the logarithm, without a warning where there is none."""
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithm: Array = np.log(values)
     return logarithm
