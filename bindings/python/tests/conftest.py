@@ -44,12 +44,12 @@ def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
 
 @pytest.fixture
 def hump() -> tuple[np.ndarray, np.ndarray]:
-    """A mesh that takes some milliseconds: 169 vertices, so that one byte counts them."""
+    """Return a mesh that takes some milliseconds; one byte counts its 169 vertices."""
     return grid(12)
 
 
 @pytest.fixture(scope="session")
 def bust() -> tuple[np.ndarray, np.ndarray]:
-    """The scanned bust: 70,000 faces."""
+    """Return the scanned bust: 70,000 faces."""
     vertices, _, faces = read_obj(BUST)
     return vertices, faces

@@ -115,7 +115,9 @@ def test_a_negative_index_is_out_of_range_and_the_message_shows_it(hump, dtype):
         lambda: beltrami.check_injective(vertices[:, :2], faces),
         lambda: beltrami.distortion(vertices, faces, vertices[:, :2]),
     ):
-        with pytest.raises(beltrami.IndexOutOfRangeError, match="face 5 names vertex -1:") as caught:
+        with pytest.raises(
+            beltrami.IndexOutOfRangeError, match="face 5 names vertex -1:"
+        ) as caught:
             call()
         error = caught.value
         assert (error.element, error.element_kind) == (5, "face")
@@ -141,8 +143,18 @@ TETRAHEDRON = (np.eye(4, 3), [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
         (two_squares(), beltrami.NotADiskError, "COMPONENTS", (2, "face")),
         (three_pages(), beltrami.NotADiskError, "NON_MANIFOLD_EDGE", (2, "face")),
         ((np.eye(3), [[0, 1, 1]]), beltrami.NotADiskError, "REPEATED_VERTEX", (0, "face")),
-        ((np.eye(3), [[0, 1, 3]]), beltrami.IndexOutOfRangeError, "INDEX_OUT_OF_RANGE", (0, "face")),
-        ((np.diag([1, np.nan, 1]), [[0, 1, 2]]), beltrami.NonFiniteError, "NON_FINITE", (1, "vertex")),
+        (
+            (np.eye(3), [[0, 1, 3]]),
+            beltrami.IndexOutOfRangeError,
+            "INDEX_OUT_OF_RANGE",
+            (0, "face"),
+        ),
+        (
+            (np.diag([1, np.nan, 1]), [[0, 1, 2]]),
+            beltrami.NonFiniteError,
+            "NON_FINITE",
+            (1, "vertex"),
+        ),
         ((np.zeros((3, 3)), [[0, 1, 2]]), beltrami.MeshError, "ZERO_AREA", (None, None)),
     ],
     ids=lambda value: value if isinstance(value, str) else "",

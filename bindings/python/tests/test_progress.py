@@ -26,9 +26,7 @@ ENDLESS = {"method": "cm", "tolerance": 0.0, "max_iterations": 1000000}
 
 def test_progress_is_told_in_this_thread_and_never_decreases(bust):
     seen = []
-    beltrami.parameterize(
-        *bust, progress=lambda *args: seen.append((threading.get_ident(), *args))
-    )
+    beltrami.parameterize(*bust, progress=lambda *args: seen.append((threading.get_ident(), *args)))
     fractions = [fraction for _, fraction, _ in seen]
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1

@@ -93,7 +93,9 @@ def test_the_uvs_are_those_of_the_c_interface(library, options, dtype):
     assert result.uv.tobytes() == expected.tobytes()
 
 
-@pytest.mark.parametrize("options", [{}, {"coarse_faces": 500, "energy": "symmetric-arap"}], ids=str)
+@pytest.mark.parametrize(
+    "options", [{}, {"coarse_faces": 500, "energy": "symmetric-arap"}], ids=str
+)
 def test_the_uvs_are_those_that_the_program_writes(bust, tmp_path, options):
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in options.items()]
     source, target = write_obj(tmp_path / "in.obj", *bust), tmp_path / "out.obj"

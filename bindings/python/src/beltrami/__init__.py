@@ -7,7 +7,7 @@
 Vertices and faces are never duplicated, dropped or reordered: there is one UV per vertex.
 """
 
-from . import plot
+from . import _library, plot
 from ._batch import BatchRecord, batch
 from ._checks import Distortion, check_boundary, check_injective, check_triangles, distortion
 from ._errors import (
@@ -26,11 +26,11 @@ from ._errors import (
     UnsupportedError,
 )
 from ._flatten import Flattener, parameterize
-from ._library import build_info, version
+from ._library import build_info
 from ._results import Parameterization
 from ._tables import Certificate, Energy, Options, Report, Stage
 
-__version__ = version()
+__version__ = _library.version()
 __all__ = [
     "BatchRecord",
     "BeltramiError",

@@ -214,10 +214,12 @@ def batch(
         # end of options
     }
     _library.arguments(options)  # refuses what is out of range, before any work
+    if suffix not in (".obj", ".ply"):
+        raise ValueError(f"suffix is {suffix!r}: give '.obj' or '.ply'")
     folder = Path(out_dir)
-    folder.mkdir(parents=True, exist_ok=True)
     work = [_job(Path(path), folder, suffix, root, options) for path in paths]
     _require_distinct(work)
+    folder.mkdir(parents=True, exist_ok=True)
     known = _read_log(folder / LOG)
     done = {job.name: known[job.name] for job in work if _is_done(job, known.get(job.name))}
     left = list({job.name: job for job in work if job.name not in done}.values())
@@ -383,19 +385,32 @@ def _on_dask(work: list[Job], scheduler: Any) -> Generator[tuple[Job, dict[str, 
     from distributed import Client, as_completed
 
     client = scheduler if isinstance(scheduler, Client) else Client(scheduler)
-    running = {client.submit(run_job, job, pure=False): job for job in work}
+    waiting, ended = list(reversed(work)), as_completed()
+    running: dict[Any, Job] = {}
     try:
-        for future in as_completed(list(running)):
-            job = running[future]
-            if future.status == "finished":
-                yield job, future.result()
-            else:  # its worker died more than once, or lacks this package
-                line = _line(job, -signal.SIGKILL, "", None)
-                yield job, {**line, "message": f"the worker failed: {future.exception()!r}"}
+        while waiting or running:
+            # No more than can run: a worker that dies would have those blamed that wait for it.
+            while waiting and len(running) < max(1, sum(client.nthreads().values())):
+                job = waiting.pop()
+                future = client.submit(run_job, job, pure=False)
+                running[future] = job
+                ended.add(future)
+            future = next(ended)
+            job = running.pop(future)
+            yield job, _line_from_dask(job, future)
     finally:
         client.cancel(list(running))
         if client is not scheduler:
             client.close()
+
+
+def _line_from_dask(job: Job, future: Any) -> dict[str, Any]:
+    if future.status == "finished":
+        line: dict[str, Any] = future.result()
+        return line
+    # Its worker died, more often than the scheduler tries again; or lacks this package.
+    line = _line(job, -signal.SIGKILL, "", None)
+    return {**line, "message": f"the worker failed: {future.exception()!r}"}
 
 
 # ---- The log ------------------------------------------------------------------------------
