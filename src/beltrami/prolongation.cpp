@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "beltrami/closest_point.h"
 #include "beltrami/frame.h"
+#include "beltrami/surface_walk.h"
 
 namespace beltrami {
 namespace {
@@ -112,11 +113,22 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
                                        const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
-                                       int threads, const Checkpoint& checkpoint) {
+                                       const std::vector<Index>& nearby, int threads,
+                                       const Checkpoint& checkpoint) {
   std::vector<FrameOfFace> coarse_frames(coarse.face_count());
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
   const ClosestPoint tree(coarse.positions, coarse.faces);
+  const SurfaceWalk walk(coarse);
+  // The face to start at: the last one found where it touches the coarse vertex nearby.
+  const auto start_at = [&](Index fine_vertex, Index last) {
+    const Index home = nearby[fine_vertex];
+    if (last != kNone) {
+      const Triangle& t = coarse.faces[last];
+      if (t[0] == home || t[1] == home || t[2] == home) return last;
+    }
+    return coarse.outgoing[home] / 3;
+  };
 
   std::vector<FaceMetric> result(fine.face_count());
   for (std::int64_t first = 0; first < fine.face_count(); first += kBatch) {
@@ -131,7 +143,9 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
         const Triangle& t = fine.faces[f];
         const Vec3 centroid =
             (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3;
-        const SurfacePoint hit = tree.find(centroid, to.frame.n, seed);
+        SurfacePoint hit;
+        if (!nearby.empty()) hit = walk.find(centroid, to.frame.n, start_at(t[0], seed));
+        if (hit.face == kNone) hit = tree.find(centroid, to.frame.n, seed);
         seed = hit.face;
         FaceMetric sum = zero_metric();
         for (int k = 0; k < 3; ++k) {

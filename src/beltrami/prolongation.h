@@ -29,9 +29,12 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 /// Carries the metric of the coarse faces over to the fine faces: averaged by area in the tangent
 /// planes of the coarse vertices, interpolated at the point that is closest to each fine centroid,
 /// and transported into the frame of the fine face. A convex combination throughout: |mu| never
-/// exceeds the greatest coarse one. Faces without a normal get mu = 0.
+/// exceeds the greatest coarse one. Faces without a normal get mu = 0. `nearby`: per fine vertex a
+/// coarse vertex near it on the surface, which saves a search over all faces and keeps to the right
+/// side of a seam; or empty.
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
                                        const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
-                                       int threads, const Checkpoint& checkpoint = no_checkpoint);
+                                       const std::vector<Index>& nearby, int threads,
+                                       const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

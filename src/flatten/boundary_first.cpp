@@ -44,9 +44,12 @@ double edge_length_sq(const DiskMesh& mesh, const std::vector<RestTriangle>& res
 /// The Laplacian of the conformal class, its boundary held: the area factors are left out, which
 /// weight an elastic energy but have no part in a conformal map.
 MetricLaplacian conformal_laplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                    std::vector<FaceMetric> metric) {
-  for (FaceMetric& m : metric) m.log_area = 0;
-  return MetricLaplacian(mesh, rest, metric, mesh.on_boundary);
+                                    const std::vector<FaceMetric>& metric) {
+  auto weights = modified_cotangents(rest, metric, 1);
+  for (EdgeWeights& face : weights) {
+    for (double& w : face) w *= 0.5;
+  }
+  return MetricLaplacian(mesh, weights, mesh.on_boundary);
 }
 
 /// A x for the Laplacian A of all vertices: nothing of it is stored but the factor of its interior

@@ -6,151 +6,186 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "flatten/laplacian.h"
+#include "mesh/vertex_sums.h"
 
 namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 8192;
 
-/// Weights of the three edges of a face, each opposite to the corner of its index.
-std::array<double, 3> edge_weights(const RestTriangle& rest, const FaceMetric& metric) {
-  auto weights = modified_cotangents(rest, metric.mu);
-  for (double& w : weights) w *= 0.5 * std::exp(-metric.log_area);
-  return weights;
-}
-
-/// The corners of a face laid out in its target metric.
-std::array<Complex, 3> target_corners(const RestTriangle& rest, const FaceMetric& metric) {
-  const Complex fz = metric.fz(), fzbar = metric.mu * fz;
-  std::array<Complex, 3> corners;
-  for (int k = 0; k < 3; ++k) {
-    const Complex z = rest.corner(k);
-    corners[k] = fz * z + fzbar * std::conj(z);
-  }
-  return corners;
-}
-
-/// Weights of the edges of a face whose stiffness along each singular direction is the mean of the
-/// density's radial curvature there and of its angular ones.
+/// The stiffness of a face whose singular values are a + b and a - b, the greater one along
+/// `direction`, a unit complex twice as far from the real axis. Along each the mean of the density's
+/// radial curvature there and of its angular ones.
 template <class Density>
-std::array<double, 3> stiffness_weights(const RestTriangle& rest, const LinearMap& map) {
-  const double a = std::abs(map.fz), b = std::abs(map.fzbar);
-  if (!(a > b)) return modified_cotangents(rest, 0);
+EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex direction) {
   const DensityModel model = Density::model(a + b, a - b);
   // Beside a ridge of the density the angular curvature is without bounds.
   const double angular = std::min(0.5 * (model.twist + model.flip), model.h11 + model.h22);
   const double along = 0.5 * (model.h11 + angular), across = 0.5 * (model.h22 + angular);
   // The metric whose Laplacian has this stiffness: lengths go with the inverse roots.
   const double ratio = std::sqrt(across / along), modulus = (ratio - 1) / (ratio + 1);
-  const Complex direction = b > 0 ? map.fzbar / map.fz * (a / b) : Complex(1);
-  auto weights = modified_cotangents(rest, modulus * direction);
-  for (double& w : weights) w *= 0.5 * std::sqrt(along * across);
+  EdgeWeights weights = modified_cotangents(rest, modulus * direction);
+  const double scale = 0.5 * std::sqrt(along * across);
+  for (double& w : weights) w *= scale;
   return weights;
 }
 
-/// The unit complex per face that turns its target closest to the present map.
-void fit_rotations(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                   const std::vector<FaceMetric>& metric, const std::vector<Vec2>& uvs, int threads,
-                   std::vector<Complex>& rotation) {
-  parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      const Triangle& t = mesh.faces[f];
-      const auto weights = edge_weights(rest[f], metric[f]);
-      const auto corners = target_corners(rest[f], metric[f]);
-      Complex fit = 0;
-      for (int k = 0; k < 3; ++k) {
-        const int i = next_corner(k), j = previous_corner(k);
-        const Vec2 edge = uvs[t[i]] - uvs[t[j]];
-        fit += weights[k] * Complex(edge.x(), edge.y()) * std::conj(corners[i] - corners[j]);
-      }
-      if (std::abs(fit) > 0) rotation[f] = fit / std::abs(fit);
-    }
+/// Calls stiffness(density, face) for every face.
+template <class Stiffness>
+std::vector<EdgeWeights> stiffness_of_faces(Energy energy, std::size_t count, int threads,
+                                            const Stiffness& stiffness) {
+  std::vector<EdgeWeights> weights(count);
+  with_density(energy, [&]<class Density>(Density density) {
+    parallel_for(threads, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t f = begin; f < end; ++f) weights[f] = stiffness(density, f);
+    });
   });
+  return weights;
+}
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+Eigen::Map<const Rows> as_rows(const std::vector<Vec2>& field) {
+  return {field.data()->data(), size_of(field), 2};
+}
+Eigen::Map<Rows> as_rows(std::vector<Vec2>& field) {
+  return {field.data()->data(), size_of(field), 2};
+}
+
+Complex to_complex(const Vec2& v) {
+  return {v.x(), v.y()};
+}
+
+/// The edges opposite to each corner, from the corner after it to the one before.
+std::array<Complex, 3> edges(Complex p0, Complex p1, Complex p2) {
+  return {p2 - p1, p0 - p2, p1 - p0};
+}
+
+std::array<Complex, 3> edges(const Triangle& t, const std::vector<Vec2>& uvs) {
+  return edges(to_complex(uvs[t[0]]), to_complex(uvs[t[1]]), to_complex(uvs[t[2]]));
+}
+
+/// The same of the face laid out in its target metric.
+std::array<Complex, 3> target_edges(const RestTriangle& rest, const FaceMetric& metric) {
+  const Complex fz = metric.fz(), fzbar = metric.mu * fz, z = rest.corner(2);
+  return edges(0, (fz + fzbar) * rest.x1, fz * z + fzbar * std::conj(z));
+}
+
+/// The unit complex that turns the target closest to the present face.
+Complex fitted_rotation(const EdgeWeights& weights, const std::array<Complex, 3>& target,
+                        const std::array<Complex, 3>& present) {
+  Complex fit = 0;
+  for (int k = 0; k < 3; ++k) fit += weights[k] * present[k] * std::conj(target[k]);
+  const double length = std::abs(fit);
+  return length > 0 ? fit / length : Complex(1);
 }
 
 }  // namespace
 
-MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                 const std::vector<FaceMetric>& metric,
+std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestTriangle>& rest,
+                                          const std::vector<FaceMetric>& metric, int threads) {
+  return stiffness_of_faces(
+      energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) {
+        const double modulus = std::abs(metric[f].mu);
+        const Complex direction = modulus > 0 ? metric[f].mu / modulus : Complex(1);
+        const double a = std::exp(0.5 * metric[f].log_area) / std::sqrt(1 - modulus * modulus);
+        return stiffness_at<Density>(rest[f], a, modulus * a, direction);
+      });
+}
+
+std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Triangle>& faces,
+                                          const std::vector<RestTriangle>& rest,
+                                          const std::vector<Vec2>& uvs, int threads) {
+  return stiffness_of_faces(
+      energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) -> EdgeWeights {
+        const Triangle& t = faces[f];
+        const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
+        const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+        if (!(a > b)) return modified_cotangents(rest[f], 0);
+        const Complex direction = b > 0 ? map.fzbar / map.fz * (a / b) : Complex(1);
+        return stiffness_at<Density>(rest[f], a, b, direction);
+      });
+}
+
+MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                  const std::vector<bool>& held, const SolverOptions& options)
     : matrix_(mesh.vertex_count(), mesh.faces, held, 1) {
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    add_stiffness(matrix_, f, mesh.faces[f], edge_weights(rest[f], metric[f]));
-  }
+  assemble(mesh, stiffness);
   if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_, mesh.positions, options);
 }
 
-void MetricLaplacian::refit(Energy energy, const DiskMesh& mesh,
-                            const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
-                            int threads) {
+void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
   if (matrix_.free_count() == 0) return;
-  std::vector<std::array<double, 3>> weights(mesh.faces.size());
-  with_density(energy, [&]<class Density>(Density) {
-    parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t f = begin; f < end; ++f) {
-        const Triangle& t = mesh.faces[f];
-        weights[f] = stiffness_weights<Density>(
-            rest[f], linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-      }
-    });
-  });
   matrix_.set_zero();
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    add_stiffness(matrix_, f, mesh.faces[f], weights[f]);
-  }
+  assemble(mesh, stiffness);
   refactorize_laplacian(*solver_, matrix_);
 }
 
-DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
-  return apply(rhs, &SpdSolver::solve);
-}
-
-DenseMatrix MetricLaplacian::precondition(const DenseMatrix& rhs) const {
-  return apply(rhs, &SpdSolver::precondition);
-}
-
-DenseMatrix MetricLaplacian::apply(const DenseMatrix& rhs,
-                                   DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&)
-                                       const) const {
-  DenseMatrix result = DenseMatrix::Zero(rhs.rows(), rhs.cols());
-  if (matrix_.free_count() == 0) return result;
-  const std::vector<Index>& row = matrix_.rows();
-  DenseMatrix packed(matrix_.free_count(), rhs.cols());
-  for (Index v = 0; v < size_of(row); ++v) {
-    if (row[v] != kNone) packed.row(row[v]) = rhs.row(v);
+void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    add_stiffness(matrix_, f, mesh.faces[f], stiffness[f]);
   }
-  packed = (solver_.get()->*inverse)(packed);
+}
+
+/// The rows of the free vertices.
+template <class Rows>
+DenseMatrix MetricLaplacian::packed(const Rows& rhs) const {
+  const std::vector<Index>& row = matrix_.rows();
+  DenseMatrix result(matrix_.free_count(), rhs.cols());
   for (Index v = 0; v < size_of(row); ++v) {
-    if (row[v] != kNone) result.row(v) = packed.row(row[v]);
+    if (row[v] != kNone) result.row(row[v]) = rhs.row(v);
   }
   return result;
 }
 
-void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric, const MetricLaplacian& laplacian,
-                  int rotations, int threads, std::vector<Vec2>& uvs,
-                  const Checkpoint& checkpoint) {
-  std::vector<Complex> rotation(mesh.face_count(), Complex(1));
-  for (int round = 0; round <= rotations; ++round) {
-    checkpoint(static_cast<double>(round) / (rotations + 1));
-    if (round > 0) fit_rotations(mesh, rest, metric, uvs, threads, rotation);
-    // The residual of the present map, so that held vertices need no treatment of their own.
-    DenseMatrix residual = DenseMatrix::Zero(mesh.vertex_count(), 2);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-      const Triangle& t = mesh.faces[f];
-      const auto weights = edge_weights(rest[f], metric[f]);
-      const auto corners = target_corners(rest[f], metric[f]);
-      for (int k = 0; k < 3; ++k) {
-        const int i = next_corner(k), j = previous_corner(k);
-        const Complex edge = rotation[f] * (corners[i] - corners[j]);
-        const Vec2 term = weights[k] * (Vec2(edge.real(), edge.imag()) - (uvs[t[i]] - uvs[t[j]]));
-        residual.row(t[i]) += term.transpose();
-        residual.row(t[j]) -= term.transpose();
-      }
-    }
-    const DenseMatrix change = laplacian.solve(residual);
-    for (Index v = 0; v < mesh.vertex_count(); ++v) uvs[v] += change.row(v).transpose();
+template <class Rows>
+void MetricLaplacian::unpack(const DenseMatrix& x, Rows&& result) const {
+  const std::vector<Index>& row = matrix_.rows();
+  for (Index v = 0; v < size_of(row); ++v) {
+    if (row[v] != kNone) result.row(v) = x.row(row[v]);
   }
+}
+
+DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {
+  DenseMatrix x = DenseMatrix::Zero(rhs.rows(), rhs.cols());
+  if (solver_) unpack(solver_->solve(packed(rhs)), x);
+  return x;
+}
+
+void MetricLaplacian::solve(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {
+  x.assign(rhs.size(), Vec2::Zero());
+  if (solver_) unpack(solver_->solve(packed(as_rows(rhs))), as_rows(x));
+}
+
+void MetricLaplacian::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {
+  x.assign(rhs.size(), Vec2::Zero());
+  if (solver_) unpack(solver_->precondition(packed(as_rows(rhs))), as_rows(x));
+}
+
+void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
+                  const MetricLaplacian& laplacian, bool rotate, int threads,
+                  std::vector<Vec2>& uvs) {
+  // The residual of the present map, so that held vertices need no treatment of their own.
+  const auto give = [&](Index f, VertexSums::Terms& terms) {
+    const EdgeWeights& weights = stiffness[f];
+    const auto target = target_edges(rest[f], metric[f]);
+    const auto present = edges(mesh.faces[f], uvs);
+    const Complex rotation = rotate ? fitted_rotation(weights, target, present) : Complex(1);
+    std::array<Complex, 3> pull;  // of each edge on its first end
+    for (int k = 0; k < 3; ++k) pull[k] = weights[k] * (rotation * target[k] - present[k]);
+    for (int k = 0; k < 3; ++k) {
+      const Complex term = pull[next_corner(k)] - pull[previous_corner(k)];
+      terms[k] = {term.real(), term.imag()};
+    }
+    return 0.0;
+  };
+  std::vector<Vec2> residual, change;
+  VertexSums(mesh.vertex_count(), mesh.faces).add_up(threads, give, residual);
+  laplacian.solve(residual, change);
+  parallel_for(threads, mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) uvs[v] += change[v];
+  });
 }
 
 }  // namespace beltrami

@@ -3,10 +3,10 @@
 // of vertices that are held on purpose.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
 #include "beltrami/prolongation.h"
 #include "distortion/energy.h"
@@ -17,45 +17,58 @@
 
 namespace beltrami {
 
-/// A Laplacian of the mesh with one stiffness tensor per face and some vertices held, and its
-/// factor.
+/// The weights of the edges of a face, each opposite to the corner of its index: its stiffness
+/// matrix is that of these springs.
+using EdgeWeights = std::array<double, 3>;
+
+/// Stiffness of every face that approximates the Hessian of the integral of `energy` over it at a
+/// map that has the metric: per face the mean of the Hessian's radial and angular parts along each
+/// singular direction, the same for u and v.
+std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestTriangle>& rest,
+                                          const std::vector<FaceMetric>& metric, int threads);
+
+/// The same at the map `uvs`.
+std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Triangle>& faces,
+                                          const std::vector<RestTriangle>& rest,
+                                          const std::vector<Vec2>& uvs, int threads);
+
+/// A Laplacian of the mesh with given stiffness and some vertices held, and its factor.
 class MetricLaplacian {
  public:
-  /// The Laplacian of a metric, weighted by 3D area. Times the curvature of an energy density at
-  /// the identity it approximates the Hessian of the sum of that energy at a map that has the
-  /// metric. `held`: per vertex; at least one must be. Throws Error SOLVER.
-  MetricLaplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric, const std::vector<bool>& held,
+  /// `held`: per vertex; at least one must be. Throws Error SOLVER.
+  MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                  const std::vector<bool>& held,
                   const SolverOptions& options = {Precision::kSingle});
 
-  /// Factorizes anew for an approximate Hessian of the sum of `energy` at the map `uvs`: per face
-  /// the mean of the Hessian's radial and angular parts along each singular direction, the same for
-  /// u and v. Far closer to the Hessian than the metric alone where a face is much distorted.
-  /// Throws Error SOLVER.
-  void refit(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-             const std::vector<Vec2>& uvs, int threads);
+  /// Factorizes anew for another stiffness. Throws Error SOLVER.
+  void refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness);
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
+  void solve(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
   /// The same roughly, at half the cost: see SpdSolver::precondition.
-  DenseMatrix precondition(const DenseMatrix& rhs) const;
+  void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
 
  private:
-  DenseMatrix apply(const DenseMatrix& rhs,
-                    DenseMatrix (SpdSolver::*inverse)(const DenseMatrix&) const) const;
+  void assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness);
+  template <class Rows>
+  DenseMatrix packed(const Rows& rhs) const;
+  template <class Rows>
+  void unpack(const DenseMatrix& x, Rows&& result) const;
 
   MeshMatrix matrix_;
   std::unique_ptr<SpdSolver> solver_;
 };
 
-/// Minimises the area-weighted relative deviation from the target edges X z + Y conj(z) of every
-/// face (Y = mu X), then alternates `rotations` times between the best rotation of each target
-/// (Liu et al. 2008, local step) and a solve. `uvs`, one per vertex, is changed in place; vertices
-/// that `laplacian` holds keep their place, of the others nothing is used. Faces may be flipped.
-/// `laplacian` must be that of the metric.
+/// Minimises the deviation from the target edges X z + Y conj(z) of every face (Y = mu X) in the
+/// norm of `stiffness`; with `rotate`, each target is turned first to fit the present `uvs` best
+/// (Liu et al. 2008, local step). Where the stiffness is that of an energy at the metric, this is
+/// near to a Newton step of that energy. `uvs`, one per vertex, is changed in place; vertices that
+/// `laplacian` holds keep their place, of the others nothing is used but for `rotate`. Faces may be
+/// flipped. `laplacian` must be that of the stiffness.
 void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                  const std::vector<FaceMetric>& metric, const MetricLaplacian& laplacian,
-                  int rotations, int threads, std::vector<Vec2>& uvs,
-                  const Checkpoint& checkpoint = no_checkpoint);
+                  const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
+                  const MetricLaplacian& laplacian, bool rotate, int threads,
+                  std::vector<Vec2>& uvs);
 
 }  // namespace beltrami

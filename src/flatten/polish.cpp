@@ -1,176 +1,224 @@
 #include "flatten/polish.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
+#include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "fullspace/assembly.h"
 #include "fullspace/line_search.h"
 #include "fullspace/newton_step.h"
+#include "mesh/vertex_sums.h"
 
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 8192;
-constexpr std::size_t kHistory = 6;
-constexpr double kSingularShare = 0.8;
+using Field = std::vector<Vec2>;  // one entry per vertex
+
+constexpr std::int64_t kGrain = 16384;
+constexpr std::size_t kHistory = 5;
+constexpr double kSingularShare = 0.8;  // of the way to the first singular face
+constexpr int kHoldRounds = 4;          // after which a few faces hold back the whole map
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
 constexpr double kBlockedStep = 0.1;
 
-template <class Density>
-class Polish {
- public:
-  Polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest, int threads)
-      : faces_(faces), rest_(rest), threads_(threads), corner_gradients_(faces.size()) {
-    for (const RestTriangle& r : rest) total_area_ += r.area();
-  }
+/// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
+template <class Body>
+double sum_over(const Field& field, int threads, const Body& body) {
+  return parallel_sum(threads, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t i = begin; i < end; ++i) sum += body(static_cast<std::size_t>(i));
+    return sum;
+  });
+}
 
-  double energy(const std::vector<Vec2>& uvs) const {
-    const auto part = [&](std::int64_t begin, std::int64_t end) {
+double dot(const Field& a, const Field& b, int threads) {
+  return sum_over(a, threads, [&](std::size_t i) { return a[i].dot(b[i]); });
+}
+
+void add_multiple(double factor, const Field& a, int threads, Field& sum) {
+  parallel_for(threads, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) sum[i] += factor * a[i];
+  });
+}
+
+/// The mean energy and its gradient.
+template <class Density>
+class Objective {
+ public:
+  Objective(Index vertex_count, const std::vector<Triangle>& faces,
+            const std::vector<RestTriangle>& rest, int threads)
+      : faces_(faces), rest_(rest), threads_(threads), sums_(vertex_count, faces) {
+    const auto area = [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
-      for (std::int64_t f = begin; f < end; ++f) {
-        const Triangle& t = faces_[f];
-        const LinearMap map = linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-        if (!(std::norm(map.fz) > std::norm(map.fzbar))) {
-          return std::numeric_limits<double>::infinity();
-        }
-        sum += rest_[f].area() * Density::slopes(map).value;
-      }
+      for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
       return sum;
     };
-    return parallel_sum(threads_, size_of(faces_), kGrain, part) / total_area_;
+    inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
   }
 
-  /// Gradient of the mean energy, one row per vertex.
-  DenseMatrix gradient(const std::vector<Vec2>& uvs) {
-    parallel_for(threads_, size_of(faces_), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t f = begin; f < end; ++f) {
-        corner_gradients_[f] = face_gradient(static_cast<Index>(f), uvs);
-      }
-    });
-    poll_interrupt();
-    DenseMatrix sum = DenseMatrix::Zero(static_cast<Eigen::Index>(uvs.size()), 2);
-    for (Index f = 0; f < size_of(faces_); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        sum(faces_[f][k], 0) += corner_gradients_[f][k].x();
-        sum(faces_[f][k], 1) += corner_gradients_[f][k].y();
-      }
-    }
-    return sum;
+  /// Infinite where a face is not positive; the gradient is of no use then.
+  double evaluate(const Field& uvs, Field& gradient) {
+    const auto give = [&](Index f, VertexSums::Terms& terms) {
+      const Triangle& t = faces_[f];
+      const RestTriangle& r = rest_[f];
+      const LinearMap map = linear_map(r, uvs[t[0]], uvs[t[1]], uvs[t[2]]);
+      const double weight = r.area() * inverse_area_;
+      const DensitySlopes slopes = Density::slopes(map);
+      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
+      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
+      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
+      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
+      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2;
+      const Vec2 gx = inverse_x1 * Vec2(by_x.real(), by_x.imag());
+      const Vec2 gy = inverse_y2 * Vec2(i_by_y.imag(), -i_by_y.real());
+      terms[1] = gx - (r.x2 * inverse_x1) * gy;
+      terms[2] = gy;
+      terms[0] = -terms[1] - terms[2];
+      const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
+      return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
+    };
+    return sums_.add_up(threads_, give, gradient);
   }
 
  private:
-  /// Through fz = sum conj(G_k) w_k / 2 and fzbar = sum G_k w_k / 2.
-  std::array<Vec2, 3> face_gradient(Index f, const std::vector<Vec2>& uvs) const {
-    const Triangle& t = faces_[f];
-    const LinearMap map = linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-    const DensitySlopes slopes = Density::slopes(map);
-    const double weight = 0.5 * rest_[f].area() / total_area_;
-    const Complex dx = weight * slopes.by_fz * map.fz;
-    const Complex dy = weight * slopes.by_fzbar * map.fzbar;
-    std::array<Vec2, 3> result;
-    for (int k = 0; k < 3; ++k) {
-      const Complex hat = rest_[f].hat_gradient(k);
-      const Complex g = dx * hat + dy * std::conj(hat);
-      result[k] = {g.real(), g.imag()};
-    }
-    return result;
-  }
-
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
   const int threads_;
-  double total_area_ = 0;
-  std::vector<std::array<Vec2, 3>> corner_gradients_;
+  double inverse_area_;
+  VertexSums sums_;
 };
 
-double dot(const DenseMatrix& a, const DenseMatrix& b) {
-  return a.cwiseProduct(b).sum();
-}
-
-/// The pairs of the last steps, and the two-loop recursion over them.
+/// The last steps with the changes of the gradient over them, and the two-loop recursion.
 class History {
  public:
-  void add(DenseMatrix step, DenseMatrix change) {
-    const double curvature = dot(step, change);
+  explicit History(int threads) : threads_(threads) {}
+
+  /// Takes `step` and `change` over; what is left in them is of no use.
+  void add(Field& step, Field& change) {
+    const double curvature = dot(step, change, threads_);
     if (!(curvature > 0)) return;  // would make the model indefinite
-    if (pairs_.size() == kHistory) pairs_.pop_front();
-    pairs_.push_back({std::move(step), std::move(change), 1 / curvature});
+    if (pairs_.size() < kHistory) {
+      pairs_.emplace_back();
+    } else {
+      std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
+    }
+    Pair& pair = pairs_.back();
+    pair.step.swap(step);
+    pair.change.swap(change);
+    pair.inverse_curvature = 1 / curvature;
   }
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
 
-  DenseMatrix direction(const DenseMatrix& gradient,
-                        const std::function<DenseMatrix(const DenseMatrix&)>& precondition) const {
-    DenseMatrix q = -gradient;
-    std::vector<double> alpha(pairs_.size());
+  /// Writes the direction of descent; `q` is for its own use.
+  void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
+                      Field& direction) const {
+    q.resize(gradient.size());
+    parallel_for(threads_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
+    });
+    std::array<double, kHistory> alpha{};
     for (std::size_t i = pairs_.size(); i-- > 0;) {
-      poll_interrupt();
-      alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q);
-      q -= alpha[i] * pairs_[i].change;
+      alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, threads_);
+      add_multiple(-alpha[i], pairs_[i].change, threads_, q);
     }
-    q = precondition(q);
+    poll_interrupt();
+    precondition(q, direction);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      poll_interrupt();
-      const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, q);
-      q += (alpha[i] - beta) * pairs_[i].step;
+      const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, direction, threads_);
+      add_multiple(alpha[i] - beta, pairs_[i].step, threads_, direction);
     }
-    return q;
   }
 
  private:
   struct Pair {
-    DenseMatrix step, change;
-    double inverse_curvature;
+    Field step, change;
+    double inverse_curvature = 0;
   };
-  std::deque<Pair> pairs_;
+  std::vector<Pair> pairs_;
+  int threads_;
 };
+
+/// Shortens the direction at the corners of the faces that a full step would bring too near to
+/// being singular, and then at those of their neighbours that get there by it. Returns how far the
+/// whole map may go along what is left.
+double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads,
+                 Field& direction) {
+  for (int round = 0;; ++round) {
+    std::vector<SingularStep> singular =
+        singular_steps(faces, uvs, direction, 1 / kSingularShare, threads);
+    if (!singular.empty()) fprintf(stderr,"hold round %d: %zu\n",round,singular.size());
+    if (singular.empty()) return 1;
+    if (round == kHoldRounds) {
+      const auto first = std::min_element(
+          singular.begin(), singular.end(),
+          [](const SingularStep& a, const SingularStep& b) { return a.length < b.length; });
+      return kSingularShare * first->length;
+    }
+    for (const SingularStep& s : singular) {
+      const Triangle& t = faces[s.face];
+      const Vec2 mean = (direction[t[0]] + direction[t[1]] + direction[t[2]]) / 3;
+      for (const Index v : t) {
+        if (direction[v] != Vec2::Zero()) {
+          direction[v] = mean + kSingularShare * s.length * (direction[v] - mean);
+        }
+      }
+    }
+  }
+}
 
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                     const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
-                     std::vector<Vec2>& uvs, const PolishOptions& options,
+                     const Precondition& precondition, Field& uvs, const PolishOptions& options,
                      const Checkpoint& checkpoint) {
-  Polish<Density> problem(faces, rest, options.threads);
+  const int threads = options.threads;
+  Objective<Density> objective(size_of(uvs), faces, rest, threads);
   PolishResult result;
-  result.energies.push_back(problem.energy(uvs));
+  Field gradient, next, direction, trial(uvs.size()), spare;
+  result.energies.push_back(objective.evaluate(uvs, gradient));
   if (!std::isfinite(result.energies.front())) return result;
-  DenseMatrix gradient = problem.gradient(uvs);
-  History history;
-  std::vector<Vec2> direction(uvs.size()), trial(uvs.size());
+  History history(threads);
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back();
-    DenseMatrix flat = history.direction(gradient, precondition);
-    double slope = dot(gradient, flat);
-    if (!(slope < 0) && !history.empty()) {
+    history.find_direction(gradient, precondition, spare, direction);
+    double length = hold_back(faces, uvs, threads, direction);
+    double slope = dot(gradient, direction, threads);
+    if (!(slope < 0)) {
+      if (history.empty()) {
+        result.blocked = true;
+        break;
+      }
       history.clear();
-      flat = history.direction(gradient, precondition);
-      slope = dot(gradient, flat);
+      continue;
     }
-    if (!(slope < 0)) break;
-    for (Index v = 0; v < size_of(uvs); ++v) direction[v] = flat.row(v).transpose();
-    double length =
-        std::min(1.0, kSingularShare * first_singular_step(faces, uvs, direction, options.threads));
     double after = std::numeric_limits<double>::infinity();
     for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
-      for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
-      after = problem.energy(trial);
+      trial = uvs;
+      add_multiple(length, direction, threads, trial);
+      after = objective.evaluate(trial, next);
       if (after <= before + kArmijo * length * slope) break;
     }
     if (!(after < before)) {
       result.blocked = true;
       break;
     }
-    uvs.swap(trial);
     result.energies.push_back(after);
-    DenseMatrix next = problem.gradient(uvs);
-    history.add(length * flat, next - gradient);
+    parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        direction[i] *= length;
+        gradient[i] = next[i] - gradient[i];
+      }
+    });
+    fprintf(stderr,"polish %d len %.3g E %.8g -> %.8g slope %.3g  gain/slope %.3g\n", result.iterations(), length, before, after, slope, (before-after)/(-slope));
+    uvs.swap(trial);
+    history.add(direction, gradient);
     gradient.swap(next);
     result.blocked = length < kBlockedStep;
     result.converged = length >= kFullStep &&
@@ -183,9 +231,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
 }  // namespace
 
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                    const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
-                    std::vector<Vec2>& uvs, const PolishOptions& options,
-                    const Checkpoint& checkpoint) {
+                    const Precondition& precondition, std::vector<Vec2>& uvs,
+                    const PolishOptions& options, const Checkpoint& checkpoint) {
   return with_density(options.energy, [&]<class Density>(Density) {
     return descend<Density>(faces, rest, precondition, uvs, options, checkpoint);
   });

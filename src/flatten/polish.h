@@ -8,7 +8,6 @@
 #include "base/types.h"
 #include "distortion/energy.h"
 #include "mesh/rest_shape.h"
-#include "sparse/spd_solver.h"
 
 namespace beltrami {
 
@@ -26,13 +25,17 @@ struct PolishResult {
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 
-/// Minimises the mean energy by L-BFGS (Nocedal 1980; history 6) with
-/// `precondition` for the initial inverse Hessian (one row per vertex in and out). No face ever
-/// flips. It ends early where faces that are nearly singular block the steps: clean_outliers mends
-/// those. Precondition: all faces of `uvs` are positively oriented.
+/// Sets `out` to about the inverse Hessian times `in`, one entry per vertex; linear, symmetric,
+/// definite.
+using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector<Vec2>& out)>;
+
+/// Minimises the mean energy by L-BFGS (Nocedal 1980; history 5) with `precondition` for the
+/// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that hold
+/// their own vertices back, and only where this does not help the whole map. It ends early where
+/// even so steps stay short: clean_outliers mends the faces that block them. Precondition: all
+/// faces of `uvs` are positively oriented.
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                    const std::function<DenseMatrix(const DenseMatrix&)>& precondition,
-                    std::vector<Vec2>& uvs, const PolishOptions& options,
-                    const Checkpoint& checkpoint = no_checkpoint);
+                    const Precondition& precondition, std::vector<Vec2>& uvs,
+                    const PolishOptions& options, const Checkpoint& checkpoint = no_checkpoint);
 
 }  // namespace beltrami

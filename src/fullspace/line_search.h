@@ -14,4 +14,16 @@ namespace beltrami {
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
                            const std::vector<Vec2>& direction, int threads);
 
+struct SingularStep {
+  Index face;
+  double length;
+};
+
+/// The faces that become singular before `limit`, and where, in the order of the faces. The same
+/// precondition.
+std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
+                                         const std::vector<Vec2>& uvs,
+                                         const std::vector<Vec2>& direction, double limit,
+                                         int threads);
+
 }  // namespace beltrami

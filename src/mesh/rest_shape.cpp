@@ -35,15 +35,6 @@ RestTriangle mollified(const std::array<Vec3, 3>& p, double mean_edge) {
 
 }  // namespace
 
-LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2) {
-  // f_x = (w1 - w0) / x1; f_y from the apex; fz = (f_x - i f_y) / 2, fzbar = (f_x + i f_y) / 2.
-  const double inv_x1 = 1 / rest.x1, inv_y2 = 1 / rest.y2;
-  const double ux = (w1.x() - w0.x()) * inv_x1, vx = (w1.y() - w0.y()) * inv_x1;
-  const double uy = (w2.x() - w0.x() - rest.x2 * ux) * inv_y2;
-  const double vy = (w2.y() - w0.y() - rest.x2 * vx) * inv_y2;
-  return {{0.5 * (ux + vy), 0.5 * (vx - uy)}, {0.5 * (ux - vy), 0.5 * (vx + uy)}};
-}
-
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e1 = b - a, e2 = c - a;
   const double longest_sq = std::max({e1.squaredNorm(), e2.squaredNorm(), (c - b).squaredNorm()});

@@ -28,7 +28,14 @@ struct LinearMap {
 
 /// The linear map that takes the rest triangle to the corners w. Its singular values are
 /// |fz| +- |fzbar|.
-LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2);
+inline LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2) {
+  // f_x = (w1 - w0) / x1; f_y from the apex; fz = (f_x - i f_y) / 2, fzbar = (f_x + i f_y) / 2.
+  const double inv_x1 = 1 / rest.x1, inv_y2 = 1 / rest.y2;
+  const double ux = (w1.x() - w0.x()) * inv_x1, vx = (w1.y() - w0.y()) * inv_x1;
+  const double uy = (w2.x() - w0.x() - rest.x2 * ux) * inv_y2;
+  const double vy = (w2.y() - w0.y() - rest.x2 * vx) * inv_y2;
+  return {{0.5 * (ux + vy), 0.5 * (vx - uy)}, {0.5 * (ux - vy), 0.5 * (vx + uy)}};
+}
 
 /// Whether a face has no shape in space: its height is below 1e-9 of its longest edge (zero area,
 /// duplicate positions).

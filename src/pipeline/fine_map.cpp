@@ -22,10 +22,14 @@ constexpr int kNewtonSteps = 10;
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease, of the steps after a blocked polish
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
-constexpr int kRotations = 2;           // ARAP rounds after the Poisson solve
-constexpr std::size_t kManyFlips = 20;  // beyond which the harmonic map is looked at too
+constexpr double kRoughly = 1e-5;             // residual of a map that is polished afterwards
+constexpr std::size_t kManyFlips = 20;       // beyond which targets are rotated
+constexpr int kRotations = 2;                // ARAP rounds, then
+constexpr double kFlippedShare = 0.001;      // beyond which the harmonic map is looked at too
+constexpr double kPolishTolerance = 3e-4;    // relative decrease: leaves the energy 0.1% too high
 constexpr int kPolishIterations = 30;
-constexpr int kPolishRounds = 3;      // more, each after faces that blocked the steps
+constexpr int kPolishRounds = 4;  // more than one only after faces that blocked the steps
+constexpr int kFewSteps = 3;
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -57,7 +61,8 @@ void Run::measure_fine(FineProblem& fine, const Checkpoint& checkpoint) {
     fine.rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
     fine.metric.assign(disk_->faces.size(), FaceMetric{});
     if (coarse_metric.empty()) return;
-    fine.metric = prolong_metric(coarse, coarse_metric, *disk_, options_.threads, checkpoint);
+    fine.metric = prolong_metric(coarse, coarse_metric, *disk_, fine.coarse.nearby, options_.threads,
+                                 checkpoint);
   };
   measure();
   // The metric solve brings its own weights.
@@ -212,12 +217,22 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   std::vector<Vec2> uvs = carried;
   std::unique_ptr<MetricLaplacian> laplacian;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
+    const auto stiffness =
+        energy_stiffness(options_.energy, fine.rest, fine.metric, options_.threads);
     laplacian = std::make_unique<MetricLaplacian>(
-        *disk_, fine.rest, fine.metric, held, SolverOptions{Precision::kSingle, options_.threads});
+        *disk_, stiffness, held, SolverOptions{.precision = Precision::kSingle,
+                                                .threads = options_.threads,
+                                                .residual = kRoughly});
     checkpoint(0.75);
-    solve_metric(*disk_, fine.rest, fine.metric, *laplacian, kRotations, options_.threads, uvs);
-    const auto flips = non_positive_faces(disk_->faces, uvs, options_.threads).size();
-    if (flips <= kManyFlips) return;
+    const auto solve = [&](bool rotate) {
+      solve_metric(*disk_, fine.rest, fine.metric, stiffness, *laplacian, rotate, options_.threads,
+                   uvs);
+      return non_positive_faces(disk_->faces, uvs, options_.threads).size();
+    };
+    std::size_t flips = solve(false);
+    for (int round = 0; round < kRotations && flips > kManyFlips; ++round) flips = solve(true);
+    const double share = static_cast<double>(flips) / disk_->face_count();
+    if (flips <= kManyFlips || share <= kFlippedShare) return;
     // On extreme models the free map flips far more than the harmonic one.
     std::vector<Vec2> harmonic = carried;
     solve_harmonic(*disk_, modified_cotangents(fine.rest, fine.metric, options_.threads), harmonic,
@@ -247,38 +262,47 @@ int Run::take_newton_steps(const FineProblem& fine, const std::vector<bool>& hel
   return done.iterations();
 }
 
-/// L-BFGS with the factor of the flattening at first. Where nearly singular faces block its steps,
-/// these are cleaned and the factor is fitted to the map as it is by then; where that does not help
-/// either, Newton steps end it.
+/// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, the
+/// others with one that is fitted to the map by then. Where nearly singular faces block the steps,
+/// these are cleaned and the factor is fitted anew; where they are blocked at once even so,
+/// Newton steps end it.
 void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    // The objective is a mean, the stiffness that of a sum.
     const double area = surface_area(*disk_);
-    double step =
-        area / with_density(options_.energy, [](auto density) { return density.kCurvature; });
-    const auto precondition = [&](const DenseMatrix& gradient) -> DenseMatrix {
-      return step * laplacian.precondition(gradient);
+    const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
+      laplacian.precondition(in, out);
+      for (Vec2& w : out) w *= area;
+    };
+    const auto clean = [&] {
+      result_.cleaned_patches +=
+          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
+    };
+    const auto progress = [&] {
+      checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
     };
     PolishOptions polish_options;
     polish_options.energy = options_.energy;
     polish_options.threads = options_.threads;
+    polish_options.tolerance = kPolishTolerance;
+    int hopeless = 0;  // rounds that were blocked at once
     for (int round = 0;; ++round) {
-      polish_options.max_iterations = kPolishIterations - statistics.iterations;
-      const PolishResult polished =
-          polish(disk_->faces, fine.rest, precondition, uvs, polish_options, [&](double) {
-            checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
-          });
+      polish_options.max_iterations = round == 0 ? 1 : kPolishIterations - statistics.iterations;
+      const PolishResult polished = polish(disk_->faces, fine.rest, precondition, uvs,
+                                           polish_options, [&](double) { progress(); });
       statistics.iterations += polished.iterations();
-      result_.cleaned_patches +=
-          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
-      if (!polished.blocked || statistics.iterations >= kPolishIterations) break;
-      if (round == kPolishRounds) {
+      const bool done = !polished.blocked && (round > 0 || polished.converged);
+      if (done || polished.blocked) clean();
+      if (done || statistics.iterations >= kPolishIterations) break;
+      if (round > 0 && polished.iterations() < kFewSteps) ++hopeless;
+      if (hopeless > 1 || round == kPolishRounds) {
         statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
         break;
       }
-      checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
-      laplacian.refit(options_.energy, *disk_, fine.rest, uvs, options_.threads);
-      step = area;
+      progress();
+      laplacian.refit(*disk_, energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs,
+                                               options_.threads));
     }
   });
 }

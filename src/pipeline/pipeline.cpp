@@ -114,7 +114,8 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     descend(coarse.mesh, coarse_rest, newton_options(coarse.mesh), map, unused,
             [&](double) { checkpoint(0.05); });
     const auto metric = prolong_metric(
-        coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh, options_.threads);
+        coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh, coarse.nearby,
+        options_.threads);
     std::vector<Vec2> uvs = carry_boundary(mesh, coarse, map);
     solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
                    options_.threads);

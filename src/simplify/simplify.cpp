@@ -222,6 +222,7 @@ void collapse(ShrinkingSurface& surface, Index v, Index target) {
     --surface.boundary_count;
   }
   surface.role[v] = Role::kRemoved;
+  surface.collapsed_into[surface.fine_vertex[v]] = surface.fine_vertex[target];
 }
 
 /// Tries the candidate, then the next cheapest targets of its vertex below `max_cost`.
@@ -289,6 +290,20 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, const Checkpoint&
   compact(surface);
 }
 
+/// From the next vertex on the way to the coarse vertex at its end.
+std::vector<Index> follow_collapses(std::vector<Index> into,
+                                    const std::vector<Index>& fine_vertex) {
+  for (Index v = 0; v < size_of(into); ++v) {
+    Index end = v;
+    while (into[end] != end) end = into[end];
+    for (Index on_the_way = v; on_the_way != end;) on_the_way = std::exchange(into[on_the_way], end);
+  }
+  std::vector<Index> coarse_vertex(into.size(), kNone);
+  for (Index c = 0; c < size_of(fine_vertex); ++c) coarse_vertex[fine_vertex[c]] = c;
+  for (Index& v : into) v = coarse_vertex[v];
+  return into;
+}
+
 }  // namespace
 
 CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Checkpoint& checkpoint) {
@@ -298,11 +313,13 @@ CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Checkpoint& 
     coarse.mesh = fine;
     coarse.fine_vertex.resize(fine.vertex_count());
     for (Index v = 0; v < fine.vertex_count(); ++v) coarse.fine_vertex[v] = v;
+    coarse.nearby = coarse.fine_vertex;
     return coarse;
   }
   surface = make_surface(fine);
   run_passes(surface, target_faces, checkpoint);
   coarse.fine_vertex = std::move(surface.fine_vertex);
+  coarse.nearby = follow_collapses(std::move(surface.collapsed_into), coarse.fine_vertex);
   std::vector<Vec3> positions;
   positions.reserve(surface.site.size());
   for (const auto& site : surface.site) positions.push_back(site.position);

@@ -13,6 +13,7 @@ namespace beltrami {
 struct CoarseDisk {
   DiskMesh mesh;
   std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
+  std::vector<Index> nearby;  ///< per fine vertex: the coarse vertex that it was collapsed into
 };
 
 /// Collapses half-edges in passes until at most `target_faces` faces are left or no collapse is

@@ -123,6 +123,7 @@ ShrinkingSurface make_surface(const DiskMesh& mesh) {
   surface.loop_previous.assign(vertex_count, kNone);
   surface.fine_vertex.resize(vertex_count);
   for (Index v = 0; v < vertex_count; ++v) surface.fine_vertex[v] = v;
+  surface.collapsed_into = surface.fine_vertex;
   surface.faces = mesh.faces;
   surface.live_faces = mesh.face_count();
   surface.boundary_count = size_of(mesh.boundary);

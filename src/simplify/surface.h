@@ -26,6 +26,7 @@ struct ShrinkingSurface {
   std::vector<Role> role;
   std::vector<Index> loop_next, loop_previous;  ///< along the boundary; kNone inside
   std::vector<Index> fine_vertex;
+  std::vector<Index> collapsed_into;  ///< per fine vertex: the next one on the way, or itself
   std::vector<Triangle> faces;  ///< a removed one has kNone as its first corner
   Index live_faces = 0;
   Index boundary_count = 0;

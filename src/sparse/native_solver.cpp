@@ -14,9 +14,6 @@
 namespace beltrami {
 namespace {
 
-// A map needs residuals of 1e-8 of the right-hand side: beyond that the set of flipped faces
-// depends on them.
-constexpr double kResidual = 5e-9;
 constexpr int kMaxSteps = 16;
 
 // Below so many vertices minimum degree takes less time than nested dissection saves.
@@ -271,7 +268,7 @@ class NativeSolver final : public SpdSolver {
         return value * value;
       });
       if (!std::isfinite(size_sq)) return false;
-      goal[k] = kResidual * kResidual * size_sq;
+      goal[k] = options_.residual * options_.residual * size_sq;
       done[k] = size_sq == 0;
     }
     for (int step = 0; step < kMaxSteps; ++step) {

@@ -1,0 +1,73 @@
+// Sums at the vertices of what every face gives to its corners.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/types.h"
+
+namespace beltrami {
+
+/// Adds up in parallel, with the same bits at any number of threads: the faces are taken in fixed
+/// chunks, a chunk adds to the vertices that no other one touches, and puts what it has for others
+/// aside. Fast where faces that are close in the list are close on the surface. Keeps a reference
+/// to `faces`.
+class VertexSums {
+ public:
+  /// What a face gives to its three corners.
+  using Terms = std::array<Vec2, 3>;
+
+  VertexSums(Index vertex_count, const std::vector<Triangle>& faces);
+
+  /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
+  /// terms. Returns the sum over the faces of what `give` returns.
+  template <class Give>
+  double add_up(int threads, const Give& give, std::vector<Vec2>& sums);
+
+ private:
+  static constexpr std::int64_t kGrain = 16384;
+  struct Aside {
+    Index vertex;
+    Vec2 term;
+  };
+
+  const std::vector<Triangle>& faces_;
+  std::vector<std::uint8_t> shared_;  // per vertex: touched by several chunks
+  std::vector<std::vector<Aside>> aside_;
+};
+
+template <class Give>
+double VertexSums::add_up(int threads, const Give& give, std::vector<Vec2>& sums) {
+  sums.resize(shared_.size());
+  parallel_for(threads, static_cast<std::int64_t>(sums.size()), kGrain,
+               [&](std::int64_t begin, std::int64_t end) {
+                 std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
+               });
+  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Aside>& aside = aside_[begin / kGrain];
+    aside.clear();
+    double total = 0;
+    Terms terms;
+    for (std::int64_t f = begin; f < end; ++f) {
+      total += give(static_cast<Index>(f), terms);
+      for (int k = 0; k < 3; ++k) {
+        const Index v = faces_[f][k];
+        if (shared_[v]) {
+          aside.push_back({v, terms[k]});
+        } else {
+          sums[v] += terms[k];
+        }
+      }
+    }
+    return total;
+  };
+  const double total = parallel_sum(threads, size_of(faces_), kGrain, chunk);
+  for (const std::vector<Aside>& aside : aside_) {
+    for (const Aside& a : aside) sums[a.vertex] += a.term;
+  }
+  return total;
+}
+
+}  // namespace beltrami
