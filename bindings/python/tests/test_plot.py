@@ -61,7 +61,7 @@ def test_edges_are_drawn_where_faces_are_large():
     vertices, faces = grid(20)
     uv = vertices[:, :2]
     assert len(plot.layout(uv, faces, resolution=400).collections) == 2  # edges, and boundary
-    assert len(plot.layout(uv, faces, resolution=200).collections) == 1
+    assert len(plot.layout(uv, faces, resolution=50).collections) == 1
     assert len(plot.layout(uv, faces, resolution=400, edges=False).collections) == 1
 
 

@@ -31,8 +31,11 @@ _LINE = (0.13, 0.16, 0.22)
 _BAD = (0.86, 0.10, 0.10)
 _CHECKER = np.array([[0.95, 0.94, 0.91], [0.27, 0.43, 0.62]])
 _BACK = np.array([[0.72, 0.64, 0.60], [0.55, 0.42, 0.38]])
-# Edges are drawn where a face has at least so many pixels.
-_PIXELS_PER_FACE = 60.0
+# Edges are drawn where a face has at least so many pixels, and as fine as faces are small: thin
+# ones show how dense the triangles are.
+_LEAST_FACE = 4.0
+_FULL_FACE = 60.0
+_MANY_LINES = 20_000  # more are drawn as pixels, or files would be large
 
 
 def layout(
@@ -78,10 +81,12 @@ def layout(
     image = canvas.draw(points, triangles, colours, flipped.astype(float))
     ax = _axes(ax)
     canvas.show(ax, image)
+    pixels_per_face = canvas.area / len(triangles)
     if edges is None:
-        edges = canvas.area / max(len(triangles), 1) > _PIXELS_PER_FACE
+        edges = pixels_per_face > _LEAST_FACE
     if edges:
-        _lines(ax, points, _edges(triangles), 0.25, 0.7)
+        width = 0.25 * min(1.0, pixels_per_face / _FULL_FACE) ** 0.5
+        _lines(ax, points, _edges(triangles), width, 0.7)
     _lines(ax, points, _boundary(triangles), 0.8, 1.0)
     return ax
 
@@ -345,18 +350,25 @@ def _areas_in_space(vertices: npt.ArrayLike, triangles: Array) -> Array:
 
 def _edges(triangles: Array) -> Array:
     """Return every edge once, (k, 2)."""
-    sides = np.sort(np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
-    return np.unique(sides, axis=0)
+    sides, first, _ = _sides(triangles)
+    edges: Array = sides[first]
+    return edges
 
 
 def _boundary(triangles: Array) -> Array:
     """Return the edges of one face only, (k, 2)."""
+    sides, first, counts = _sides(triangles)
+    boundary: Array = sides[first[counts == 1]]
+    return boundary
+
+
+def _sides(triangles: Array) -> tuple[Array, Array, Array]:
+    """Return the sides of all faces, the first of each that share an edge, and how many those are."""
     sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
     low, high = sides.min(axis=1), sides.max(axis=1)
     keys = low * (int(high.max()) + 1) + high
     _, first, counts = np.unique(keys, return_index=True, return_counts=True)
-    boundary: Array = sides[first[counts == 1]]
-    return boundary
+    return sides, first, counts
 
 
 # ---- Matplotlib ---------------------------------------------------------------------------
@@ -376,6 +388,7 @@ def _lines(ax: Any, points: Array, edges: Array, width: float, alpha: float) -> 
     lines = LineCollection(
         list(points[edges]), colors=[_LINE], linewidths=width, alpha=alpha, capstyle="round"
     )
+    lines.set_rasterized(len(edges) > _MANY_LINES)
     ax.add_collection(lines, autolim=False)
 
 
