@@ -193,7 +193,8 @@ def batch(
     OSError
         Where the folder or the log cannot be written.
     Cancelled, KeyboardInterrupt
-        Jobs under way are ended; another call resumes.
+        Jobs under way are ended (on a cluster, only those that have not begun); another call
+        resumes.
     """
     options: dict[str, object] = {
         # options: items

@@ -363,7 +363,7 @@ def _boundary(triangles: Array) -> Array:
 
 
 def _sides(triangles: Array) -> tuple[Array, Array, Array]:
-    """Return the sides of all faces, the first of each that share an edge, and how many those are."""
+    """Return the sides of all faces; the first of those on one edge each, and how many they are."""
     sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
     low, high = sides.min(axis=1), sides.max(axis=1)
     keys = low * (int(high.max()) + 1) + high
