@@ -10,7 +10,9 @@
 #include "beltrami/closest_point.h"
 #include "beltrami/frame.h"
 #include "beltrami/prolongation.h"
+#include "beltrami/surface_walk.h"
 #include "fullspace/tutte.h"
+#include "simplify/simplify.h"
 #include "support/disks.h"
 
 namespace beltrami {
@@ -357,7 +359,7 @@ std::vector<FaceMetric> random_metrics(const DiskMesh& mesh, Random& random) {
 TEST(ProlongMetric, OfAnAffineMapOntoTheSameFlatMeshIsExact) {
   const DiskMesh mesh = disks::disk(meshes::fan(9));
   const auto metrics = metrics_of(mesh, disks::affine_uvs(mesh, {0.2, 0.5}));
-  const auto prolonged = prolong_metric(mesh, metrics, mesh, 1);
+  const auto prolonged = prolong_metric(mesh, metrics, mesh, {}, 1);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     expect_near(prolonged[f].mu, metrics[f].mu, 1e-13);
     expect_near(prolonged[f].phase, metrics[f].phase, 1e-13);
@@ -370,7 +372,7 @@ TEST(ProlongMetric, OfAnAffineMapOntoAFinerFlatMeshIsExact) {
   const Complex k(-0.3, 0.6);
   const auto expected = metrics_of(fine, disks::affine_uvs(fine, k));
   const auto prolonged =
-      prolong_metric(coarse, metrics_of(coarse, disks::affine_uvs(coarse, k)), fine, 1);
+      prolong_metric(coarse, metrics_of(coarse, disks::affine_uvs(coarse, k)), fine, {}, 1);
   for (Index f = 0; f < fine.face_count(); ++f) {
     expect_near(prolonged[f].mu, expected[f].mu, 1e-13);
     expect_near(prolonged[f].fz(), expected[f].fz(), 1e-13);
@@ -383,7 +385,7 @@ TEST(ProlongMetric, NeverExceedsTheGreatestCoarseValues) {
   for (const auto& list : {meshes::cap(3, 8, 2.0), meshes::cap(12, 40, 2.0)}) {
     const DiskMesh coarse = disks::disk(list);
     const auto metrics = random_metrics(coarse, random);
-    for (const FaceMetric& m : prolong_metric(coarse, metrics, fine, 1)) {
+    for (const FaceMetric& m : prolong_metric(coarse, metrics, fine, {}, 1)) {
       EXPECT_LE(std::abs(m.mu), greatest_mu(metrics) * (1 + 1e-12));
       EXPECT_GE(m.log_area, -3);
       EXPECT_LE(m.log_area, 2);
@@ -396,7 +398,7 @@ TEST(ProlongMetric, NeverExceedsTheGreatestCoarseValues) {
 TEST(ProlongMetric, StaysBelowOneAtCoincidentSeamSides) {
   const DiskMesh coarse = disks::disk(disks::slit(2)), fine = disks::disk(disks::slit(8));
   const auto metrics = metrics_of(coarse, tutte_embedding(coarse));
-  const auto prolonged = prolong_metric(coarse, metrics, fine, 1);
+  const auto prolonged = prolong_metric(coarse, metrics, fine, {}, 1);
   EXPECT_LE(greatest_mu(prolonged), greatest_mu(metrics) * (1 + 1e-12));
   EXPECT_LT(greatest_mu(prolonged), 1);
 }
@@ -407,7 +409,7 @@ TEST(ProlongMetric, IsFiniteWithFacesThatHaveNoNormalOnEitherSide) {
   const DiskMesh good = disks::disk(meshes::bumps(5, 5));
   for (const auto& [coarse, fine] : {std::pair(&bad, &good), std::pair(&good, &bad)}) {
     const auto metrics = random_metrics(*coarse, random);
-    for (const FaceMetric& m : prolong_metric(*coarse, metrics, *fine, 1)) {
+    for (const FaceMetric& m : prolong_metric(*coarse, metrics, *fine, {}, 1)) {
       EXPECT_LT(std::abs(m.mu), 1);
       EXPECT_TRUE(std::isfinite(m.log_area));
       EXPECT_NEAR(std::abs(m.phase), 1, 1e-12);
@@ -415,13 +417,59 @@ TEST(ProlongMetric, IsFiniteWithFacesThatHaveNoNormalOnEitherSide) {
   }
 }
 
+// What the simplifier says of the neighbourhood saves searches, and changes nothing that matters.
+TEST(ProlongMetric, IsTheSameFromANearbyVertexAsFromASearch) {
+  for (const auto& list : {meshes::cap(40, 120, 1.5), disks::slit(40), meshes::bumps(60, 60)}) {
+    const DiskMesh fine = disks::disk(list);
+    const CoarseDisk coarse = simplify(fine, 400);
+    const auto metrics = metrics_of(coarse.mesh, tutte_embedding(coarse.mesh));
+    const auto searched = prolong_metric(coarse.mesh, metrics, fine, {}, 1);
+    const auto walked = prolong_metric(coarse.mesh, metrics, fine, coarse.nearby, 1);
+    int off = 0;
+    for (Index f = 0; f < fine.face_count(); ++f) {
+      off += std::abs(searched[f].mu - walked[f].mu) > 1e-9;
+    }
+    // Beside ridges, where two faces are as near, and at seams.
+    EXPECT_LE(off, 0.02 * fine.face_count());
+    EXPECT_LE(greatest_mu(walked), greatest_mu(metrics) * (1 + 1e-12));
+  }
+}
+
+TEST(SurfaceWalk, FindsThePointBelowFromAnyFace) {
+  Random random(16);
+  const DiskMesh mesh = disks::disk(meshes::grid(10, 10));
+  const SurfaceWalk walk(mesh);
+  for (int i = 0; i < 100; ++i) {
+    const auto face = static_cast<Index>(random.below(mesh.face_count()));
+    const Triangle& t = mesh.faces[face];
+    const Vec3 point = 0.2 * mesh.positions[t[0]] + 0.5 * mesh.positions[t[1]] +
+                       0.3 * mesh.positions[t[2]] + Vec3(0, 0, 1e-3);
+    const SurfacePoint hit =
+        walk.find(point, Vec3::UnitZ(), static_cast<Index>(random.below(mesh.face_count())));
+    ASSERT_EQ(hit.face, face);
+    EXPECT_NEAR(hit.barycentric[1], 0.5, 1e-9);
+    EXPECT_NEAR(hit.distance_sq, 1e-6, 1e-12);
+  }
+}
+
+TEST(SurfaceWalk, GivesUpOutsideFarAwayAndOnTheOtherSide) {
+  const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
+  const SurfaceWalk walk(mesh);
+  const Triangle& t = mesh.faces[0];
+  const Vec3 centre = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
+  EXPECT_EQ(walk.find(centre, Vec3::UnitZ(), 7).face, 0);
+  EXPECT_EQ(walk.find(centre - Vec3(100, 0, 0), Vec3::UnitZ(), 7).face, kNone);
+  EXPECT_EQ(walk.find(centre + Vec3(0, 0, 100), Vec3::UnitZ(), 7).face, kNone);
+  EXPECT_EQ(walk.find(centre, -Vec3::UnitZ(), 7).face, kNone);
+}
+
 TEST(ProlongMetric, HasTheSameBitsOnTwoThreads) {
   Random random(15);
   const DiskMesh coarse = disks::disk(meshes::bumps(12, 12));
   const DiskMesh fine = disks::disk(meshes::bumps(80, 80));
   const auto metrics = random_metrics(coarse, random);
-  const auto one = prolong_metric(coarse, metrics, fine, 1);
-  const auto two = prolong_metric(coarse, metrics, fine, 2);
+  const auto one = prolong_metric(coarse, metrics, fine, {}, 1);
+  const auto two = prolong_metric(coarse, metrics, fine, {}, 2);
   for (Index f = 0; f < fine.face_count(); ++f) {
     ASSERT_EQ(one[f].mu, two[f].mu);
     ASSERT_EQ(one[f].log_area, two[f].log_area);

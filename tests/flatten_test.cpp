@@ -9,6 +9,7 @@
 #include "distortion/measure.h"
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/polish.h"
 #include "fullspace/tutte.h"
@@ -32,7 +33,8 @@ struct Square {
   DiskMesh fine = disks::disk(meshes::grid(2, 2));
   CoarseDisk coarse{
       build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 3}, {0, 3, 2}}),
-      {0, 2, 6, 8}};
+      {0, 2, 6, 8},
+      {0, 0, 1, 0, 0, 1, 2, 2, 3}};
 };
 
 TEST(CarryBoundary, KeepsSurvivorsAndPutsTheOthersOnTheSegmentByArcLength) {
@@ -181,16 +183,22 @@ TEST(SolveHarmonic, LeavesADiskWithoutInteriorVerticesAsItIs) {
 
 // ---- Metric solve ---------------------------------------------------------------------------
 
+std::vector<EdgeWeights> stiffness_of(const std::vector<RestTriangle>& rest,
+                                      const std::vector<FaceMetric>& metric) {
+  return energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 1);
+}
+
 std::vector<Vec2> solve_from_own_metric(const DiskMesh& mesh, const std::vector<Vec2>& map,
                                         const std::vector<bool>& held) {
   const auto rest = disks::rest_of(mesh);
   const auto metric = face_metrics(mesh.faces, rest, map);
-  const MetricLaplacian laplacian(mesh, rest, metric, held);
+  const auto stiffness = stiffness_of(rest, metric);
+  const MetricLaplacian laplacian(mesh, stiffness, held);
   std::vector<Vec2> uvs(map.size(), Vec2::Zero());
   for (std::size_t v = 0; v < map.size(); ++v) {
     if (held[v]) uvs[v] = map[v];
   }
-  solve_metric(mesh, rest, metric, laplacian, 2, 1, uvs);
+  solve_metric(mesh, rest, metric, stiffness, laplacian, false, 1, uvs);
   return uvs;
 }
 
@@ -211,10 +219,13 @@ TEST(SolveMetric, RecoversTheMapFromPhasesThatAreOff) {
   const auto rest = disks::rest_of(mesh);
   auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
   for (FaceMetric& m : metric) m.phase *= std::polar(1.0, random.between(-0.5, 0.5));
-  const MetricLaplacian laplacian(mesh, rest, metric, disks::only_fixed(mesh, 0));
+  const auto stiffness = stiffness_of(rest, metric);
+  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
   const auto energy_after = [&](int rotations) {
     std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
-    solve_metric(mesh, rest, metric, laplacian, rotations, 1, uvs);
+    for (int round = 0; round <= rotations; ++round) {
+      solve_metric(mesh, rest, metric, stiffness, laplacian, round > 0, 1, uvs);
+    }
     return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet - 2;
   };
   const double none = energy_after(0);
@@ -241,11 +252,15 @@ TEST(SolveMetric, HasTheSameBitsOnTwoThreads) {
   const DiskMesh mesh = disks::disk(meshes::bumps(70, 70));
   const auto rest = disks::rest_of(mesh);
   const auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
-  const MetricLaplacian laplacian(mesh, rest, metric, disks::only_fixed(mesh, 0));
+  const auto stiffness = stiffness_of(rest, metric);
+  EXPECT_EQ(stiffness, energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 2));
+  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
   std::vector<Vec2> one(mesh.positions.size(), Vec2::Zero()), two = one;
-  solve_metric(mesh, rest, metric, laplacian, 2, 1, one);
-  solve_metric(mesh, rest, metric, laplacian, 2, 2, two);
-  EXPECT_EQ(one, two);
+  for (const bool rotate : {false, true}) {
+    solve_metric(mesh, rest, metric, stiffness, laplacian, rotate, 1, one);
+    solve_metric(mesh, rest, metric, stiffness, laplacian, rotate, 2, two);
+    EXPECT_EQ(one, two);
+  }
 }
 
 // ---- Polish ---------------------------------------------------------------------------------
@@ -258,29 +273,60 @@ struct Polished {
 Polished polish_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
                      const PolishOptions& options) {
   const auto rest = disks::rest_of(mesh);
-  const MetricLaplacian laplacian(mesh, rest, face_metrics(mesh.faces, rest, start),
+  const MetricLaplacian laplacian(mesh, stiffness_of(rest, face_metrics(mesh.faces, rest, start)),
                                   disks::only_fixed(mesh, mesh.boundary.front()));
-  const double quarter_area = 0.25 * surface_area(mesh);
+  const double area = surface_area(mesh);
   Polished polished{{}, start};
   polished.result = polish(
       mesh.faces, rest,
-      [&](const DenseMatrix& gradient) -> DenseMatrix {
-        return quarter_area * laplacian.solve(gradient);
+      [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
+        laplacian.solve(in, out);
+        for (Vec2& w : out) w *= area;
       },
       polished.uvs, options);
   return polished;
 }
 
-TEST(MetricLaplacian, RefitsToTheCurvatureOfTheDensityAtAnIsometry) {
+TEST(EnergyStiffness, OfAnIsometryIsTheCurvatureTimesTheLaplacian) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(6, 6));
+  const auto rest = disks::rest_of(mesh);
+  const auto stiffness = stiffness_of(rest, std::vector<FaceMetric>(rest.size()));
+  for (std::size_t f = 0; f < rest.size(); ++f) {
+    const Cotangents cotangents = modified_cotangents(rest[f], 0);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(stiffness[f][k], 4 * 0.5 * cotangents[k], 1e-12 * (1 + std::abs(cotangents[k])));
+    }
+  }
+}
+
+TEST(EnergyStiffness, OfAMapIsThatOfItsMetric) {
+  const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 1.5));
+  const auto rest = disks::rest_of(mesh);
+  const auto uvs = tutte_embedding(mesh);
+  const auto of_metric = stiffness_of(rest, face_metrics(mesh.faces, rest, uvs));
+  const auto of_map =
+      energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, rest, uvs, 2);
+  for (std::size_t f = 0; f < rest.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const double size = std::abs(of_metric[f][0]) + std::abs(of_metric[f][1]);
+      EXPECT_NEAR(of_map[f][k], of_metric[f][k], 1e-9 * size);
+    }
+  }
+}
+
+TEST(MetricLaplacian, RefittedSolvesForTheOtherStiffness) {
   const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
   const auto rest = disks::rest_of(mesh);
   const auto held = disks::only_fixed(mesh, 0);
-  const std::vector<Vec2> flat = disks::flat_uvs(mesh);
-  MetricLaplacian laplacian(mesh, rest, face_metrics(mesh.faces, rest, flat), held);
-  DenseMatrix rhs = DenseMatrix::Random(mesh.vertex_count(), 2);
-  const DenseMatrix before = laplacian.solve(rhs);
-  laplacian.refit(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, rest, flat, 2);
-  EXPECT_LT((4 * laplacian.solve(rhs) - before).norm(), 1e-10 * before.norm());
+  std::vector<FaceMetric> metric(rest.size());
+  const auto plain = stiffness_of(rest, metric);
+  for (FaceMetric& m : metric) m.mu = Complex(0.3, 0.2);
+  const auto other = stiffness_of(rest, metric);
+  MetricLaplacian refitted(mesh, plain, held);
+  refitted.refit(mesh, other);
+  const MetricLaplacian fresh(mesh, other, held);
+  const DenseMatrix rhs = DenseMatrix::Random(mesh.vertex_count(), 2);
+  EXPECT_EQ(refitted.solve(rhs), fresh.solve(rhs));
 }
 
 TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {

@@ -395,9 +395,36 @@ TEST(Simplify, LeavesTinyMeshesAlone) {
   EXPECT_EQ(simplify(hexagon, 1).mesh.faces, hexagon.faces);
 }
 
+TEST(Simplify, HasTheSameBitsOnTwoThreadsInBlocks) {
+  const DiskMesh fine = grid(220, 220, wavy);  // three blocks of vertices
+  const CoarseDisk one = simplify(fine, 3000, 1), two = simplify(fine, 3000, 2);
+  EXPECT_EQ(one.mesh.faces, two.mesh.faces);
+  EXPECT_EQ(one.fine_vertex, two.fine_vertex);
+  EXPECT_EQ(one.nearby, two.nearby);
+  EXPECT_LE(one.mesh.face_count(), 3000);
+  expect_subset(fine, one);
+  expect_boundary_in_order(fine, one);
+}
+
+TEST(Simplify, SaysWhereEveryVertexWent) {
+  const DiskMesh fine = grid(60, 60, wavy);
+  const CoarseDisk coarse = simplify(fine, 500);
+  ASSERT_EQ(size_of(coarse.nearby), fine.vertex_count());
+  for (Index c = 0; c < coarse.mesh.vertex_count(); ++c) {
+    EXPECT_EQ(coarse.nearby[coarse.fine_vertex[c]], c);
+  }
+  double mean = 0;
+  for (Index v = 0; v < fine.vertex_count(); ++v) {
+    mean +=
+        (fine.positions[v] - coarse.mesh.positions[coarse.nearby[v]]).norm() / fine.vertex_count();
+  }
+  const double coarse_edge = std::sqrt(surface_area(fine) / coarse.mesh.vertex_count());
+  EXPECT_LT(mean, 2 * coarse_edge);
+}
+
 TEST(Simplify, ReportsGrowingFractionsFromZeroToOne) {
   std::vector<double> fractions;
-  simplify(grid(60, 60, wavy), 300, [&](double fraction) { fractions.push_back(fraction); });
+  simplify(grid(60, 60, wavy), 300, 1, [&](double fraction) { fractions.push_back(fraction); });
   ASSERT_GE(fractions.size(), 5u);
   EXPECT_EQ(fractions.front(), 0);
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
@@ -415,7 +442,7 @@ TEST(Simplify, IsCancelledByAThrowingCheckpoint) {
     const Checkpoint cancel = [&](double) {
       if (calls++ == allowed) throw Cancelled("cancelled");
     };
-    EXPECT_THROW(simplify(fine, 100, cancel), Cancelled);
+    EXPECT_THROW(simplify(fine, 100, 1, cancel), Cancelled);
   }
   EXPECT_EQ(fine.faces, copy.faces);
   EXPECT_EQ(fine.positions, copy.positions);

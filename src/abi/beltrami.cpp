@@ -91,9 +91,9 @@ beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
 
 /// The face's number in the input.
 std::uint64_t input_face(const LoadedMesh& mesh, Index face) {
-  return face == kNone ? BELTRAMI_NO_ELEMENT
-                       : static_cast<std::uint64_t>(
-                             mesh.input.original_face[static_cast<std::size_t>(face)]);
+  return face == kNone
+             ? BELTRAMI_NO_ELEMENT
+             : static_cast<std::uint64_t>(mesh.input.original_face[static_cast<std::size_t>(face)]);
 }
 
 beltrami_certificate describe(const LoadedMesh& mesh, const Certificate& certificate) {

@@ -16,9 +16,9 @@ namespace beltrami {
 struct LoadedMesh {
   InputDisk input;
   Normalisation frame;
-  std::uint64_t vertex_count = 0;      ///< of the input, unused vertices included
-  double area = 0;                     ///< in the input's unit squared
-  std::uint64_t degenerate_faces = 0;  ///< without area
+  std::uint64_t vertex_count = 0;       ///< of the input, unused vertices included
+  double area = 0;                      ///< in the input's unit squared
+  std::uint64_t degenerate_faces = 0;   ///< without area
   Index first_degenerate_face = kNone;  ///< in the input
 };
 

@@ -39,7 +39,7 @@ inline Complex transport(const Frame& from, const Frame& to) {
   Vec3 x = from.x;
   if (cosine > -1 + 1e-12) x -= (from.x.dot(to.n) / (1 + cosine)) * (from.n + to.n);
   const Complex r(x.dot(to.x), x.dot(to.n.cross(to.x)));
-  const double length = std::abs(r);
+  const double length = modulus(r);
   return length > 0 ? r / length : Complex(1);
 }
 

@@ -30,7 +30,7 @@ void accumulate(FaceMetric& sum, const FaceMetric& metric, double weight) {
 }
 
 void normalise_phase(FaceMetric& metric) {
-  const double length = std::abs(metric.phase);
+  const double length = modulus(metric.phase);
   metric.phase = length > 0 ? metric.phase / length : Complex(1);
 }
 
@@ -106,7 +106,7 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
     const LinearMap map = linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
     const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
     if (!(area_factor > 0)) continue;
-    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / std::abs(map.fz)};
+    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / modulus(map.fz)};
   }
   return metrics;
 }

@@ -47,7 +47,7 @@ struct SymmetricArap {
   };
 
   static DensitySlopes slopes(const LinearMap& map) {
-    const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+    const double a = modulus(map.fz), b = modulus(map.fzbar);
     const double s1 = a + b, s2 = (a - b) * (a + b) / s1;
     const double d1 = 2 * (s1 - 1), d2 = -2 * (1 / s2 - 1) / (s2 * s2);
     // Smoothed beside the ridge, like the model.

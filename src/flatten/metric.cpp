@@ -14,8 +14,8 @@ namespace {
 constexpr std::int64_t kGrain = 8192;
 
 /// The stiffness of a face whose singular values are a + b and a - b, the greater one along
-/// `direction`, a unit complex twice as far from the real axis. Along each the mean of the density's
-/// radial curvature there and of its angular ones.
+/// `direction`, a unit complex twice as far from the real axis. Along each the mean of the
+/// density's radial curvature there and of its angular ones.
 template <class Density>
 EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex direction) {
   const DensityModel model = Density::model(a + b, a - b);
@@ -23,8 +23,8 @@ EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex d
   const double angular = std::min(0.5 * (model.twist + model.flip), model.h11 + model.h22);
   const double along = 0.5 * (model.h11 + angular), across = 0.5 * (model.h22 + angular);
   // The metric whose Laplacian has this stiffness: lengths go with the inverse roots.
-  const double ratio = std::sqrt(across / along), modulus = (ratio - 1) / (ratio + 1);
-  EdgeWeights weights = modified_cotangents(rest, modulus * direction);
+  const double ratio = std::sqrt(across / along), signed_mu = (ratio - 1) / (ratio + 1);
+  EdgeWeights weights = modified_cotangents(rest, signed_mu * direction);
   const double scale = 0.5 * std::sqrt(along * across);
   for (double& w : weights) w *= scale;
   return weights;
@@ -76,7 +76,7 @@ Complex fitted_rotation(const EdgeWeights& weights, const std::array<Complex, 3>
                         const std::array<Complex, 3>& present) {
   Complex fit = 0;
   for (int k = 0; k < 3; ++k) fit += weights[k] * present[k] * std::conj(target[k]);
-  const double length = std::abs(fit);
+  const double length = modulus(fit);
   return length > 0 ? fit / length : Complex(1);
 }
 
@@ -86,10 +86,10 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestT
                                           const std::vector<FaceMetric>& metric, int threads) {
   return stiffness_of_faces(
       energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) {
-        const double modulus = std::abs(metric[f].mu);
-        const Complex direction = modulus > 0 ? metric[f].mu / modulus : Complex(1);
-        const double a = std::exp(0.5 * metric[f].log_area) / std::sqrt(1 - modulus * modulus);
-        return stiffness_at<Density>(rest[f], a, modulus * a, direction);
+        const double k = modulus(metric[f].mu);
+        const Complex direction = k > 0 ? metric[f].mu / k : Complex(1);
+        const double a = std::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
+        return stiffness_at<Density>(rest[f], a, k * a, direction);
       });
 }
 
@@ -100,7 +100,7 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
       energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) -> EdgeWeights {
         const Triangle& t = faces[f];
         const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-        const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+        const double a = modulus(map.fz), b = modulus(map.fzbar);
         if (!(a > b)) return modified_cotangents(rest[f], 0);
         const Complex direction = b > 0 ? map.fzbar / map.fz * (a / b) : Complex(1);
         return stiffness_at<Density>(rest[f], a, b, direction);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -25,7 +24,6 @@ constexpr int kHoldRounds = 4;          // after which a few faces hold back the
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
-constexpr double kBlockedStep = 0.1;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -145,17 +143,21 @@ class History {
   int threads_;
 };
 
-/// Shortens the direction at the corners of the faces that a full step would bring too near to
-/// being singular, and then at those of their neighbours that get there by it. Returns how far the
-/// whole map may go along what is left.
-double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads,
-                 Field& direction) {
+/// Lets the faces that a full step would bring too near to being singular move along more rigidly,
+/// and then those of their neighbours that get there by it. Vertices that do not move, because they
+/// are held, still do not. Returns how far the whole map may go along what is left, and the faces
+/// found at first. Without `rigidly` the direction stays as it is.
+double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads, bool rigidly,
+                 Field& direction, std::vector<Index>& blocking) {
+  blocking.clear();
   for (int round = 0;; ++round) {
     std::vector<SingularStep> singular =
         singular_steps(faces, uvs, direction, 1 / kSingularShare, threads);
-    if (!singular.empty()) fprintf(stderr,"hold round %d: %zu\n",round,singular.size());
     if (singular.empty()) return 1;
-    if (round == kHoldRounds) {
+    if (round == 0) {
+      for (const SingularStep& s : singular) blocking.push_back(s.face);
+    }
+    if (!rigidly || round == kHoldRounds) {
       const auto first = std::min_element(
           singular.begin(), singular.end(),
           [](const SingularStep& a, const SingularStep& b) { return a.length < b.length; });
@@ -173,6 +175,25 @@ double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threa
   }
 }
 
+/// The buffers of a descent.
+struct Fields {
+  Field gradient, next_gradient, direction, trial, spare;
+};
+
+/// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
+/// is low enough for its slope, and shortens `length` accordingly. Infinite if there is none.
+template <class Density>
+double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
+                   int threads, Fields& fields, double& length) {
+  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+    fields.trial = uvs;
+    add_multiple(length, fields.direction, threads, fields.trial);
+    const double after = objective.evaluate(fields.trial, fields.next_gradient);
+    if (after < before && after <= before + kArmijo * length * slope) return after;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
@@ -180,50 +201,49 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   const int threads = options.threads;
   Objective<Density> objective(size_of(uvs), faces, rest, threads);
   PolishResult result;
-  Field gradient, next, direction, trial(uvs.size()), spare;
+  Fields fields;
+  auto& [gradient, next_gradient, direction, trial, spare] = fields;
   result.energies.push_back(objective.evaluate(uvs, gradient));
   if (!std::isfinite(result.energies.front())) return result;
   History history(threads);
+  bool rigidly = true;  // whether faces may be held back alone
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back();
     history.find_direction(gradient, precondition, spare, direction);
-    double length = hold_back(faces, uvs, threads, direction);
-    double slope = dot(gradient, direction, threads);
-    if (!(slope < 0)) {
-      if (history.empty()) {
-        result.blocked = true;
-        break;
-      }
-      history.clear();
-      continue;
-    }
-    double after = std::numeric_limits<double>::infinity();
-    for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
-      trial = uvs;
-      add_multiple(length, direction, threads, trial);
-      after = objective.evaluate(trial, next);
-      if (after <= before + kArmijo * length * slope) break;
-    }
-    if (!(after < before)) {
+    double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
+    const double slope = dot(gradient, direction, threads);
+    result.predicted = -slope;
+    if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;
       break;
     }
+    const double after = slope < 0
+                             ? search_line(objective, uvs, before, slope, threads, fields, length)
+                             : std::numeric_limits<double>::infinity();
+    if (!(after < before)) {
+      const bool plain = history.empty() && (!rigidly || result.blocking.empty());
+      result.blocked = plain;
+      if (plain) break;
+      history.clear();
+      rigidly = false;
+      continue;
+    }
+    rigidly = true;
     result.energies.push_back(after);
     parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
         direction[i] *= length;
-        gradient[i] = next[i] - gradient[i];
+        gradient[i] = next_gradient[i] - gradient[i];
       }
     });
-    fprintf(stderr,"polish %d len %.3g E %.8g -> %.8g slope %.3g  gain/slope %.3g\n", result.iterations(), length, before, after, slope, (before-after)/(-slope));
     uvs.swap(trial);
-    history.add(direction, gradient);
-    gradient.swap(next);
-    result.blocked = length < kBlockedStep;
+    // What nearly singular faces do to the gradient says nothing about other steps.
+    if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
+    gradient.swap(next_gradient);
     result.converged = length >= kFullStep &&
                        before - after <= options.tolerance * comparable_energy<Density>(before);
-    if (result.blocked || result.converged) break;
+    if (result.converged) break;
   }
   return result;
 }

@@ -15,13 +15,16 @@ struct PolishOptions {
   Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
   double tolerance = 1e-5;  ///< relative energy decrease of a step that ends it
   int max_iterations = 20;
+  bool force_first = true;  ///< whether the first step is taken however short it has to be
   int threads = 1;
 };
 
 struct PolishResult {
   std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
   bool converged = false;        ///< a step of at least 1/2 decreased the energy by less than that
-  bool blocked = false;          ///< ended because nearly singular faces keep steps short
+  bool blocked = false;          ///< the next step would have had to be shorter than that
+  std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular
+  double predicted = 0;          ///< -gradient . direction of the last step looked at
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 
@@ -30,9 +33,9 @@ struct PolishResult {
 using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector<Vec2>& out)>;
 
 /// Minimises the mean energy by L-BFGS (Nocedal 1980; history 5) with `precondition` for the
-/// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that hold
-/// their own vertices back, and only where this does not help the whole map. It ends early where
-/// even so steps stay short: clean_outliers mends the faces that block them. Precondition: all
+/// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that move
+/// more rigidly with their neighbours, and where this does not help the whole step is shortened. It
+/// ends where steps become short: clean_outliers mends the faces that block them. Precondition: all
 /// faces of `uvs` are positively oriented.
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,

@@ -29,7 +29,7 @@ struct SingularValues {
   double s1, s2;
 };
 inline SingularValues singular_values(const LinearMap& map) {
-  const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+  const double a = modulus(map.fz), b = modulus(map.fzbar);
   const double s1 = a + b;
   return {s1, s1 > 0 ? (std::norm(map.fz) - std::norm(map.fzbar)) / s1 : 0.0};
 }
@@ -40,7 +40,7 @@ template <class Density>
 FaceModel face_model(const RestTriangle& rest, const LinearMap& map, const Density& density) {
   const SingularValues s = singular_values(map);
   const DensityModel m = density.model(s.s1, s.s2);
-  const double a = std::abs(map.fz), b = std::abs(map.fzbar);
+  const double a = modulus(map.fz), b = modulus(map.fzbar);
   const Complex phase_x = a > 0 ? std::conj(map.fz) / a : Complex(1);
   const Complex phase_y = b > 0 ? std::conj(map.fzbar) / b : Complex(1);
   Vector6 radial_x, twist, radial_y, flip;

@@ -79,7 +79,8 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points) {
     keyed.swap(sorted);
   }
   std::vector<Index> order(points.size());
-  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& k) { return k.second; });
+  std::transform(keyed.begin(), keyed.end(), order.begin(),
+                 [](const Keyed& k) { return k.second; });
   return order;
 }
 

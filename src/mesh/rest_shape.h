@@ -28,7 +28,8 @@ struct LinearMap {
 
 /// The linear map that takes the rest triangle to the corners w. Its singular values are
 /// |fz| +- |fzbar|.
-inline LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1, const Vec2& w2) {
+inline LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2& w1,
+                            const Vec2& w2) {
   // f_x = (w1 - w0) / x1; f_y from the apex; fz = (f_x - i f_y) / 2, fzbar = (f_x + i f_y) / 2.
   const double inv_x1 = 1 / rest.x1, inv_y2 = 1 / rest.y2;
   const double ux = (w1.x() - w0.x()) * inv_x1, vx = (w1.y() - w0.y()) * inv_x1;

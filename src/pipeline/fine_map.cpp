@@ -22,14 +22,15 @@ constexpr int kNewtonSteps = 10;
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease, of the steps after a blocked polish
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
-constexpr double kRoughly = 1e-5;             // residual of a map that is polished afterwards
-constexpr std::size_t kManyFlips = 20;       // beyond which targets are rotated
-constexpr int kRotations = 2;                // ARAP rounds, then
-constexpr double kFlippedShare = 0.001;      // beyond which the harmonic map is looked at too
-constexpr double kPolishTolerance = 3e-4;    // relative decrease: leaves the energy 0.1% too high
+constexpr double kRoughly = 1e-5;          // residual of a map that is polished afterwards
+constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
+constexpr int kRotations = 2;              // ARAP rounds, then
+constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
+constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kPolishIterations = 30;
-constexpr int kPolishRounds = 4;  // more than one only after faces that blocked the steps
-constexpr int kFewSteps = 3;
+constexpr int kFewSteps = 3;          // fewer in a round: blocked at once
+constexpr int kHopelessRounds = 2;    // of these, before Newton steps
+constexpr double kMuchLeft = 3e-3;    // predicted relative decrease that is worth these
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -45,7 +46,7 @@ Index Run::coarse_target() const {
 
 void Run::solve_coarse(FineProblem& fine) {
   stage("simplify", 0.12, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    fine.coarse = simplify(*disk_, coarse_target(), checkpoint);
+    fine.coarse = simplify(*disk_, coarse_target(), options_.threads, checkpoint);
   });
   result_.coarse_faces = fine.coarse.mesh.face_count();
   fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
@@ -61,8 +62,8 @@ void Run::measure_fine(FineProblem& fine, const Checkpoint& checkpoint) {
     fine.rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
     fine.metric.assign(disk_->faces.size(), FaceMetric{});
     if (coarse_metric.empty()) return;
-    fine.metric = prolong_metric(coarse, coarse_metric, *disk_, fine.coarse.nearby, options_.threads,
-                                 checkpoint);
+    fine.metric = prolong_metric(coarse, coarse_metric, *disk_, fine.coarse.nearby,
+                                 options_.threads, checkpoint);
   };
   measure();
   // The metric solve brings its own weights.
@@ -220,9 +221,9 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
     const auto stiffness =
         energy_stiffness(options_.energy, fine.rest, fine.metric, options_.threads);
     laplacian = std::make_unique<MetricLaplacian>(
-        *disk_, stiffness, held, SolverOptions{.precision = Precision::kSingle,
-                                                .threads = options_.threads,
-                                                .residual = kRoughly});
+        *disk_, stiffness, held,
+        SolverOptions{
+            .precision = Precision::kSingle, .threads = options_.threads, .residual = kRoughly});
     checkpoint(0.75);
     const auto solve = [&](bool rotate) {
       solve_metric(*disk_, fine.rest, fine.metric, stiffness, *laplacian, rotate, options_.threads,
@@ -264,8 +265,8 @@ int Run::take_newton_steps(const FineProblem& fine, const std::vector<bool>& hel
 
 /// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, the
 /// others with one that is fitted to the map by then. Where nearly singular faces block the steps,
-/// these are cleaned and the factor is fitted anew; where they are blocked at once even so,
-/// Newton steps end it.
+/// patches around these are optimised and the factor is fitted anew; where that does not help
+/// either, and much is left to gain, Newton steps end it.
 void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
@@ -275,35 +276,46 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
       laplacian.precondition(in, out);
       for (Vec2& w : out) w *= area;
     };
-    const auto clean = [&] {
-      result_.cleaned_patches +=
-          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads);
-    };
-    const auto progress = [&] {
-      checkpoint(static_cast<double>(statistics.iterations) / kPolishIterations);
-    };
-    PolishOptions polish_options;
-    polish_options.energy = options_.energy;
-    polish_options.threads = options_.threads;
-    polish_options.tolerance = kPolishTolerance;
-    int hopeless = 0;  // rounds that were blocked at once
-    for (int round = 0;; ++round) {
-      polish_options.max_iterations = round == 0 ? 1 : kPolishIterations - statistics.iterations;
-      const PolishResult polished = polish(disk_->faces, fine.rest, precondition, uvs,
-                                           polish_options, [&](double) { progress(); });
+    const auto run = [&](int steps, bool force_first) {
+      PolishOptions options;
+      options.energy = options_.energy;
+      options.threads = options_.threads;
+      options.tolerance = kPolishTolerance;
+      options.max_iterations = steps;
+      options.force_first = force_first;
+      const int before = statistics.iterations;
+      PolishResult polished =
+          polish(disk_->faces, fine.rest, precondition, uvs, options,
+                 [&](double done) { checkpoint((before + done * steps) / kPolishIterations); });
       statistics.iterations += polished.iterations();
-      const bool done = !polished.blocked && (round > 0 || polished.converged);
-      if (done || polished.blocked) clean();
-      if (done || statistics.iterations >= kPolishIterations) break;
-      if (round > 0 && polished.iterations() < kFewSteps) ++hopeless;
-      if (hopeless > 1 || round == kPolishRounds) {
-        statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
+      return polished;
+    };
+    const auto clean = [&](const std::vector<Index>& also) {
+      result_.cleaned_patches +=
+          clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads, also);
+    };
+    PolishResult polished = run(1, false);
+    if (polished.blocked) {
+      clean(polished.blocking);
+      polished = run(1, true);
+    }
+    int hopeless_rounds = 0;
+    while (!polished.converged && statistics.iterations < kPolishIterations) {
+      if (hopeless_rounds == kHopelessRounds) {
+        const double left = polished.predicted / polished.energies.back();
+        if (left > kMuchLeft) {
+          statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
+        }
         break;
       }
-      progress();
       laplacian.refit(*disk_, energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs,
                                                options_.threads));
+      polished = run(kPolishIterations - statistics.iterations, true);
+      if (!polished.blocked) break;
+      clean(polished.blocking);
+      if (polished.iterations() < kFewSteps) ++hopeless_rounds;
     }
+    clean({});
   });
 }
 

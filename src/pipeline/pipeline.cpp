@@ -103,7 +103,7 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     if (target >= last || target < kFewestFaces) continue;
     last = target;
     checkpoint(0.05);
-    const CoarseDisk coarse = simplify(mesh, target);
+    const CoarseDisk coarse = simplify(mesh, target, options_.threads);
     // Simplification may get stuck far above its target.
     if (coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) continue;
     const auto coarse_rest =
@@ -113,9 +113,9 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     StageStatistics unused{"coarse"};
     descend(coarse.mesh, coarse_rest, newton_options(coarse.mesh), map, unused,
             [&](double) { checkpoint(0.05); });
-    const auto metric = prolong_metric(
-        coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh, coarse.nearby,
-        options_.threads);
+    const auto metric =
+        prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh,
+                       coarse.nearby, options_.threads);
     std::vector<Vec2> uvs = carry_boundary(mesh, coarse, map);
     solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
                    options_.threads);

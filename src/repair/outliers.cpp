@@ -70,10 +70,12 @@ std::vector<Index> find_outliers(const std::vector<double>& energies,
 
 std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                            int threads, const Checkpoint& checkpoint) {
+                            int threads, const std::vector<Index>& also,
+                            const Checkpoint& checkpoint) {
   std::int64_t crossings = -1, patches = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const auto outliers = find_outliers(face_energies(energy, mesh, rest, uvs, threads), rest);
+    auto outliers = find_outliers(face_energies(energy, mesh, rest, uvs, threads), rest);
+    if (round == 0) outliers.insert(outliers.end(), also.begin(), also.end());
     std::vector<bool> treated(mesh.faces.size(), false);
     std::size_t done = 0;
     for (const Index face : outliers) {

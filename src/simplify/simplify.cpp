@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/parallel.h"
 #include "simplify/surface.h"
 
 namespace beltrami {
@@ -33,8 +34,10 @@ constexpr Index kMaxTargetValence = 64;
 /// How many targets of one vertex are tried in a pass; later ones cost too much to be wanted.
 constexpr int kMaxAttempts = 3;
 
-/// Candidates between two checkpoints.
-constexpr Index kCheckpointStride = 50000;
+/// Vertices in a block. Blocks are simplified side by side; what reaches into another block comes
+/// after them. Its borders do not depend on the number of threads, so the result does not either;
+/// and they move from pass to pass, since vertices are renumbered.
+constexpr Index kBlock = 16384;
 
 /// What a collapse may do to the shape of the faces around it.
 struct ShapeLimits {
@@ -96,16 +99,16 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
   return best;
 }
 
-std::vector<Candidate> find_candidates(const ShrinkingSurface& surface,
-                                       const std::function<void()>& tick) {
+/// In the order of the vertices.
+std::vector<Candidate> find_candidates(const ShrinkingSurface& surface, int threads) {
   const Candidate no_floor{-1, kNone, kNone};
-  std::vector<Candidate> candidates;
-  candidates.reserve(surface.vertex_count());
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    if (v % kCheckpointStride == 0) tick();
-    const Candidate candidate = cheapest_collapse(surface, v, no_floor);
-    if (candidate.target != kNone) candidates.push_back(candidate);
-  }
+  std::vector<Candidate> candidates(surface.vertex_count());
+  parallel_for(threads, surface.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      candidates[v] = cheapest_collapse(surface, static_cast<Index>(v), no_floor);
+    }
+  });
+  std::erase_if(candidates, [](const Candidate& c) { return c.target == kNone; });
   return candidates;
 }
 
@@ -197,8 +200,10 @@ bool keeps_shape(const ShrinkingSurface& surface, Index v, Index target,
 
 // --- Collapses ----------------------------------------------------------------------------------
 
-void collapse(ShrinkingSurface& surface, Index v, Index target) {
+/// Returns the number of faces that go.
+Index collapse(ShrinkingSurface& surface, Index v, Index target) {
   surface.locked[v] = surface.locked[target] = true;
+  Index gone = 0;
 
   for (Index i = surface.fan_start[v]; i < surface.fan_start[v + 1]; ++i) {
     Triangle& face = surface.faces[surface.fan[i] / 3];
@@ -209,7 +214,7 @@ void collapse(ShrinkingSurface& surface, Index v, Index target) {
     } else {
       for (const Index u : face) --surface.valence[u];
       face[0] = kNone;
-      --surface.live_faces;
+      ++gone;
     }
   }
   const Vec3 d = surface.position(target) - surface.position(v);
@@ -223,68 +228,139 @@ void collapse(ShrinkingSurface& surface, Index v, Index target) {
   }
   surface.role[v] = Role::kRemoved;
   surface.collapsed_into[surface.fine_vertex[v]] = surface.fine_vertex[target];
+  return gone;
 }
 
-/// Tries the candidate, then the next cheapest targets of its vertex below `max_cost`.
-bool try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_cost,
-                  const ShapeLimits& limits) {
+/// The vertices of a block, or all.
+struct Range {
+  Index begin, end;
+
+  bool has(Index v) const { return v >= begin && v < end; }
+  /// Whether a collapse of v onto the target looks at and changes nothing outside.
+  bool has_all_of(const ShrinkingSurface& surface, Index v, Index target) const {
+    bool inside = true;
+    surface.for_each_neighbour(v, [&](Index u) { inside &= has(u); });
+    surface.for_each_neighbour(target, [&](Index u) { inside &= has(u); });
+    return inside;
+  }
+};
+
+enum class Outcome { kCollapsed, kRefused, kReachesOut };
+
+/// What candidates came to.
+struct Collapses {
+  Index vertices = 0, faces = 0;
+  std::vector<Candidate> reaching_out;
+};
+
+/// Tries the candidate, then the next cheapest targets of its vertex up to `max_cost`, if all that
+/// it touches is in the range.
+Outcome try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_cost,
+                     const ShapeLimits& limits, const Range* range, Collapses& done) {
   const Index v = candidate.vertex;
-  if (surface.locked[v] || surface.locked[candidate.target]) return false;
-  if (surface.on_boundary(v) && surface.boundary_count <= surface.min_boundary) return false;
+  if (surface.locked[v] || surface.locked[candidate.target]) return Outcome::kRefused;
+  if (surface.on_boundary(v)) {
+    if (range) return Outcome::kReachesOut;  // the loop is everybody's
+    if (surface.boundary_count <= surface.min_boundary) return Outcome::kRefused;
+  }
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    if (range && !range->has_all_of(surface, v, candidate.target)) return Outcome::kReachesOut;
     if (keeps_topology(surface, v, candidate.target) &&
         keeps_shape(surface, v, candidate.target, limits)) {
-      collapse(surface, v, candidate.target);
-      return true;
+      done.faces += collapse(surface, v, candidate.target);
+      ++done.vertices;
+      return Outcome::kCollapsed;
     }
     candidate = cheapest_collapse(surface, v, candidate);
-    if (candidate.target == kNone || candidate.cost > max_cost) return false;
+    if (candidate.target == kNone || candidate.cost > max_cost) return Outcome::kRefused;
   }
-  return false;
+  return Outcome::kRefused;
 }
 
-/// Collapses the candidates [begin, end), which it sorts. Returns how many took place.
-Index collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate>& candidates, Index begin,
-                        Index end, Index target_faces, const ShapeLimits& limits,
-                        const std::function<void()>& tick) {
-  poll_interrupt();
-  std::sort(candidates.begin() + begin, candidates.begin() + end);
-  poll_interrupt();
-  const double max_cost = candidates[end - 1].cost;
-  Index collapsed = 0;
-  for (Index i = begin; i < end && surface.live_faces > target_faces; ++i) {
-    if (i % kCheckpointStride == 0) tick();
-    collapsed += try_collapse(surface, candidates[i], max_cost, limits);
+/// Collapses candidates from the cheapest on. With a range, those that reach out of it are kept for
+/// later.
+Collapses collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate>& candidates,
+                            double max_cost, Index target_faces, const ShapeLimits& limits,
+                            const Range* range) {
+  std::sort(candidates.begin(), candidates.end());
+  Collapses done;
+  for (const Candidate& candidate : candidates) {
+    if (!range && surface.live_faces - done.faces <= target_faces) break;
+    const Outcome outcome = try_collapse(surface, candidate, max_cost, limits, range, done);
+    if (outcome == Outcome::kReachesOut) done.reaching_out.push_back(candidate);
   }
-  return collapsed;
+  return done;
+}
+
+/// Collapses those candidates that cost at most `max_cost` and more than `min_cost`. Returns how
+/// many took place.
+Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& candidates,
+                       double min_cost, double max_cost, Index target_faces,
+                       const ShapeLimits& limits, int threads) {
+  poll_interrupt();
+  const Index count = surface.vertex_count(), blocks = (count + kBlock - 1) / kBlock;
+  std::vector<std::vector<Candidate>> of_block(blocks);
+  Index most = 0;
+  for (const Candidate& c : candidates) {
+    if (!(c.cost > min_cost) || c.cost > max_cost) continue;
+    of_block[c.vertex / kBlock].push_back(c);
+    ++most;
+  }
+  std::vector<Candidate> rest;
+  Index collapsed = 0;
+  // Blocks do not know when the target is reached: near it all goes in one order. A collapse takes
+  // two faces.
+  if (blocks > 1 && surface.live_faces - 2 * std::int64_t{most} > target_faces) {
+    std::vector<Collapses> done(blocks);
+    parallel_for(threads, blocks, 1, [&](std::int64_t block, std::int64_t) {
+      const auto begin = static_cast<Index>(block) * kBlock;
+      const Range range{begin, std::min(begin + kBlock, count)};
+      done[block] =
+          collapse_in_order(surface, of_block[block], max_cost, target_faces, limits, &range);
+    });
+    for (const Collapses& d : done) {
+      collapsed += d.vertices;
+      surface.live_faces -= d.faces;
+      rest.insert(rest.end(), d.reaching_out.begin(), d.reaching_out.end());
+    }
+  } else {
+    for (const auto& block : of_block) rest.insert(rest.end(), block.begin(), block.end());
+  }
+  poll_interrupt();
+  const Collapses last = collapse_in_order(surface, rest, max_cost, target_faces, limits, nullptr);
+  surface.live_faces -= last.faces;
+  return collapsed + last.vertices;
 }
 
 /// One pass over the cheaper half of the candidates, or all of them if the half barely helps.
 /// Returns whether another one like it is worth its time.
 bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& limits,
-              const std::function<void()>& tick) {
+              int threads) {
   begin_pass(surface);
-  std::vector<Candidate> candidates = find_candidates(surface, tick);
+  const std::vector<Candidate> candidates = find_candidates(surface, threads);
   if (candidates.empty()) return false;
   const Index count = size_of(candidates);
-  const Index half = (count + 1) / 2;
   const Index worthwhile = 1 + static_cast<Index>(limits.min_progress * count);
-  std::nth_element(candidates.begin(), candidates.begin() + (half - 1), candidates.end());
-  Index collapsed = collapse_in_order(surface, candidates, 0, half, target_faces, limits, tick);
-  if (collapsed < worthwhile && half < count) {
-    collapsed += collapse_in_order(surface, candidates, half, count, target_faces, limits, tick);
-  }
+  std::vector<double> costs(candidates.size());
+  for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = candidates[i].cost;
+  const auto middle = costs.begin() + (count - 1) / 2;
+  std::nth_element(costs.begin(), middle, costs.end());
+  const auto run = [&](double min_cost, double max_cost) {
+    return collapse_between(surface, candidates, min_cost, max_cost, target_faces, limits, threads);
+  };
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  Index collapsed = run(-1, *middle);
+  if (collapsed < worthwhile) collapsed += run(*middle, kAny);
   return collapsed >= worthwhile;
 }
 
-void run_passes(ShrinkingSurface& surface, Index target_faces, const Checkpoint& checkpoint) {
+void run_passes(ShrinkingSurface& surface, Index target_faces, int threads,
+                const Checkpoint& checkpoint) {
   const Index start = surface.live_faces;
-  const auto tick = [&] {
-    checkpoint(double(start - surface.live_faces) / double(start - target_faces));
-  };
   for (const ShapeLimits& limits : kShapeLimits) {
     while (surface.live_faces > target_faces) {
-      if (!run_pass(surface, target_faces, limits, tick)) break;
+      checkpoint(double(start - surface.live_faces) / double(start - target_faces));
+      if (!run_pass(surface, target_faces, limits, threads)) break;
     }
   }
   compact(surface);
@@ -296,7 +372,8 @@ std::vector<Index> follow_collapses(std::vector<Index> into,
   for (Index v = 0; v < size_of(into); ++v) {
     Index end = v;
     while (into[end] != end) end = into[end];
-    for (Index on_the_way = v; on_the_way != end;) on_the_way = std::exchange(into[on_the_way], end);
+    for (Index on_the_way = v; on_the_way != end;)
+      on_the_way = std::exchange(into[on_the_way], end);
   }
   std::vector<Index> coarse_vertex(into.size(), kNone);
   for (Index c = 0; c < size_of(fine_vertex); ++c) coarse_vertex[fine_vertex[c]] = c;
@@ -306,7 +383,8 @@ std::vector<Index> follow_collapses(std::vector<Index> into,
 
 }  // namespace
 
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Checkpoint& checkpoint) {
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads,
+                    const Checkpoint& checkpoint) {
   ShrinkingSurface surface;
   CoarseDisk coarse;
   if (target_faces >= fine.face_count()) {
@@ -317,7 +395,7 @@ CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Checkpoint& 
     return coarse;
   }
   surface = make_surface(fine);
-  run_passes(surface, target_faces, checkpoint);
+  run_passes(surface, target_faces, threads, checkpoint);
   coarse.fine_vertex = std::move(surface.fine_vertex);
   coarse.nearby = follow_collapses(std::move(surface.collapsed_into), coarse.fine_vertex);
   std::vector<Vec3> positions;

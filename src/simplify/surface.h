@@ -27,17 +27,17 @@ struct ShrinkingSurface {
   std::vector<Index> loop_next, loop_previous;  ///< along the boundary; kNone inside
   std::vector<Index> fine_vertex;
   std::vector<Index> collapsed_into;  ///< per fine vertex: the next one on the way, or itself
-  std::vector<Triangle> faces;  ///< a removed one has kNone as its first corner
+  std::vector<Triangle> faces;        ///< a removed one has kNone as its first corner
   Index live_faces = 0;
   Index boundary_count = 0;
   Index min_boundary = 0;
 
   // Built for one pass.
-  std::vector<Index> fan_start;  ///< per vertex: its first entry in `fan`
-  std::vector<Index> fan;        ///< half-edges 3 * face + corner, by origin
-  std::vector<Index> valence;    ///< live faces per vertex
-  std::vector<Index> mark;       ///< scratch: the vertex whose ring was marked last
-  std::vector<bool> locked;
+  std::vector<Index> fan_start;      ///< per vertex: its first entry in `fan`
+  std::vector<Index> fan;            ///< half-edges 3 * face + corner, by origin
+  std::vector<Index> valence;        ///< live faces per vertex
+  std::vector<Index> mark;           ///< scratch: the vertex whose ring was marked last
+  std::vector<std::uint8_t> locked;  ///< bytes, since blocks write side by side
 
   Index vertex_count() const { return size_of(site); }
   const Vec3& position(Index v) const { return site[v].position; }

@@ -99,18 +99,10 @@ class NativeSolver final : public SpdSolver {
   DenseMatrix precondition(const DenseMatrix& rhs) const override {
     if (single_.empty() || rhs.size() == 0) return solve(rhs);
     // A power of two keeps the numbers in the range of single precision, and costs no bits.
-    DenseMatrix result = rhs;
-    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
-      const double unit = unit_of(rhs.col(c).cwiseAbs().maxCoeff());
-      result.col(c) *= 1 / unit;
-    }
-    std::vector<float> x = permuted<float>(result);
+    const double unit = unit_of(rhs.cwiseAbs().maxCoeff());
+    std::vector<float> x = permuted<float>(rhs, 1 / unit);
     single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), options_.threads);
-    result = restored(x, static_cast<int>(rhs.cols()));
-    for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
-      result.col(c) *= unit_of(rhs.col(c).cwiseAbs().maxCoeff());
-    }
-    return result;
+    return restored(x, static_cast<int>(rhs.cols()), unit);
   }
 
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
@@ -186,28 +178,28 @@ class NativeSolver final : public SpdSolver {
 
   /// In the order of L, scaled, column after column.
   template <class T>
-  std::vector<T> permuted(const DenseMatrix& rhs) const {
+  std::vector<T> permuted(const DenseMatrix& rhs, double factor = 1) const {
     const auto n = static_cast<int>(rhs.rows());
     std::vector<T> x(static_cast<std::size_t>(rhs.size()));
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
       T* column = x.data() + c * n;
       for (int i = 0; i < n; ++i) {
         const int at = column_of(i);
-        column[at] = static_cast<T>(rhs(i, c) * scaling(at));
+        column[at] = static_cast<T>(rhs(i, c) * factor * scaling(at));
       }
     }
     return x;
   }
 
   template <class T>
-  DenseMatrix restored(const std::vector<T>& x, int columns) const {
+  DenseMatrix restored(const std::vector<T>& x, int columns, double factor = 1) const {
     const auto n = static_cast<int>(x.size() / columns);
     DenseMatrix result(n, columns);
     for (int c = 0; c < columns; ++c) {
       const T* column = x.data() + static_cast<std::size_t>(c) * n;
       for (int i = 0; i < n; ++i) {
         const int at = column_of(i);
-        result(i, c) = static_cast<double>(column[at]) * scaling(at);
+        result(i, c) = static_cast<double>(column[at]) * scaling(at) * factor;
       }
     }
     return result;
