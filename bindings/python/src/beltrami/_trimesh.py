@@ -1,0 +1,27 @@
+"""``trimesh.Trimesh`` in and out, without needing trimesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ._arrays import Array
+
+
+def is_mesh(thing: object) -> bool:
+    """Whether `thing` has vertices and faces of its own, as a ``trimesh.Trimesh`` has."""
+    return hasattr(thing, "vertices") and hasattr(thing, "faces")
+
+
+def with_uv(mesh: Any, uv: Array, faces: Array) -> Any:
+    """Return a copy of a ``trimesh.Trimesh`` with UVs, and with these faces.
+
+    What else the mesh carried stays, but for its colours: a mesh has either those or UVs.
+    """
+    from trimesh.visual import TextureVisuals
+
+    copied = mesh.copy()
+    if not (copied.faces == faces).all():
+        copied.faces = faces
+    material = getattr(mesh.visual, "material", None)
+    copied.visual = TextureVisuals(uv=uv, material=material)
+    return copied

@@ -1,0 +1,58 @@
+"""Memory: none is lost, and none is spent on copies."""
+
+from __future__ import annotations
+
+import gc
+import mmap
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import grid
+
+import beltrami
+
+
+def resident_bytes():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * mmap.PAGESIZE
+
+
+def everything(vertices, faces):
+    """Call all that keeps memory on the other side, and what fails there."""
+    result = beltrami.parameterize(vertices, faces, progress=lambda *_: None)
+    beltrami.check_injective(result.uv, faces)
+    beltrami.distortion(vertices, faces, result.uv)
+    with pytest.raises(beltrami.IndexOutOfRangeError):
+        beltrami.parameterize(vertices, faces + 1)
+    with pytest.raises(beltrami.Cancelled):
+        beltrami.parameterize(vertices, faces, progress=lambda *_: False)
+
+
+def test_memory_does_not_grow_over_a_thousand_runs():
+    vertices, faces = grid(6)
+    for _ in range(200):
+        everything(vertices, faces)
+    gc.collect()
+    before = resident_bytes()
+    for _ in range(1000):
+        everything(vertices, faces)
+    gc.collect()
+    assert resident_bytes() - before < 1 << 20
+
+
+@pytest.mark.parametrize("wide", [False, True])
+def test_a_large_mesh_goes_in_without_a_copy(wide):
+    vertices, faces = grid(300)
+    if wide:
+        vertices = np.hstack([vertices, vertices])[:, :3]
+        faces = np.hstack([faces, faces])[:, 3:]
+    flattener = beltrami.Flattener()
+    tracemalloc.start()
+    flattener.set_mesh(vertices, faces)
+    flattener.cancel()  # what matters here is the way in
+    with pytest.raises(beltrami.Cancelled):
+        flattener.run()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100_000  # the arrays have 2 MB and 4 MB

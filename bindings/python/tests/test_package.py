@@ -1,0 +1,139 @@
+"""The package as such: names, documentation, the program, what it leaves alone."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import beltrami
+
+HERE = ROOT / "bindings" / "python"
+PACKAGE = Path(beltrami.__file__).parent
+
+
+def public_names():
+    """Yield every public name, with those inside classes: (name, thing)."""
+    for name in beltrami.__all__:
+        thing = getattr(beltrami, name)
+        yield name, thing
+        members = []
+        if inspect.ismodule(thing):
+            members = thing.__all__
+        elif inspect.isclass(thing):
+            fields = getattr(thing, "__dataclass_fields__", ())
+            members = [member for member in {*vars(thing), *fields} if not member.startswith("_")]
+        for member in members:
+            yield f"{name}.{member}", getattr(thing, member, None)
+
+
+NAMES = dict(public_names())
+
+
+def is_documented_elsewhere(name):
+    """Whether it is a field of a class of results, which the class's own text describes."""
+    owner, _, member = name.partition(".")
+    return re.search(rf"^    (\w+, )*{member}(, \w+)* : ", NAMES[owner].__doc__, re.M) is not None
+
+
+def test_the_names_are_those_that_are_imported():
+    public = {name for name in vars(beltrami) if not name.startswith("_")}
+    assert public == set(beltrami.__all__)
+    assert len(NAMES) > 100
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_public_name_is_documented(name):
+    thing = NAMES[name]
+    if "." in name and is_documented_elsewhere(name):
+        return
+    assert inspect.getdoc(thing), name
+    if not inspect.isroutine(thing) or thing.__name__.startswith("_"):
+        return
+    text, signature = inspect.getdoc(thing), inspect.signature(thing)
+    parameters = [name for name in signature.parameters if name != "self"]
+    for parameter in parameters:
+        assert re.search(rf"^(\w+, )*(\*\*)?{parameter}(, \w+)*( : |$)", text, re.M), parameter
+    if parameters:
+        assert "Raises\n------" in text
+        assert signature.return_annotation in ("None", None) or "Returns\n-------" in text
+
+
+@pytest.mark.parametrize("name", ["parameterize", "check_injective", "distortion", "plot.layout"])
+def test_arrays_are_documented_with_shapes_and_types(name):
+    text = inspect.getdoc(NAMES[name])
+    for line in re.findall(r"^(?:vertices|faces|uv)\w* : .*", text, re.M):
+        assert re.search(r"\((n, [23]|m, 3)\) array_like of (floats|integers)", line), line
+
+
+def test_every_option_is_a_keyword_with_its_default():
+    table = beltrami._library._OPTIONS
+    for function in (beltrami.parameterize, beltrami.Flattener, beltrami.batch):
+        parameters = inspect.signature(function).parameters
+        assert set(table) <= set(parameters)
+        for name in table:
+            assert parameters[name].kind is inspect.Parameter.KEYWORD_ONLY
+    assert beltrami.Options.__annotations__.keys() == table.keys()
+    assert beltrami.Flattener().options.keys() == table.keys()
+
+
+def test_generated_sources_are_what_the_c_interface_says():
+    library = PACKAGE / "libbeltrami.so.1"
+    generate = [sys.executable, "-B", HERE / "tools" / "generate.py", "--check"]
+    subprocess.run([*generate, "--library", library], check=True)
+
+
+def test_the_package_is_that_of_this_checkout():
+    for path in (HERE / "src" / "beltrami").glob("*.py*"):
+        assert (PACKAGE / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_the_version_is_the_librarys():
+    assert beltrami.__version__ == importlib.metadata.version("beltrami")
+    assert f"beltrami {beltrami.__version__}," in beltrami.build_info()
+
+
+def test_the_package_needs_little_and_holds_no_gpl_code():
+    assert "links no GPL code" in beltrami.build_info()
+    needs = importlib.metadata.requires("beltrami")
+    assert {re.split(r"[^\w]", need)[0] for need in needs if "extra ==" not in need} == {
+        "cffi",
+        "numpy",
+    }
+
+
+def test_importing_leaves_everything_as_it_was():
+    program = """
+import os, signal, sys, threading
+before = dict(os.environ), signal.getsignal(signal.SIGINT), threading.active_count()
+import numpy
+import beltrami
+assert (dict(os.environ), signal.getsignal(signal.SIGINT), threading.active_count()) == before
+optional = {"matplotlib", "trimesh", "distributed", "dask", "tqdm", "typing_extensions"}
+assert not optional & set(sys.modules), optional & set(sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [[sys.executable, "-m", "beltrami"], [Path(sys.executable).with_name("beltrami")]],
+    ids=["python -m beltrami", "beltrami"],
+)
+def test_the_program_comes_with_the_package(command, tmp_path):
+    done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == beltrami.build_info()
+    done = subprocess.run([*command, "flatten"], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "IN is required" in done.stderr
+
+
+def test_types_are_marked():
+    assert (PACKAGE / "py.typed").exists()

@@ -1,0 +1,34 @@
+"""What a type checker knows about the package, as its users meet it; ./dev lint runs mypy on it.
+
+Where a line is to be refused, strict mypy refuses the comment if it is not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+import beltrami
+
+
+def flatten(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> float:
+    """Use the whole of it."""
+    result = beltrami.parameterize(vertices, faces, energy="symmetric-arap", progress=True)
+    element: int | None = result.certificate.first_bad_face
+    names: list[str] = [stage.name for stage in result.stages]
+    flattener = beltrami.Flattener(method="cm", threads=2)
+    flattener.set_options(refine=True, time_limit=2.5)
+    options: beltrami.Options = flattener.options
+    records = beltrami.batch(["a.obj"], "out", threads=options["threads"])
+    good: bool = records[0].ok and bool(beltrami.check_injective(result.uv, faces))
+    print(element, names, good)
+    return result.energy.symmetric_dirichlet
+
+
+def refused(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> None:
+    """Make mistakes."""
+    beltrami.parameterize(vertices, faces, energy="dirichlet")  # type: ignore[arg-type]
+    beltrami.parameterize(vertices, faces, colour="red")  # type: ignore[call-arg]
+    beltrami.parameterize(vertices, faces, progress=3)  # type: ignore[arg-type]
+    beltrami.Flattener().set_options(thread=2)  # type: ignore[call-arg]
+    beltrami.plot.heat_map(vertices, faces, vertices, measure="angle")  # type: ignore[arg-type]

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""Writes what the package repeats of the C interface, from its header and its table of options.
+
+    generate.py --library LIBRARY [--check]
+
+All of ``_tables.py`` (choices, options, the classes of results), and in the functions that take
+options their parameters, the section "Options" of their docstrings, and the passing on of their
+values. With --check nothing is written: the program fails where something would change. Lines come
+out as the formatter leaves them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import dataclasses
+import re
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from header_version import core
+
+PACKAGE = Path(__file__).resolve().parent.parent / "src" / "beltrami"
+COLUMNS = 100
+
+# The structs of the header that become classes, with what else a class has.
+CLASSES = {
+    "beltrami_certificate": "Certificate",
+    "beltrami_energy": "Energy",
+    "beltrami_result": "Report",
+    "beltrami_stage": "Stage",
+}
+SUMMARIES = {
+    "Certificate": "The exact verdict on a map; true where nothing bad was found.",
+    "Energy": "Distortion energies of a map: means over the faces weighted by area in space.",
+    "Report": "Counts, area and cost of a run.",
+    "Stage": "What one stage of a run took.",
+}
+METHODS = {
+    "Certificate": '''
+    def __bool__(self) -> bool:
+        """Whether no face is flipped or without area, and the boundary nowhere crosses itself."""
+        return self.negative == self.degenerate == self.boundary_crossings == 0
+''',
+}
+# Fields that serve the C interface only; the status is the result's own.
+LEFT_OUT = {"struct_size", "reserved", "status", "error_element", "error_element_kind"}
+# Comments that speak of C.
+COMMENTS = {
+    "1 or 0": "whether the map is proven to be injective",
+    'static: "simplify", "coarse", "prolong", "flatten", "repair", ...': (
+        '"simplify", "coarse", "prolong", "flatten", "repair", ...'
+    ),
+}
+
+
+@dataclasses.dataclass
+class Option:
+    """An option of the library's table."""
+
+    name: str  # as a Python keyword
+    type: str  # "bool", "int", "float", or the name of a Literal
+    default: object
+    range: str  # "" for switches and choices
+    choices: list[str]
+    summary: str
+
+    @property
+    def annotated(self) -> str:
+        """The parameter with its type and default."""
+        default = f'"{self.default}"' if isinstance(self.default, str) else repr(self.default)
+        return f"{self.name}: {self.type} = {default}"
+
+
+class _OptionInfo(ctypes.Structure):
+    """``beltrami_option_info`` of the C header."""
+
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("key", ctypes.c_int32),
+        ("type", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+        ("minimum", ctypes.c_double),
+        ("maximum", ctypes.c_double),
+        ("default_value", ctypes.c_double),
+        ("name", ctypes.c_char_p),
+        ("summary", ctypes.c_char_p),
+    ]
+
+
+INT, FLOAT, CHOICE = range(3)  # BELTRAMI_TYPE_
+
+
+def read_options(library: Path) -> Iterator[Option]:
+    """Yield the options of the shared library, in the order of their keys."""
+    beltrami = ctypes.CDLL(str(library))
+    beltrami.beltrami_option_choice.restype = ctypes.c_char_p
+    key = 0
+    while True:
+        info = _OptionInfo(struct_size=ctypes.sizeof(_OptionInfo))
+        if beltrami.beltrami_option_describe(key, ctypes.byref(info)) != 0:
+            return
+        choices: list[str] = []
+        while choice := beltrami.beltrami_option_choice(key, len(choices)):
+            choices.append(choice.decode())
+        yield _option(info, choices)
+        key += 1
+
+
+def _option(info: Any, choices: list[str]) -> Option:
+    name = info.name.decode().replace("-", "_")
+    summary = info.summary.decode()
+    default: object
+    if choices == ["off", "on"] or (info.type == INT and (info.minimum, info.maximum) == (0, 1)):
+        kind, default, span = "bool", bool(info.default_value), ""
+        summary = re.sub(r"^(1|on) ", "True ", summary).replace("; 0 ", "; False ")
+    elif info.type == CHOICE:
+        kind, default, span = _camel(name) + "Choice", choices[int(info.default_value)], ""
+    else:
+        kind = "float" if info.type == FLOAT else "int"
+        default = info.default_value if info.type == FLOAT else int(info.default_value)
+        span = f"from {info.minimum:,.10g} to {info.maximum:,.10g}"
+    return Option(name, kind, default, span, choices, summary)
+
+
+def _camel(name: str) -> str:
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+@dataclasses.dataclass
+class Field:
+    """A member of a struct of the header."""
+
+    name: str
+    type: str
+    comment: str
+
+
+def read_fields(declaration: str) -> Iterator[Field]:
+    """Yield the members of a struct that users see."""
+    body = declaration[declaration.index("{") + 1 : declaration.rindex("}")]
+    for match in re.finditer(r"([\w ]+?[ *]+)(\w+)(\[2\])?;[ ]*(?:/\*(.*?)\*/)?", body, re.DOTALL):
+        c_type, name, pair, comment = match[1].strip(), match[2], match[3], match[4] or ""
+        comment = " ".join(comment.replace("BELTRAMI_NO_ELEMENT", "None").split())
+        comment = COMMENTS.get(comment, comment)
+        if name not in LEFT_OUT:
+            yield Field(name, _python_type(c_type, name, bool(pair), comment), comment)
+
+
+def _python_type(c_type: str, name: str, pair: bool, comment: str) -> str:
+    if "char" in c_type:
+        return "str"
+    if c_type == "double":
+        return "float"
+    if name == "injective":
+        return "bool"
+    element = "int | None" if "None" in comment else "int"
+    return "tuple[int, int] | None" if pair else element
+
+
+def wrapped(text: str, indent: str) -> str:
+    """Return `text` in lines of at most `COLUMNS`, all indented."""
+    return textwrap.fill(
+        text,
+        COLUMNS,
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_on_hyphens=False,
+        break_long_words=False,
+    )
+
+
+def sentence(text: str) -> str:
+    """Return `text` with a capital and a full stop."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
+def class_of(name: str, fields: list[Field]) -> str:
+    """Return the source of the class for a struct."""
+    entries: list[list[Field]] = []
+    for field in fields:  # a comment is about the uncommented members after it, too
+        if field.comment or not entries:
+            entries.append([])
+        entries[-1].append(field)
+    lines = [
+        "@dataclass(frozen=True)",
+        f"class {name}:",
+        f'    """{SUMMARIES[name]}',
+        "",
+        "    Attributes",
+        "    ----------",
+    ]
+    for entry in entries:
+        lines.append(f"    {', '.join(field.name for field in entry)} : {entry[0].type}")
+        lines.append(wrapped(sentence(entry[0].comment or entry[0].name), " " * 8))
+    lines += ['    """', ""]
+    lines += [f"    {field.name}: {field.type}" for field in fields]
+    return "\n".join(lines) + "\n" + METHODS.get(name, "")
+
+
+def literal(option: Option) -> str:
+    """Return the alias for the choices of an option, as the formatter breaks it."""
+    items = [f'"{choice}"' for choice in option.choices]
+    line = f"{option.type} = Literal[{', '.join(items)}]"
+    return line if len(line) <= COLUMNS else f"{option.type} = Literal[\n    {', '.join(items)}\n]"
+
+
+def tables(options: list[Option], header: Any) -> str:
+    """Return the source of ``_tables.py``."""
+    declarations = {item.name: item.declaration for item in header.items}
+    choices = [literal(option) for option in options if option.type.endswith("Choice")]
+    keywords = [f"    {option.name}: {option.type}" for option in options]
+    classes = [
+        class_of(name, list(read_fields(declarations[struct]))) for struct, name in CLASSES.items()
+    ]
+    return (
+        '"""Options and results, from the C header and the library\'s table of options.\n\n'
+        'Written by ``tools/generate.py``: change it there.\n"""\n\n'
+        "from __future__ import annotations\n\n"
+        "from dataclasses import dataclass\nfrom typing import Literal, TypedDict\n\n"
+        + "\n".join(choices)
+        + "\n\n\nclass Options(TypedDict, total=False):\n"
+        '    """The options of a run by keyword, all of them optional."""\n\n'
+        + "\n".join(keywords)
+        + "\n\n\n"
+        + "\n\n".join(classes)
+    )
+
+
+def documentation(options: list[Option], indent: str) -> str:
+    """Return the entries of the options in the style of NumPy's docstrings."""
+    lines = []
+    for option in options:
+        kind = option.type
+        if option.choices and kind != "bool":
+            kind = "{" + ", ".join(f'"{choice}"' for choice in option.choices) + "}"
+        default = f'"{option.default}"' if isinstance(option.default, str) else option.default
+        lines.append(f"{indent}{option.name} : {kind}, default {default}")
+        text = option.summary + (f" A number {option.range}." if option.range else "")
+        lines.append(wrapped(text, indent + "    "))
+    return "\n".join(lines) + "\n"
+
+
+MARKED = re.compile(r"^( *)# options: (\w+)\n.*?^\1# end of options\n", re.DOTALL | re.MULTILINE)
+SECTION = re.compile(r"^( *)Options\n\1-------\n.*?(?=\n\1[A-Z]\w+\n\1---|\1\"\"\")", re.M | re.S)
+
+
+def with_options(source: str, options: list[Option]) -> str:
+    """Return the source of a module with its places for options filled anew."""
+    inside: dict[str, Callable[[Option], str]] = {
+        "parameters": lambda option: option.annotated,
+        "keywords": lambda option: f"{option.name}={option.name}",
+        "items": lambda option: f'"{option.name}": {option.name}',
+    }
+
+    def fill(match: re.Match[str]) -> str:
+        indent, kind = match[1], match[2]
+        lines = "".join(f"{indent}{inside[kind](option)},\n" for option in options)
+        return f"{indent}# options: {kind}\n{lines}{indent}# end of options\n"
+
+    def describe(match: re.Match[str]) -> str:
+        indent = match[1]
+        return f"{indent}Options\n{indent}-------\n" + documentation(options, indent)
+
+    return SECTION.sub(describe, MARKED.sub(fill, source))
+
+
+def main() -> None:
+    """Run the program."""
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
+    parser.add_argument("--library", type=Path, required=True)
+    parser.add_argument("--check", action="store_true", help="write nothing; fail where it differs")
+    arguments = parser.parse_args()
+    sys.path.insert(0, str(core() / "abi"))
+    import header
+
+    options = list(read_options(arguments.library))
+    wanted = {PACKAGE / "_tables.py": tables(options, header.read())}
+    for path in sorted(PACKAGE.glob("*.py")):
+        if "# options: " in (source := path.read_text(encoding="utf-8")):
+            wanted[path] = with_options(source, options)
+    stale = [
+        path
+        for path, text in wanted.items()
+        if not path.exists() or path.read_text(encoding="utf-8") != text
+    ]
+    if not arguments.check:
+        for path in stale:
+            path.write_text(wanted[path], encoding="utf-8")
+    elif stale:
+        names = ", ".join(path.name for path in stale)
+        sys.exit(f"{names}: not what the C interface says; run ./dev abi")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Builds the wheel as others do: from the sdist alone, in a folder outside the checkout. Then moves
+# the shared libraries that it needs into it.
+#   wheel.sh PYTHON FOLDER
+# PYTHON is that of an environment with requirements/tools.txt. FOLDER gets sdist/ and wheel/, and
+# keeps the compiler's results for the next time.
+set -euo pipefail
+PYTHON=$(realpath --no-symlinks "$1")
+OUT=$(realpath "$2")
+readonly PYTHON OUT
+HERE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+readonly HERE
+outside=$(mktemp -d)
+readonly outside
+trap 'rm -rf "$outside"' EXIT
+
+rm -rf "$OUT/sdist" "$OUT/wheel"
+"$PYTHON" -m build --no-isolation --sdist --outdir "$OUT/sdist" "$HERE"
+tar -xzf "$OUT"/sdist/*.tar.gz -C "$outside" --strip-components=1
+
+cd "$outside"
+# Paths are relative to the folder, so that ccache knows the files again in the next one.
+CCACHE_DIR=$OUT/ccache CCACHE_BASEDIR=$outside CCACHE_NOHASHDIR=1 \
+  "$PYTHON" -m build --no-isolation --wheel --outdir "$outside/raw" \
+  --config-setting=build-dir=build \
+  --config-setting=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache \
+  --config-setting=cmake.define.BELTRAMI_WERROR=ON .
+PATH=$(dirname "$PYTHON"):$PATH "$PYTHON" -m auditwheel repair --wheel-dir "$OUT/wheel" raw/*.whl
