@@ -14,7 +14,7 @@ from typing import Any, NoReturn, TypeVar
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _interrupt
 from ._arrays import Array
 from ._errors import ERRORS, BeltramiError
 from ._native import ffi, lib
@@ -265,19 +265,38 @@ class Context:
     def run(self, hook: Hook) -> str:
         """Flatten the mesh; returns the name of the status. Raises what the hook raises.
 
-        The hook is called in this thread. It is never left out: it is where Python notices Ctrl-C.
+        The hook is called in this thread. It is never left out: where another handler than Python's
+        own waits for Ctrl-C, it is there that it runs.
         """
         outer = _running.hook, _running.raised
-        _running.hook, _running.raised = hook, None
         try:
-            status = lib.beltrami_run(self._context, lib.beltrami_python_progress, ffi.NULL)
-            raised = _running.raised
+            with _interrupt.watched(self.cancel) as interrupt:
+                status, raised = self._run(hook, interrupt)
+            if interrupt.came:
+                # The request may have come too late for this run: the next one is not meant.
+                self._run(lambda _fraction, _stage: True, interrupt)
         finally:
             _running.hook, _running.raised = outer
         if raised is not None:
             raise raised
+        if interrupt.came:
+            raise KeyboardInterrupt
         self._check(status)
         return status_name(status)
+
+    def _run(self, hook: Hook, interrupt: _interrupt.Interrupt) -> tuple[int, BaseException | None]:
+        """Return the status, and what the hook raised."""
+
+        def told(fraction: float, stage: str) -> bool:
+            interrupt.in_callback = True
+            try:
+                return hook(fraction, stage) or interrupt.came
+            finally:
+                interrupt.in_callback = False
+
+        _running.hook, _running.raised = told, None
+        status = lib.beltrami_run(self._context, lib.beltrami_python_progress, ffi.NULL)
+        return status, _running.raised
 
     def cancel(self) -> None:
         """Ask the run under way, or else the next one, to end. From any thread."""
