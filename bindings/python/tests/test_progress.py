@@ -44,6 +44,11 @@ def test_only_false_cancels(hump):
     assert caught.value.status == "BELTRAMI_E_CANCELLED"
 
 
+def test_other_things_than_functions_are_refused(hump):
+    with pytest.raises(TypeError, match="progress is 'yes': give True, False or a function"):
+        beltrami.parameterize(*hump, progress="yes")
+
+
 @pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt, SystemExit])
 def test_what_progress_raises_is_passed_on(hump, error):
     def raise_in_coarse(_fraction, stage):
@@ -107,6 +112,11 @@ def test_a_terminal_shows_one_line_that_goes_away(hump, monkeypatch):
     assert "coarse     [" in screen.text
     assert screen.text.endswith("\r\x1b[2K")
     assert "\n" not in screen.text
+
+
+def test_a_bar_shows_the_name_of_a_path():
+    assert _progress._short("/scans/bust.ply") == "bust.ply"
+    assert _progress._short("coarse") == "coarse"
 
 
 def test_elsewhere_nothing_is_printed(hump, monkeypatch, capfd):
