@@ -115,8 +115,9 @@ impl<'a, T: Scalar, const N: usize> View<'a, T, N> {
         len: usize,
     ) -> Result<Self, Error> {
         let covered = strided_range::<N>(numbers.len(), offset, stride, len)?;
+        let stride = stride_in_bytes::<T>(stride, len);
         // SAFETY: strided_range made sure that the last item ends within the numbers.
-        Ok(unsafe { View::new(numbers[covered].as_ptr(), stride * size_of::<T>(), len) })
+        Ok(unsafe { View::new(numbers[covered].as_ptr(), stride, len) })
     }
 
     /// The field of every item that `field` points to: positions in an array of vertices with
@@ -201,8 +202,9 @@ impl<'a, T: Scalar, const N: usize> ViewMut<'a, T, N> {
         len: usize,
     ) -> Result<Self, Error> {
         let covered = strided_range::<N>(numbers.len(), offset, stride, len)?;
+        let stride = stride_in_bytes::<T>(stride, len);
         // SAFETY: strided_range made sure that the last item ends within the numbers.
-        Ok(unsafe { ViewMut::new(numbers[covered].as_mut_ptr(), stride * size_of::<T>(), len) })
+        Ok(unsafe { ViewMut::new(numbers[covered].as_mut_ptr(), stride, len) })
     }
 
     /// As [`View::from_field`].
@@ -351,6 +353,16 @@ fn strided_range<const N: usize>(
                  {numbers} numbers"
             ))
         })
+}
+
+/// The bytes from one of `len` items to the next; 0, which the library takes for packed, where there
+/// is no next one, and `stride` may be any number.
+fn stride_in_bytes<T>(stride: usize, len: usize) -> usize {
+    if len > 1 {
+        stride * size_of::<T>() // two items lie in memory, so the number of bytes is one
+    } else {
+        0
+    }
 }
 
 /// Where in an `S` its field `F` lies, if it is the same place in every item of a slice at `base`
