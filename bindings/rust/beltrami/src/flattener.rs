@@ -169,6 +169,7 @@ impl Flattener {
         drop(watch);
         self.maybe_late_request = control.token.is_cancelled();
         if let Some(payload) = trampoline.panic.take() {
+            drop(trampoline); // not while a panic is on its way, or another one would abort
             resume_unwind(payload);
         }
         self.check(status)?;
