@@ -2,8 +2,11 @@
 
 use beltrami::{ErrorKind, View, ViewMut};
 
+/// All items, as both ways to them have them.
 fn items<const N: usize>(view: &View<'_, f32, N>) -> Vec<[f32; N]> {
-    (0..view.len()).map(|index| view.get(index).unwrap()).collect()
+    let items: Vec<_> = view.iter().collect();
+    assert!(items.iter().copied().map(Some).eq((0..view.len()).map(|index| view.get(index))));
+    items
 }
 
 #[test]
