@@ -25,6 +25,9 @@ constexpr int kHoldRounds = 4;          // after which a few faces hold back the
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
+/// Nor do those that promised more than so many times what is little: nearly singular faces, which
+/// are held back, are in their way.
+constexpr double kMisjudged = 10;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -243,8 +246,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     // What nearly singular faces do to the gradient says nothing about other steps.
     if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
     gradient.swap(next_gradient);
-    result.converged = length >= kFullStep &&
-                       before - after <= options.tolerance * comparable_energy<Density>(before);
+    const double little = options.tolerance * comparable_energy<Density>(before);
+    result.converged =
+        length >= kFullStep && before - after <= little && result.predicted <= kMisjudged * little;
     if (result.converged) break;
   }
   return result;

@@ -1,5 +1,6 @@
 // From the coarse map to the fine one: prolongation and the ways to flatten.
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -26,12 +27,10 @@ constexpr double kRoughly = 1e-5;          // residual of a map that is polished
 constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
 constexpr int kRotations = 2;              // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
-constexpr double kPolishTolerance = 2e-4;  // relative decrease: leaves the energy 0.1% too high
+constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kPolishIterations = 30;
-constexpr int kFewSteps = 3;          // fewer in a round: blocked at once
-constexpr int kHopelessRounds = 2;    // of these, before Newton steps
-constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is worth these, or
-constexpr double kMuchGained = 2e-3;  // that of the last round
+constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
+constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -297,22 +296,22 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
     };
     PolishResult polished = run(1, false);
     if (polished.blocked) clean(polished.blocking);
-    int hopeless_rounds = 0;
+    double before_last_round = std::numeric_limits<double>::infinity();
     while (!polished.converged && statistics.iterations < kPolishIterations) {
-      if (hopeless_rounds == kHopelessRounds) {
-        const double energy = polished.energies.back();
-        if (polished.predicted > kMuchLeft * energy ||
-            polished.energies.front() - energy > kMuchGained * energy) {
-          statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
-        }
-        break;
-      }
       laplacian.refit(*disk_, energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs,
                                                options_.threads));
       polished = run(kPolishIterations - statistics.iterations, true);
       if (!polished.blocked) break;
       clean(polished.blocking);
-      if (polished.iterations() < kFewSteps) ++hopeless_rounds;
+      // Cleaning counts too: what a round gains includes what it did after the one before.
+      const double energy = polished.energies.back();
+      const double gained = before_last_round - energy;
+      before_last_round = polished.energies.front();
+      if (gained > kLittleGain * energy) continue;
+      if (polished.predicted > kMuchLeft * energy) {
+        statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
+      }
+      break;
     }
     clean({});
   });
