@@ -39,6 +39,10 @@ function(beltrami_add_static_library target)
     target_link_libraries(${target} INTERFACE
       $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)
   endif()
+  if(BELTRAMI_SIMPLIFIER STREQUAL "openmesh")
+    target_link_libraries(${target} INTERFACE $<BUILD_INTERFACE:OpenMeshTools>
+      $<INSTALL_INTERFACE:beltrami::OpenMeshTools> $<INSTALL_INTERFACE:beltrami::OpenMeshCore>)
+  endif()
   # For programs in C, whose linker does not think of them.
   if(UNIX)
     target_link_libraries(${target} INTERFACE

@@ -1,4 +1,5 @@
 // The coarse disk: a subset of the fine vertices, the boundary in its order, and what must stay.
+// Every simplifier that this build has keeps the same contract.
 #include "simplify/simplify.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "support/simplifiers.h"
 
 namespace beltrami {
 namespace {
@@ -191,7 +194,18 @@ std::vector<Index> identity(Index count) {
   return all;
 }
 
-TEST(Simplify, FlatGridReachesTheTargetWithEvenTriangles) {
+class Simplify : public testing::TestWithParam<Simplifier> {
+ protected:
+  static CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads = 1,
+                             const Checkpoint& checkpoint = no_checkpoint) {
+    return GetParam().simplify(fine, target_faces, threads, checkpoint);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(BackEnds, Simplify, testing::ValuesIn(simplifiers()),
+                         testing::PrintToStringParamName());
+
+TEST_P(Simplify, FlatGridReachesTheTargetWithEvenTriangles) {
   const DiskMesh fine = grid(60, 60);
   const CoarseDisk coarse = simplify(fine, 500);
   expect_sound(fine, coarse);
@@ -201,7 +215,7 @@ TEST(Simplify, FlatGridReachesTheTargetWithEvenTriangles) {
   EXPECT_GT(smallest_angle(coarse.mesh), 5);
 }
 
-TEST(Simplify, SphericalCapStaysCloseToTheSphere) {
+TEST_P(Simplify, SphericalCapStaysCloseToTheSphere) {
   const DiskMesh fine = spherical_cap(60, 64, 1.5);
   const CoarseDisk coarse = simplify(fine, 700);
   expect_sound(fine, coarse);
@@ -214,7 +228,7 @@ TEST(Simplify, SphericalCapStaysCloseToTheSphere) {
   EXPECT_GT(surface_area(coarse.mesh), 0.98 * surface_area(fine));
 }
 
-TEST(Simplify, LongStripKeepsItsEndsAndReachesTheTarget) {
+TEST_P(Simplify, LongStripKeepsItsEndsAndReachesTheTarget) {
   const DiskMesh fine =
       grid(400, 4, [](double x, double y) { return Vec3(x, y, 5 * std::sin(0.05 * x)); });
   const CoarseDisk coarse = simplify(fine, 300);
@@ -222,7 +236,7 @@ TEST(Simplify, LongStripKeepsItsEndsAndReachesTheTarget) {
   EXPECT_LE(coarse.mesh.face_count(), 300);
 }
 
-TEST(Simplify, DumbbellKeepsItsCorridor) {
+TEST_P(Simplify, DumbbellKeepsItsCorridor) {
   const DiskMesh fine = dumbbell();
   const CoarseDisk coarse = simplify(fine, 150);
   expect_sound(fine, coarse);
@@ -230,7 +244,7 @@ TEST(Simplify, DumbbellKeepsItsCorridor) {
   EXPECT_EQ(coarse_bridges(coarse), fine_bridges(fine));
 }
 
-TEST(Simplify, KeepsAVertexBetweenSuccessiveBridgeEnds) {
+TEST_P(Simplify, KeepsAVertexBetweenSuccessiveBridgeEnds) {
   // The two bridges across the only cell of the neck are all there is; the squares on both sides
   // would otherwise be free to lose every other boundary vertex of theirs.
   const DiskMesh fine = grid(21, 10, flat, [](int x, int y) { return x != 10 || y == 5; });
@@ -251,7 +265,7 @@ TEST(Simplify, KeepsAVertexBetweenSuccessiveBridgeEnds) {
   }
 }
 
-TEST(Simplify, StopsAboveTheTargetWhereEveryVertexIsFixed) {
+TEST_P(Simplify, StopsAboveTheTargetWhereEveryVertexIsFixed) {
   // One cell wide: every vertex ends a bridge.
   const DiskMesh fine = grid(30, 1);
   const CoarseDisk coarse = simplify(fine, 10);
@@ -259,28 +273,28 @@ TEST(Simplify, StopsAboveTheTargetWhereEveryVertexIsFixed) {
   EXPECT_EQ(coarse.fine_vertex, identity(fine.vertex_count()));
 }
 
-TEST(Simplify, ShrinksAMeshWhoseVerticesAllTouchTheBoundary) {
+TEST_P(Simplify, ShrinksAMeshWhoseVerticesAllTouchTheBoundary) {
   const DiskMesh fine = grid(200, 2, wavy);
   const CoarseDisk coarse = simplify(fine, 200);
   expect_sound(fine, coarse);
   EXPECT_LT(coarse.mesh.face_count(), 400);
 }
 
-TEST(Simplify, ShrinksALargeFan) {
+TEST_P(Simplify, ShrinksALargeFan) {
   const DiskMesh fine = fan(2000);
   const CoarseDisk coarse = simplify(fine, 20);
   expect_sound(fine, coarse);
   EXPECT_LE(coarse.mesh.face_count(), 20);
 }
 
-TEST(Simplify, KeepsEightBoundaryVerticesWhateverTheTarget) {
+TEST_P(Simplify, KeepsEightBoundaryVerticesWhateverTheTarget) {
   const DiskMesh fine = spherical_cap(10, 20, 1.0);
   const CoarseDisk coarse = simplify(fine, 1);
   expect_sound(fine, coarse);
   EXPECT_EQ(size_of(coarse.mesh.boundary), 8);
 }
 
-TEST(Simplify, KeepsABoundaryOfThreeVertices) {
+TEST_P(Simplify, KeepsABoundaryOfThreeVertices) {
   // A cap whose rim has 3 vertices only: almost a closed surface.
   const DiskMesh fine = spherical_cap(30, 3, 3.0);
   const CoarseDisk coarse = simplify(fine, 60);
@@ -288,7 +302,7 @@ TEST(Simplify, KeepsABoundaryOfThreeVertices) {
   EXPECT_EQ(size_of(coarse.mesh.boundary), 3);
 }
 
-TEST(Simplify, ScalesByPowersOfTwoToTheSameResult) {
+TEST_P(Simplify, ScalesByPowersOfTwoToTheSameResult) {
   const DiskMesh fine = grid(50, 40, wavy);
   const CoarseDisk expected = simplify(fine, 400);
   for (const double scale : {std::ldexp(1.0, 20), std::ldexp(1.0, -20)}) {
@@ -300,7 +314,7 @@ TEST(Simplify, ScalesByPowersOfTwoToTheSameResult) {
   }
 }
 
-TEST(Simplify, WorksAtExtremeScalesAndFarFromTheOrigin) {
+TEST_P(Simplify, WorksAtExtremeScalesAndFarFromTheOrigin) {
   const DiskMesh fine = grid(50, 40, wavy);
   for (const double scale : {1e6, 1e-6}) {
     DiskMesh moved = fine;
@@ -312,14 +326,14 @@ TEST(Simplify, WorksAtExtremeScalesAndFarFromTheOrigin) {
   }
 }
 
-TEST(Simplify, IsDeterministic) {
+TEST_P(Simplify, IsDeterministic) {
   const DiskMesh fine = grid(40, 40, wavy);
   const CoarseDisk first = simplify(fine, 300), second = simplify(fine, 300);
   EXPECT_EQ(first.fine_vertex, second.fine_vertex);
   EXPECT_EQ(first.mesh.faces, second.mesh.faces);
 }
 
-TEST(Simplify, SurvivesZeroAreaFacesAndDuplicatePositions) {
+TEST_P(Simplify, SurvivesZeroAreaFacesAndDuplicatePositions) {
   // Every third column of the grid coincides with the one before it, and one row is a point.
   const DiskMesh fine = grid(45, 45, [](double x, double y) {
     const double snapped = 3 * std::floor(x / 3) + std::min(std::fmod(x, 3), 1.0);
@@ -330,7 +344,7 @@ TEST(Simplify, SurvivesZeroAreaFacesAndDuplicatePositions) {
   EXPECT_LE(coarse.mesh.face_count(), 400);
 }
 
-TEST(Simplify, SurvivesAMeshWithoutAnyArea) {
+TEST_P(Simplify, SurvivesAMeshWithoutAnyArea) {
   for (const Lift& lift : {Lift([](double, double) { return Vec3(1, 2, 3); }),
                            Lift([](double x, double y) { return Vec3(x + 0.01 * y, 0, 0); })}) {
     const DiskMesh fine = grid(20, 20, lift);
@@ -340,7 +354,7 @@ TEST(Simplify, SurvivesAMeshWithoutAnyArea) {
   }
 }
 
-TEST(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
+TEST_P(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
   // A flower whose outermost ring lies on the one inside it.
   const DiskMesh cap = spherical_cap(30, 120, 0.3);
   std::vector<Vec3> positions = cap.positions;
@@ -357,7 +371,7 @@ TEST(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
   EXPECT_GE(size_of(coarse.mesh.boundary), 30);
 }
 
-TEST(Simplify, PutsDegenerateVerticesOnTheirDuplicatesFirst) {
+TEST_P(Simplify, PutsDegenerateVerticesOnTheirDuplicatesFirst) {
   // All vertices lie on every fifth grid point: collapsing elsewhere would fold the plane.
   const DiskMesh fine = grid(100, 100, [](double x, double y) {
     return Vec3(5 * std::floor(x / 5), 5 * std::floor(y / 5), 0);
@@ -367,14 +381,14 @@ TEST(Simplify, PutsDegenerateVerticesOnTheirDuplicatesFirst) {
   EXPECT_NEAR(surface_area(coarse.mesh), surface_area(fine), 1e-9);
 }
 
-TEST(Simplify, ReducesAMeshOfSlivers) {
+TEST_P(Simplify, ReducesAMeshOfSlivers) {
   const DiskMesh fine = grid(40, 40, [](double x, double y) { return Vec3(200 * x, y, 0); });
   const CoarseDisk coarse = simplify(fine, 300);
   expect_sound(fine, coarse);
   EXPECT_LE(coarse.mesh.face_count(), 300);
 }
 
-TEST(Simplify, ReturnsTheMeshItselfAtOrAboveItsFaceCount) {
+TEST_P(Simplify, ReturnsTheMeshItselfAtOrAboveItsFaceCount) {
   const DiskMesh fine = grid(5, 5, wavy);
   for (const Index target : {fine.face_count(), fine.face_count() + 1, 1000000}) {
     const CoarseDisk coarse = simplify(fine, target);
@@ -385,7 +399,7 @@ TEST(Simplify, ReturnsTheMeshItselfAtOrAboveItsFaceCount) {
   }
 }
 
-TEST(Simplify, LeavesTinyMeshesAlone) {
+TEST_P(Simplify, LeavesTinyMeshesAlone) {
   const DiskMesh triangle = build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   EXPECT_EQ(simplify(triangle, 1).mesh.faces, triangle.faces);
   EXPECT_EQ(simplify(triangle, 0).mesh.faces, triangle.faces);
@@ -395,9 +409,10 @@ TEST(Simplify, LeavesTinyMeshesAlone) {
   EXPECT_EQ(simplify(hexagon, 1).mesh.faces, hexagon.faces);
 }
 
-TEST(Simplify, HasTheSameBitsOnTwoThreadsInBlocks) {
+TEST(SimplifyInPasses, HasTheSameBitsOnTwoThreadsInBlocks) {
   const DiskMesh fine = grid(220, 220, wavy);  // three blocks of vertices
-  const CoarseDisk one = simplify(fine, 3000, 1), two = simplify(fine, 3000, 2);
+  const CoarseDisk one = simplify_in_passes(fine, 3000, 1, no_checkpoint);
+  const CoarseDisk two = simplify_in_passes(fine, 3000, 2, no_checkpoint);
   EXPECT_EQ(one.mesh.faces, two.mesh.faces);
   EXPECT_EQ(one.fine_vertex, two.fine_vertex);
   EXPECT_EQ(one.nearby, two.nearby);
@@ -406,7 +421,7 @@ TEST(Simplify, HasTheSameBitsOnTwoThreadsInBlocks) {
   expect_boundary_in_order(fine, one);
 }
 
-TEST(Simplify, SaysWhereEveryVertexWent) {
+TEST_P(Simplify, SaysWhereEveryVertexWent) {
   const DiskMesh fine = grid(60, 60, wavy);
   const CoarseDisk coarse = simplify(fine, 500);
   ASSERT_EQ(size_of(coarse.nearby), fine.vertex_count());
@@ -422,7 +437,7 @@ TEST(Simplify, SaysWhereEveryVertexWent) {
   EXPECT_LT(mean, 2 * coarse_edge);
 }
 
-TEST(Simplify, ReportsGrowingFractionsFromZeroToOne) {
+TEST_P(Simplify, ReportsGrowingFractionsFromZeroToOne) {
   std::vector<double> fractions;
   simplify(grid(60, 60, wavy), 300, 1, [&](double fraction) { fractions.push_back(fraction); });
   ASSERT_GE(fractions.size(), 5u);
@@ -431,7 +446,7 @@ TEST(Simplify, ReportsGrowingFractionsFromZeroToOne) {
   EXPECT_LE(fractions.back(), 1);
 }
 
-TEST(Simplify, IsCancelledByAThrowingCheckpoint) {
+TEST_P(Simplify, IsCancelledByAThrowingCheckpoint) {
   struct Cancelled : std::runtime_error {
     using std::runtime_error::runtime_error;
   };

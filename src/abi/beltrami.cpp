@@ -12,6 +12,7 @@
 #include "abi/reports.h"
 #include "abi/status.h"
 #include "scaffold/triangulate_ring.h"
+#include "simplify/simplify.h"
 #include "sparse/spd_solver.h"
 
 #define BELTRAMI_TEXT_(x) #x
@@ -20,15 +21,17 @@
   BELTRAMI_TEXT(BELTRAMI_VERSION_MAJOR) \
   "." BELTRAMI_TEXT(BELTRAMI_VERSION_MINOR) "." BELTRAMI_TEXT(BELTRAMI_VERSION_PATCH)
 
-#define BELTRAMI_BUILD_TEXT                                              \
-  "beltrami " BELTRAMI_VERSION_TEXT                                      \
-  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER \
-                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD
+#define BELTRAMI_BUILD_TEXT                                                  \
+  "beltrami " BELTRAMI_VERSION_TEXT                                          \
+  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER     \
+                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD \
+                                       ", simplifier " BELTRAMI_BUILD_SIMPLIFIER
 
 namespace beltrami {
 namespace {
 
-constexpr std::string_view kSolver = "solver:", kScaffold = "scaffold:";
+constexpr std::string_view kSolver = "solver:", kScaffold = "scaffold:",
+                           kSimplifier = "simplifier:";
 
 /// Whether what this build links is under the GPL: CHOLMOD's Supernodal module is, and CGAL's
 /// package of triangulations.
@@ -140,7 +143,8 @@ int32_t beltrami_has(const char* feature) {
     return name.starts_with(prefix) && name.substr(prefix.size()) == value;
   };
   return is(beltrami::kSolver, beltrami::spd_solver_name()) ||
-         is(beltrami::kScaffold, beltrami::ring_triangulation_name());
+         is(beltrami::kScaffold, beltrami::ring_triangulation_name()) ||
+         is(beltrami::kSimplifier, beltrami::simplifier_name());
 }
 
 const char* beltrami_status_name(beltrami_status status) {

@@ -4,18 +4,15 @@
 // the rest of the pass: no other vertex has its quadric, its place or its list of faces changed,
 // hence the costs of the candidates left stay exact, and the checks look at the faces as they are
 // by then. (Locking the whole ring needs half as many passes again and came out no better.)
-#include "simplify/simplify.h"
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "simplify/back_ends.h"
+#include "simplify/shape.h"
 #include "simplify/surface.h"
 
 namespace beltrami {
@@ -38,24 +35,6 @@ constexpr int kMaxAttempts = 3;
 /// after them. Its borders do not depend on the number of threads, so the result does not either;
 /// and they move from pass to pass, since vertices are renumbered.
 constexpr Index kBlock = 16384;
-
-/// What a collapse may do to the shape of the faces around it.
-struct ShapeLimits {
-  double min_turn_cosine;    ///< between the normals of a face before and after
-  double min_quality;        ///< a face at least this good (1 is equilateral) is always accepted
-  double min_quality_ratio;  ///< below that: the worst new face over the worst old one
-  double min_progress;  ///< collapses per candidate in a pass, below which the next limits follow
-};
-
-/// From strict to lax. The quality is relative, since an absolute bound stalls on meshes that are
-/// made of slivers; a stricter one than the first stalls on good meshes, and what follows then
-/// ruins them. Passes that trickle cost a full sweep for a handful of vertices.
-constexpr ShapeLimits kShapeLimits[] = {
-    {0.5, 0.35, 0.9, 0.01},
-    {0.5, 0.2, 0.7, 0.01},
-    {0.2, 0.1, 0.4, 0.01},
-    {-0.5, 0.02, 0.1, 0.0005},
-};
 
 struct Candidate {
   double cost;
@@ -153,49 +132,6 @@ bool keeps_topology(ShrinkingSurface& surface, Index v, Index target) {
   Index common = 0;
   surface.for_each_neighbour(target, [&](Index u) { common += surface.mark[u] == v; });
   return common == edge.count;
-}
-
-/// Area over the sum of squared edge lengths, scaled to 1 for an equilateral triangle.
-double shape_quality(double twice_area, double squared_lengths) {
-  return squared_lengths > 0 ? 3.4641016151377544 * twice_area / squared_lengths : 0;
-}
-
-bool keeps_shape(const ShrinkingSurface& surface, Index v, Index target,
-                 const ShapeLimits& limits) {
-  const Vec3& from = surface.position(v);
-  const Vec3& to = surface.position(target);
-  Vec3 fan_normal = Vec3::Zero();
-  double worst_before = 1;
-  surface.for_each_corner(v, [&](Index, int, Index a, Index b) {
-    const Vec3 u = surface.position(a) - from, w = surface.position(b) - from;
-    const Vec3 normal = u.cross(w);
-    fan_normal += normal;
-    const double lengths = u.squaredNorm() + w.squaredNorm() + (w - u).squaredNorm();
-    worst_before = std::min(worst_before, shape_quality(normal.norm(), lengths));
-  });
-  const double worst_allowed =
-      std::min(limits.min_quality, limits.min_quality_ratio * worst_before);
-
-  bool kept = true;
-  surface.for_each_corner(v, [&](Index, int, Index a, Index b) {
-    if (!kept || a == target || b == target) return;
-    const Vec3& pa = surface.position(a);
-    const Vec3& pb = surface.position(b);
-    const Vec3 u = pa - to, w = pb - to;
-    const Vec3 after = u.cross(w);
-    const double twice_area = after.norm();
-    const double lengths = u.squaredNorm() + w.squaredNorm() + (w - u).squaredNorm();
-    Vec3 before = (pa - from).cross(pb - from);
-    double before_norm = before.norm();
-    // A degenerate face has no normal of its own to keep.
-    if (!(before_norm > 0)) {
-      before = fan_normal;
-      before_norm = before.norm();
-    }
-    kept = shape_quality(twice_area, lengths) >= worst_allowed &&
-           before.dot(after) >= limits.min_turn_cosine * before_norm * twice_area;
-  });
-  return kept;
 }
 
 // --- Collapses ----------------------------------------------------------------------------------
@@ -366,49 +302,15 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, int threads,
   compact(surface);
 }
 
-/// From the next vertex on the way to the coarse vertex at its end.
-std::vector<Index> follow_collapses(std::vector<Index> into,
-                                    const std::vector<Index>& fine_vertex) {
-  for (Index v = 0; v < size_of(into); ++v) {
-    Index end = v;
-    while (into[end] != end) end = into[end];
-    for (Index on_the_way = v; on_the_way != end;)
-      on_the_way = std::exchange(into[on_the_way], end);
-  }
-  std::vector<Index> coarse_vertex(into.size(), kNone);
-  for (Index c = 0; c < size_of(fine_vertex); ++c) coarse_vertex[fine_vertex[c]] = c;
-  for (Index& v : into) v = coarse_vertex[v];
-  return into;
-}
-
 }  // namespace
 
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads,
-                    const Checkpoint& checkpoint) {
-  ShrinkingSurface surface;
-  CoarseDisk coarse;
-  if (target_faces >= fine.face_count()) {
-    coarse.mesh = fine;
-    coarse.fine_vertex.resize(fine.vertex_count());
-    for (Index v = 0; v < fine.vertex_count(); ++v) coarse.fine_vertex[v] = v;
-    coarse.nearby = coarse.fine_vertex;
-    return coarse;
-  }
-  surface = make_surface(fine);
+CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, int threads,
+                              const Checkpoint& checkpoint) {
+  if (target_faces >= fine.face_count()) return whole_disk(fine);
+  ShrinkingSurface surface = make_surface(fine);
   run_passes(surface, target_faces, threads, checkpoint);
-  coarse.fine_vertex = std::move(surface.fine_vertex);
-  coarse.nearby = follow_collapses(std::move(surface.collapsed_into), coarse.fine_vertex);
-  std::vector<Vec3> positions;
-  positions.reserve(surface.site.size());
-  for (const auto& site : surface.site) positions.push_back(site.position);
-  try {
-    coarse.mesh = build_disk(std::move(positions), std::move(surface.faces));
-  } catch (const Error& error) {
-    throw Error(
-        BELTRAMI_E_INTERNAL,
-        std::string("the simplified surface is not a disk, please report it: ") + error.what());
-  }
-  return coarse;
+  return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
+                     std::move(surface.collapsed_into));
 }
 
 }  // namespace beltrami

@@ -16,12 +16,16 @@ struct CoarseDisk {
   std::vector<Index> nearby;  ///< per fine vertex: the coarse vertex that it was collapsed into
 };
 
-/// Collapses half-edges in passes until at most `target_faces` faces are left or no collapse is
+/// Collapses half-edges until at most `target_faces` faces are left or no collapse is
 /// allowed; with `target_faces` >= the face count it returns the mesh itself. The result is a disk
 /// (proved by build_disk). Kept whatever the target: at least 8 boundary vertices (or all), the
 /// tips of ears, both ends of every bridge and one boundary vertex between successive bridge ends,
 /// since what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
 CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads = 1,
                     const Checkpoint& checkpoint = no_checkpoint);
+
+/// "native" or "openmesh": the back end is chosen when the library is built
+/// (-DBELTRAMI_SIMPLIFIER=native|openmesh).
+const char* simplifier_name();
 
 }  // namespace beltrami

@@ -37,8 +37,8 @@ Index middle_of_loop(const DiskMesh& mesh, Index begin, Index end) {
   return mesh.boundary[middle % count];
 }
 
-/// Marks the boundary vertices that stay: ear tips, bridge ends, and one vertex between bridge ends
-/// that follow each other on the loop, else the patch behind the bridge could lose all its width.
+/// Fixes ear tips, bridge ends, and one vertex between bridge ends that follow each other on the
+/// loop, else the patch behind the bridge could lose all its width.
 void fix_boundary(const DiskMesh& mesh, std::vector<Role>& role) {
   std::vector<bool> bridge_end(mesh.vertex_count(), false);
   for (Index h = 0; h < size_of(mesh.twin); ++h) {
@@ -85,8 +85,20 @@ void add_boundary_quadric(const Vec3& edge, const Vec3& face_normal, Quadric& fr
   }
 }
 
-/// The planes of the faces, weighted by area, and those of the boundary edges.
-void add_quadrics(const DiskMesh& mesh, ShrinkingSurface& surface) {
+}  // namespace
+
+std::vector<Role> vertex_roles(const DiskMesh& mesh) {
+  std::vector<Role> roles(mesh.vertex_count(), Role::kInterior);
+  fix_boundary(mesh, roles);
+  return roles;
+}
+
+Index least_boundary(const DiskMesh& mesh) {
+  return std::min(size_of(mesh.boundary), kMinBoundary);
+}
+
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes) {
+  std::vector<Quadric> quadrics(mesh.vertex_count());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triangle& face = mesh.faces[f];
     const Vec3& p = mesh.positions[face[0]];
@@ -94,31 +106,30 @@ void add_quadrics(const DiskMesh& mesh, ShrinkingSurface& surface) {
     const double twice_area = normal.norm();
     if (twice_area > 0) {
       normal /= twice_area;
-      for (const Index v : face) surface.quadric[v].add_plane(normal, 0.5 * twice_area);
+      if (planes == FacePlanes::kIncluded) {
+        for (const Index v : face) quadrics[v].add_plane(normal, 0.5 * twice_area);
+      }
     } else {
       normal.setZero();
       // No plane: its vertices go first, but to near places before far ones.
       const double weight = longest_edge_sq(mesh, face) * kDegenerateWidth;
-      for (const Index v : face) surface.quadric[v].add_point(weight);
+      for (const Index v : face) quadrics[v].add_point(weight);
     }
     for (int k = 0; k < 3; ++k) {
       if (mesh.twin[3 * f + k] != kNone) continue;
       const Index from = face[k], to = face[next_corner(k)];
-      add_boundary_quadric(mesh.positions[to] - mesh.positions[from], normal, surface.quadric[from],
-                           surface.quadric[to]);
+      add_boundary_quadric(mesh.positions[to] - mesh.positions[from], normal, quadrics[from],
+                           quadrics[to]);
     }
   }
+  return quadrics;
 }
-
-}  // namespace
 
 ShrinkingSurface make_surface(const DiskMesh& mesh) {
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
   surface.site.reserve(vertex_count);
   for (const Vec3& p : mesh.positions) surface.site.push_back({p, 0});
-  surface.quadric.resize(vertex_count);
-  surface.role.assign(vertex_count, Role::kInterior);
   surface.loop_next.assign(vertex_count, kNone);
   surface.loop_previous.assign(vertex_count, kNone);
   surface.fine_vertex.resize(vertex_count);
@@ -127,16 +138,16 @@ ShrinkingSurface make_surface(const DiskMesh& mesh) {
   surface.faces = mesh.faces;
   surface.live_faces = mesh.face_count();
   surface.boundary_count = size_of(mesh.boundary);
-  surface.min_boundary = std::min(surface.boundary_count, kMinBoundary);
+  surface.min_boundary = least_boundary(mesh);
   for (Index i = 0; i < size_of(mesh.boundary); ++i) {
     const Index v = mesh.boundary[i];
     const Index next = mesh.boundary[i + 1 == size_of(mesh.boundary) ? 0 : i + 1];
     surface.loop_next[v] = next;
     surface.loop_previous[next] = v;
   }
-  fix_boundary(mesh, surface.role);
+  surface.role = vertex_roles(mesh);
   poll_interrupt();
-  add_quadrics(mesh, surface);
+  surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded);
   return surface;
 }
 

@@ -64,6 +64,20 @@ struct ShrinkingSurface {
   }
 };
 
+/// What every vertex is at the start. Fixed: the tips of ears, the ends of bridges, and one
+/// boundary vertex between ends that follow each other on the loop.
+std::vector<ShrinkingSurface::Role> vertex_roles(const DiskMesh& mesh);
+
+/// How many vertices the boundary keeps: 8, or all it has.
+Index least_boundary(const DiskMesh& mesh);
+
+/// Whether vertex_quadrics has the planes of the faces.
+enum class FacePlanes { kIncluded, kLeftOut };
+
+/// The quadric of each vertex at the start: the planes of its faces, weighted by area, and what
+/// holds the boundary and faces without area in place.
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes);
+
 /// The surface at the start: no pass begun yet.
 ShrinkingSurface make_surface(const DiskMesh& mesh);
 

@@ -26,6 +26,7 @@ TEST(Library, HasOneSolver) {
                 beltrami_has("solver:cholmod") + beltrami_has("solver:cholmod-simplicial"),
             1);
   EXPECT_EQ(beltrami_has("scaffold:own") + beltrami_has("scaffold:cgal"), 1);
+  EXPECT_EQ(beltrami_has("simplifier:native") + beltrami_has("simplifier:openmesh"), 1);
   EXPECT_EQ(beltrami_has("gpl"), beltrami_has("solver:cholmod") || beltrami_has("scaffold:cgal"));
   EXPECT_EQ(beltrami_has("solver:"), 0);
   EXPECT_EQ(beltrami_has(""), 0);

@@ -86,6 +86,7 @@ case $STEP in
     cmake -S "$HERE/superproject" -B build -G Ninja -DCMAKE_C_COMPILER="$CC" \
       -DBELTRAMI_SOURCE="$SOURCE" -DBUILD_SHARED_LIBS=$shared -DCMAKE_BUILD_TYPE=Release \
       -DBELTRAMI_SOLVER="$(sed -n 's/^BELTRAMI_SOLVER:STRING=//p' "$BUILD/CMakeCache.txt")" \
+      -DBELTRAMI_SIMPLIFIER="$(sed -n 's/^BELTRAMI_SIMPLIFIER:STRING=//p' "$BUILD/CMakeCache.txt")" \
       -DCMAKE_CXX_COMPILER_LAUNCHER="$HERE/reuse_object.sh" --log-level=WARNING >/dev/null
     BELTRAMI_BUILT=$BUILD cmake --build build --target consumer >/dev/null
     ./build/consumer

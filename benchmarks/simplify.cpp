@@ -1,0 +1,108 @@
+// Our simplifier beside OpenMesh's decimater, on meshes refined to some sizes: CPU seconds on one
+// thread, the best of some rounds, and the root mean square distance from the fine vertices to the
+// coarse surface, in units of the square root of the area.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "beltrami/closest_point.h"
+#include "mesh_file.h"
+#include "refine.h"
+#include "simplify/back_ends.h"
+#include "yardstick.h"
+
+namespace beltrami::benchmarks {
+namespace {
+
+DiskMesh disk_of(const cli::MeshFile& file) {
+  std::vector<Vec3> positions;
+  for (std::size_t i = 0; i < file.positions.size(); i += 3) {
+    positions.emplace_back(file.positions[i], file.positions[i + 1], file.positions[i + 2]);
+  }
+  std::vector<Triangle> faces;
+  for (std::size_t i = 0; i < file.faces.size(); i += 3) {
+    Triangle& face = faces.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) face[k] = static_cast<Index>(file.faces[i + k]);
+  }
+  const ReferencedVertices used = drop_unreferenced(size_of(positions), faces);
+  std::vector<Vec3> kept;
+  for (const Index v : used.original) kept.push_back(positions[v]);
+  DiskMesh mesh = build_disk(std::move(kept), std::move(faces));
+  normalise(mesh.positions, mesh.faces);
+  return mesh;
+}
+
+double distance(const DiskMesh& fine, const DiskMesh& coarse) {
+  const ClosestPoint closest(coarse.positions, coarse.faces);
+  double sum = 0;
+  for (const Vec3& p : fine.positions) sum += closest.find(p, Vec3::Zero(), kNone).distance_sq;
+  return std::sqrt(sum / fine.vertex_count() / surface_area(fine));
+}
+
+struct Outcome {
+  double cpu = std::numeric_limits<double>::infinity();
+  CoarseDisk coarse;
+};
+
+Outcome run(const std::function<CoarseDisk()>& simplify, int rounds) {
+  Outcome best;
+  for (int round = 0; round < rounds; ++round) {
+    const double begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    best.coarse = simplify();
+    best.cpu = std::min(best.cpu, seconds(CLOCK_PROCESS_CPUTIME_ID) - begin);
+  }
+  return best;
+}
+
+void benchmark(const std::string& path, std::uint64_t faces, Index target, int rounds) {
+  auto file = cli::read_mesh(path, cli::Content::kSurface);
+  if (faces > file.face_count()) file = refine(file, faces);
+  const DiskMesh fine = disk_of(file);
+  const Outcome ours =
+      run([&] { return simplify_in_passes(fine, target, 1, no_checkpoint); }, rounds);
+  const Outcome openmesh =
+      run([&] { return simplify_by_openmesh(fine, target, no_checkpoint); }, rounds);
+  const double near = distance(fine, ours.coarse.mesh);
+  const double openmesh_near = distance(fine, openmesh.coarse.mesh);
+  std::printf("%-24s %8d %6d %8.3f %9.3f %7.1f %9.2e %9.2e %6.2f\n",
+              std::filesystem::path(path).stem().string().c_str(), fine.face_count(),
+              ours.coarse.mesh.face_count(), ours.cpu, openmesh.cpu, openmesh.cpu / ours.cpu, near,
+              openmesh_near, near / openmesh_near);
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace beltrami::benchmarks
+
+int main(int argc, char** argv) {
+  CLI::App app("Simplifies MESH..., refined to some sizes, with our simplifier and OpenMesh's.");
+  std::vector<std::string> meshes = {BELTRAMI_EXAMPLE_MESH};
+  std::vector<std::uint64_t> faces = {100000, 300000};
+  beltrami::Index target = 10000;
+  int rounds = 3;
+  app.add_option("MESH", meshes, "Disks; the bust of examples/data by default");
+  app.add_option("--faces", faces, "Refine smaller meshes to about so many faces");
+  app.add_option("--target", target, "Simplify to so many faces");
+  app.add_option("--rounds", rounds, "The best of so many counts");
+  CLI11_PARSE(app, argc, argv);
+  std::printf("%-24s %8s %6s %8s %9s %7s %9s %9s %6s\n", "mesh", "faces", "left", "ours s",
+              "OpenMesh", "ratio", "distance", "OpenMesh", "ratio");
+  try {
+    for (const std::string& mesh : meshes) {
+      for (const std::uint64_t count : faces) {
+        beltrami::benchmarks::benchmark(mesh, count, target, rounds);
+      }
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "beltrami_bench_simplify: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
