@@ -8,8 +8,8 @@
 namespace beltrami {
 namespace {
 
-constexpr int kBits = 16;  // per axis
-constexpr int kDigit = 16;
+constexpr int kBits = 11;  // per axis: vertices that share a cell stay in the order of the input
+constexpr int kDigit = 11;
 
 using Cell = std::array<std::uint32_t, 3>;
 

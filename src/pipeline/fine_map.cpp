@@ -19,7 +19,7 @@
 namespace beltrami {
 namespace {
 
-constexpr int kNewtonSteps = 5;
+constexpr int kNewtonSteps = 10;
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease, of the steps after a blocked polish
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
@@ -307,11 +307,10 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
       const double energy = polished.energies.back();
       const double gained = before_last_round - energy;
       before_last_round = polished.energies.front();
-      if (gained > kLittleGain * energy) continue;
-      if (polished.predicted > kMuchLeft * energy) {
-        statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
-      }
-      break;
+      if (gained <= kLittleGain * energy) break;
+    }
+    if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back()) {
+      statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
     }
     clean({});
   });
