@@ -78,6 +78,10 @@ class Flattener:
     delaunay : bool, default False
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
+    memory_limit : int, default 0
+        Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
+        left out if they would exceed it, and a run that would do so without them ends before it
+        starts; 0 sets no limit. A number from 0 to 1e+14.
 
     Raises
     ------
@@ -103,6 +107,7 @@ class Flattener:
         time_limit: float = 0.0,
         float32: bool = False,
         delaunay: bool = False,
+        memory_limit: int = 0,
         # end of options
     ) -> None:
         self._context = Context()
@@ -128,6 +133,7 @@ class Flattener:
             time_limit=time_limit,
             float32=float32,
             delaunay=delaunay,
+            memory_limit=memory_limit,
             # end of options
         )
 
@@ -184,6 +190,26 @@ class Flattener:
             self._context.set_mesh(points, triangles)
             self._mesh, self._faces = mesh, triangles
             self._vertices_dtype, self._vertex_count = points.dtype, len(points)
+
+    def estimate_memory(self) -> int:
+        """Estimate the memory of the next `run`, with the mesh and the options that are set.
+
+        Returns
+        -------
+        int
+            Bytes that the library will hold at its peak, its copy of the mesh included, arrays of
+            Python not. Most runs of the default mode take a quarter of it, since they do without
+            the Newton steps that end a blocked polish; where the option `memory_limit` is too low
+            for these, it counts none. A run that is estimated to need more than that limit raises
+            `OutOfMemoryError` before it starts.
+
+        Raises
+        ------
+        InvalidStateError
+            Without a mesh.
+        """
+        with self._alone():
+            return self._context.estimate_memory()
 
     def run(self, progress: Progress = None) -> Parameterization:
         """Flatten the mesh that was set.
@@ -302,6 +328,7 @@ def parameterize(
     time_limit: float = 0.0,
     float32: bool = False,
     delaunay: bool = False,
+    memory_limit: int = 0,
     # end of options
     progress: Progress = None,
 ) -> Parameterization:
@@ -373,6 +400,10 @@ def parameterize(
     delaunay : bool, default False
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
+    memory_limit : int, default 0
+        Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
+        left out if they would exceed it, and a run that would do so without them ends before it
+        starts; 0 sets no limit. A number from 0 to 1e+14.
 
     Returns
     -------
@@ -411,6 +442,7 @@ def parameterize(
         time_limit=time_limit,
         float32=float32,
         delaunay=delaunay,
+        memory_limit=memory_limit,
         # end of options
     )
     return flattener._parameterize(vertices, faces, progress, callers=2)

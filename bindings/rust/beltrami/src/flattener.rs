@@ -140,6 +140,22 @@ impl Flattener {
         Ok(())
     }
 
+    /// Bytes that the library will hold at the peak of the next [`run`](Self::run), with the mesh
+    /// and the options that are set: its copy of the mesh and the last results included, arrays of
+    /// the caller not. Most runs of the default mode take a quarter of this estimate, since they do
+    /// without the Newton steps that end a blocked polish; where [`Options::memory_limit`] is too
+    /// low for these, it counts none. A run that exceeds that limit by it fails before it starts.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidState`](ErrorKind::InvalidState) without a mesh.
+    pub fn estimate_memory(&self) -> Result<u64, Error> {
+        let mut bytes = 0;
+        // SAFETY: the context is alive, and `bytes` is valid for a write.
+        self.check(unsafe { sys::beltrami_estimate_memory(self.context.as_ptr(), &mut bytes) })?;
+        Ok(bytes)
+    }
+
     /// Flattens the mesh that was set. On failure the results of the last run stay.
     ///
     /// # Errors
