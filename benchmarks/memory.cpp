@@ -13,7 +13,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -165,10 +164,10 @@ bool report(const std::string& name, const cli::MeshFile& mesh, const std::strin
     return true;
   }
   const bool enough = m.bytes <= m.estimate;
-  std::printf("%-24.24s %9llu %8.1f %8.1f %6.2f%s %6.0f  %s:%s\n", name.c_str(),
+  std::printf("%-24.24s %9llu %8.1f %8.1f %6.2f%s %6.0f %8.4f  %s:%s\n", name.c_str(),
               static_cast<unsigned long long>(mesh.face_count()), m.bytes / kMebibyte,
               m.estimate / kMebibyte, m.estimate / m.bytes, enough ? " " : "!",
-              m.bytes / static_cast<double>(mesh.vertex_count()), mode.c_str(), m.stages);
+              m.bytes / static_cast<double>(mesh.vertex_count()), m.energy, mode.c_str(), m.stages);
   std::fflush(stdout);
   return enough;
 }
@@ -190,8 +189,8 @@ int main(int argc, char** argv) {
   bool enough = true;
   try {
     using namespace beltrami;
-    std::printf("%s\n%-24s %9s %8s %8s %6s  %6s  %s\n", beltrami_build_info(), "mesh", "faces",
-                "MiB", "estimate", "ratio", "B/vert", "mode: MiB at the peak of each stage");
+    std::printf("%s\n%-24s %9s %8s %8s %6s  %6s %8s  %s\n", beltrami_build_info(), "mesh", "faces",
+                "MiB", "estimate", "ratio", "B/vert", "E", "mode: MiB at the peak of each stage");
     for (const std::string& path : meshes) {
       const cli::MeshFile base = cli::read_mesh(path, cli::Content::kSurface);
       const std::string name = std::filesystem::path(path).stem().string();
