@@ -50,6 +50,17 @@ memory() {
     --skip a_map_that_is_not_injective
 }
 
+# The views, where the pointers of the safe layer are made. Miri cannot call C.
+views_by_miri() {
+  if ! cargo +nightly miri --version >/dev/null 2>&1; then
+    say "no nightly toolchain with Miri here: the views go without it"
+    return
+  fi
+  say "views, by Miri"
+  DOCS_RS=1 cargo +nightly miri test --locked --quiet -p beltrami --target-dir "$TARGET/miri" \
+    --test views
+}
+
 examples() {
   say "examples"
   local folder=$TARGET/debug/examples
@@ -86,13 +97,17 @@ package() {
   fi
 }
 
-# consumer NAME CARGO_ARGS...: builds the consumer, in a folder of that name, and compares its UVs
-# with those of the program, bit by bit. The environment says what it links.
-consumer() {
-  local target=$TARGET/consumer-$1
+# build_consumer NAME CARGO_ARGS...: builds the consumer in a folder of that name. The environment
+# says what it links.
+build_consumer() {
   cargo build --offline --quiet --manifest-path "$PLACE/consumer/Cargo.toml" \
-    --target-dir "$target" "${@:2}"
-  "$target/debug/consumer" "$MESH" "$PLACE/reference.obj"
+    --target-dir "$TARGET/consumer-$1" "${@:2}"
+}
+
+# consumer NAME CARGO_ARGS...: builds it, and compares its UVs with those of the program, bit by bit.
+consumer() {
+  build_consumer "$@"
+  "$TARGET/consumer-$1/debug/consumer" "$MESH" "$PLACE/reference.obj"
 }
 
 links_the_shared_library() {
@@ -140,6 +155,22 @@ consumers() {
   grep -q 'Choose one of' "$PLACE/nowhere.log"
 }
 
+# The features with another solver, whose UVs have other bits. The stages that all solvers share are
+# taken from the build: that the package compiles is seen with the feature vendored.
+solvers() {
+  local feature
+  mkdir -p "$PLACE/built/CMakeFiles"
+  ln -s "$BUILD/src/CMakeFiles/beltrami_stages.dir" "$PLACE/built/CMakeFiles"
+  for feature in cholmod supernodal; do
+    say "a program with the packages: $feature"
+    BELTRAMI_BUILT=$PLACE/built CMAKE_CXX_COMPILER_LAUNCHER=$ROOT/tests/install/reuse_object.sh \
+      build_consumer "$feature" --features "$feature"
+    "$TARGET/consumer-$feature/debug/consumer" "$MESH" | tee "$PLACE/$feature.txt"
+  done
+  grep -q 'solver cholmod-simplicial,.*no GPL code' "$PLACE/cholmod.txt"
+  grep -q 'solver cholmod,.*links GPL code' "$PLACE/supernodal.txt"
+}
+
 if [[ ${2:-} == --write ]]; then
   BELTRAMI_WRITE=1 generated_sources
   exit
@@ -150,8 +181,10 @@ cargo fetch --locked --quiet # from here on nothing needs the network
 unit_tests
 generated_sources
 memory
+views_by_miri
 examples
 documentation
 package
 consumers
+solvers
 say "all tests passed"

@@ -1,4 +1,5 @@
-// What the processor can do. Asking takes microseconds and leaves nothing behind: not
+// What the processor can do. Asking takes microseconds, on a virtual machine many and leaves
+// nothing behind: not
 // __builtin_cpu_supports, which keeps its answer in variables of the library.
 #pragma once
 

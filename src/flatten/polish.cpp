@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -143,36 +144,37 @@ class History {
   int threads_;
 };
 
+/// Moves the face's vertices along more rigidly, so that it does not become singular where it now
+/// does. Vertices that do not move, because they are held, still do not.
+void move_rigidly(const Triangle& face, const SingularStep& singular, Field& direction,
+                  std::vector<std::uint8_t>& changed) {
+  const Vec2 mean = (direction[face[0]] + direction[face[1]] + direction[face[2]]) / 3;
+  for (const Index v : face) {
+    if (direction[v] == Vec2::Zero()) continue;
+    direction[v] = mean + kSingularShare * singular.length * (direction[v] - mean);
+    changed[v] = 1;
+  }
+}
+
 /// Lets the faces that a full step would bring too near to being singular move along more rigidly,
-/// and then those of their neighbours that get there by it. Vertices that do not move, because they
-/// are held, still do not. Returns how far the whole map may go along what is left, and the faces
-/// found at first. Without `rigidly` the direction stays as it is.
+/// and then those of their neighbours that get there by it. Returns how far the whole map may go
+/// along what is left, and the faces found at first. Without `rigidly` the direction stays as it
+/// is.
 double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads, bool rigidly,
                  Field& direction, std::vector<Index>& blocking) {
+  constexpr double kLimit = 1 / kSingularShare;
+  std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, threads);
   blocking.clear();
-  for (int round = 0;; ++round) {
-    std::vector<SingularStep> singular =
-        singular_steps(faces, uvs, direction, 1 / kSingularShare, threads);
-    if (singular.empty()) return 1;
-    if (round == 0) {
-      for (const SingularStep& s : singular) blocking.push_back(s.face);
-    }
-    if (!rigidly || round == kHoldRounds) {
-      const auto first = std::min_element(
-          singular.begin(), singular.end(),
-          [](const SingularStep& a, const SingularStep& b) { return a.length < b.length; });
-      return kSingularShare * first->length;
-    }
-    for (const SingularStep& s : singular) {
-      const Triangle& t = faces[s.face];
-      const Vec2 mean = (direction[t[0]] + direction[t[1]] + direction[t[2]]) / 3;
-      for (const Index v : t) {
-        if (direction[v] != Vec2::Zero()) {
-          direction[v] = mean + kSingularShare * s.length * (direction[v] - mean);
-        }
-      }
-    }
+  for (const SingularStep& s : singular) blocking.push_back(s.face);
+  std::vector<std::uint8_t> changed;
+  for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
+    changed.resize(uvs.size());
+    for (const SingularStep& s : singular) move_rigidly(faces[s.face], s, direction, changed);
+    singular = singular_steps(faces, uvs, direction, kLimit, threads, &changed);
   }
+  double length = 1;
+  for (const SingularStep& s : singular) length = std::min(length, kSingularShare * s.length);
+  return length;
 }
 
 /// The buffers of a descent.

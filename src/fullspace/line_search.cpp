@@ -55,11 +55,13 @@ double first_singular_step(const std::vector<Triangle>& faces, const std::vector
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         int threads) {
+                                         int threads, const std::vector<std::uint8_t>* among) {
   std::vector<std::vector<SingularStep>> found(faces.size() / kGrain + 1);
   parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
-      const auto [c0, c1, c2] = area_along(faces[f], uvs, direction);
+      const Triangle& t = faces[f];
+      if (among && !((*among)[t[0]] | (*among)[t[1]] | (*among)[t[2]])) continue;
+      const auto [c0, c1, c2] = area_along(t, uvs, direction);
       // Most faces are far from it, and need no root.
       if (c0 > limit * (std::max(0.0, -c1) + limit * std::max(0.0, -c2))) continue;
       const double root = smallest_positive_root(c0, c1, c2);

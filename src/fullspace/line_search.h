@@ -1,6 +1,7 @@
 // How far a map can go along a direction before a face becomes singular.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/types.h"
@@ -19,11 +20,12 @@ struct SingularStep {
   double length;
 };
 
-/// The faces that become singular before `limit`, and where, in the order of the faces. The same
-/// precondition.
+/// The faces that become singular before `limit`, and where, in the order of the faces: of all, or
+/// of those with a vertex `among` these (not 0). The same precondition.
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         int threads);
+                                         int threads,
+                                         const std::vector<std::uint8_t>* among = nullptr);
 
 }  // namespace beltrami

@@ -60,7 +60,6 @@ class NewtonStepper {
     double total = 0;
     for (Index f = 0; f < counted; ++f) total += weights_[f];
     for (double& w : weights_) w /= total;
-    if (free_count() > 0) solver_->analyze(hessian_.matrix());
   }
 
   Index free_count() const { return hessian_.free_count(); }
@@ -107,6 +106,7 @@ class NewtonStepper {
   Density density_;
   MeshMatrix hessian_;
   std::unique_ptr<SpdSolver> solver_;
+  bool analyzed_ = false;
   Eigen::VectorXd gradient_;
   std::function<bool(const std::vector<Vec2>&)> accept_;
 };
@@ -150,6 +150,8 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   assemble(
       faces_, rest_, uvs, model, [&](Index f) { return weights_[f]; }, threads_, hessian_,
       gradient_);
+  if (!analyzed_) solver_->analyze(hessian_.matrix(), hessian_.places(uvs));
+  analyzed_ = true;
   factorize();
   const Eigen::VectorXd flat = solver_->solve(-gradient_);
   NewtonStep result;

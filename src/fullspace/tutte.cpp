@@ -32,7 +32,7 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
     }
   }
   const auto solver = make_spd_solver();
-  solver->analyze(laplacian.matrix());
+  solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver->factorize(laplacian.matrix())) {
     throw Error(BELTRAMI_E_SOLVER, "the linear system of the Tutte embedding is not definite");
   }

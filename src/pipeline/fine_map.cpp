@@ -19,7 +19,7 @@
 namespace beltrami {
 namespace {
 
-constexpr int kNewtonSteps = 10;
+constexpr int kNewtonSteps = 5;
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease, of the steps after a blocked polish
 constexpr std::int64_t kLeastCoarseFaces = 10000;
 constexpr double kCoarseShare = 0.01;
@@ -27,11 +27,12 @@ constexpr double kRoughly = 1e-5;          // residual of a map that is polished
 constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
 constexpr int kRotations = 2;              // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
-constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
+constexpr double kPolishTolerance = 2e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kPolishIterations = 30;
 constexpr int kFewSteps = 3;          // fewer in a round: blocked at once
 constexpr int kHopelessRounds = 2;    // of these, before Newton steps
-constexpr double kMuchLeft = 3e-3;    // predicted relative decrease that is worth these
+constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is worth these, or
+constexpr double kMuchGained = 2e-3;  // that of the last round
 constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
 constexpr double kReachGrowth = 3;
 
@@ -269,10 +270,10 @@ int Run::take_newton_steps(const FineProblem& fine, const std::vector<bool>& hel
   return done.iterations();
 }
 
-/// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, the
-/// others with one that is fitted to the map by then. Where nearly singular faces block the steps,
-/// patches around these are optimised and the factor is fitted anew; where that does not help
-/// either, and much is left to gain, Newton steps end it.
+/// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, if
+/// that one gets through; the others with one that is fitted to the map by then. Where nearly
+/// singular faces block the steps, patches around these are optimised and the factor is fitted
+/// anew; where that does not help either, and much is left to gain, Newton steps end it.
 void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
@@ -301,15 +302,14 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
           clean_outliers(options_.energy, *disk_, fine.rest, uvs, options_.threads, also);
     };
     PolishResult polished = run(1, false);
-    if (polished.blocked) {
-      clean(polished.blocking);
-      polished = run(1, true);
-    }
+    if (polished.blocked) clean(polished.blocking);
     int hopeless_rounds = 0;
     while (!polished.converged && statistics.iterations < kPolishIterations) {
       if (hopeless_rounds == kHopelessRounds) {
-        const double left = polished.predicted / polished.energies.back();
-        if (left > kMuchLeft && affords(*disk_, options_, Extra::kNewtonSteps)) {
+        const double energy = polished.energies.back();
+        const bool pays = polished.predicted > kMuchLeft * energy ||
+                          polished.energies.front() - energy > kMuchGained * energy;
+        if (pays && affords(*disk_, options_, Extra::kNewtonSteps)) {
           statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
         }
         break;

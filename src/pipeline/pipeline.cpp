@@ -18,6 +18,9 @@
 namespace beltrami {
 namespace {
 
+/// Times the tolerance, for the coarse mesh: steps are cheap there, and how a map spreads its
+/// distortion over the whole is what polishing the fine one hardly changes.
+constexpr double kCoarseTolerance = 0.1;
 constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one asked for
 /// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
 constexpr std::array<Index, 2> kFallbacks = {1000, 100};
@@ -139,13 +142,14 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     if (!non_positive_faces(mesh.faces, uvs, options_.threads).empty()) return;
     const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
     for (Vec2& w : uvs) w *= scale;
-    NewtonResult done = descend(mesh, rest, newton_options(mesh), uvs, statistics, checkpoint);
+    NewtonOptions newton = newton_options(mesh);
+    if (&mesh != &input_) newton.tolerance *= kCoarseTolerance;
+    NewtonResult done = descend(mesh, rest, newton, uvs, statistics, checkpoint);
     if (done.energies.back() > kHopelessEnergy) {
       std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
       if (!other.empty()) {
         StageStatistics second{name};
-        const NewtonResult again =
-            descend(mesh, rest, newton_options(mesh), other, second, checkpoint);
+        const NewtonResult again = descend(mesh, rest, newton, other, second, checkpoint);
         statistics.iterations += second.iterations;
         if (again.energies.back() < done.energies.back()) {
           uvs.swap(other);

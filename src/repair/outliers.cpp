@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <unordered_set>
+#include <utility>
 
 #include "base/parallel.h"
 #include "exact/certificate.h"
@@ -23,47 +26,130 @@ constexpr int kNewtonSteps = 10;
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
 
-/// Energy of each face; infinite where it is not positive.
-std::vector<double> face_energies(Energy energy, const DiskMesh& mesh,
-                                  const std::vector<RestTriangle>& rest,
-                                  const std::vector<Vec2>& uvs, int threads) {
-  std::vector<double> energies(mesh.faces.size());
-  with_density(energy, [&](auto density) {
-    parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t f = begin; f < end; ++f) {
-        const Triangle& t = mesh.faces[f];
-        const SingularValues s =
-            singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-        energies[f] =
-            s.s2 > 0 ? density.value(s.s1, s.s2) : std::numeric_limits<double>::infinity();
-      }
-    });
-  });
-  return energies;
-}
+/// Energies of single faces of a map, and the one above which a face is an outlier.
+template <class Density>
+class FaceEnergies {
+ public:
+  FaceEnergies(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+               const std::vector<Vec2>& uvs)
+      : mesh_(mesh), rest_(rest), uvs_(uvs) {}
 
-/// Outliers, worst first.
-std::vector<Index> find_outliers(const std::vector<double>& energies,
-                                 const std::vector<RestTriangle>& rest) {
-  double sum = 0, area = 0;
-  for (std::size_t f = 0; f < energies.size(); ++f) {
-    if (!std::isfinite(energies[f])) continue;
-    sum += rest[f].area() * energies[f];
-    area += rest[f].area();
+  /// Infinite where the face is not positive.
+  double of(std::int64_t face) const {
+    const Triangle& t = mesh_.faces[face];
+    const LinearMap map = linear_map(rest_[face], uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]);
+    const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
+    return positive ? Density::slopes(map).value : std::numeric_limits<double>::infinity();
   }
-  const double limit = std::max(kLeastEnergy, kTimesMean * sum / area);
-  std::vector<Index> outliers;
-  for (std::size_t f = 0; f < energies.size(); ++f) {
-    if (energies[f] > limit && std::isfinite(energies[f])) {
-      outliers.push_back(static_cast<Index>(f));
+
+  /// Sets the limit by the mean over all positive faces. Returns the faces above it.
+  std::vector<Index> find_all(int threads) {
+    std::vector<double> energies(mesh_.faces.size());
+    std::vector<double> sums(energies.size() / kGrain + 1, 0), areas(sums);
+    parallel_for(threads, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      double sum = 0, area = 0;
+      for (std::int64_t f = begin; f < end; ++f) {
+        energies[f] = of(f);
+        if (!std::isfinite(energies[f])) continue;
+        sum += rest_[f].area() * energies[f];
+        area += rest_[f].area();
+      }
+      sums[begin / kGrain] = sum;
+      areas[begin / kGrain] = area;
+    });
+    const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) /
+                        std::accumulate(areas.begin(), areas.end(), 0.0);
+    limit_ = std::max(kLeastEnergy, kTimesMean * mean);
+    std::vector<Index> found;
+    for (std::size_t f = 0; f < energies.size(); ++f) {
+      if (is_outlier(energies[f])) found.push_back(static_cast<Index>(f));
     }
+    return found;
   }
-  std::sort(outliers.begin(), outliers.end(), [&](Index f, Index g) {
-    return energies[f] > energies[g] || (energies[f] == energies[g] && f < g);
-  });
-  const auto most = static_cast<std::size_t>(100 + kMostFaces * static_cast<double>(rest.size()));
-  if (outliers.size() > most) outliers.resize(most);
-  return outliers;
+
+  /// Leaves the outliers among the faces, each once, worst first, and no more than are worth it.
+  void keep_outliers(std::vector<Index>& faces) const {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    std::vector<std::pair<double, Index>> ranked;
+    for (const Index f : faces) {
+      const double energy = of(f);
+      if (is_outlier(energy)) ranked.emplace_back(-energy, f);
+    }
+    std::sort(ranked.begin(), ranked.end());
+    const auto most =
+        static_cast<std::size_t>(100 + kMostFaces * static_cast<double>(rest_.size()));
+    if (ranked.size() > most) ranked.resize(most);
+    faces.clear();
+    for (const auto& [rank, f] : ranked) faces.push_back(f);
+  }
+
+ private:
+  bool is_outlier(double energy) const { return energy > limit_ && std::isfinite(energy); }
+
+  const DiskMesh& mesh_;
+  const std::vector<RestTriangle>& rest_;
+  const std::vector<Vec2>& uvs_;
+  double limit_ = 0;
+};
+
+/// Puts optimised patches back, unless the boundary would cross itself more often.
+class PatchWork {
+ public:
+  PatchWork(const DiskMesh& mesh, std::vector<Vec2>& uvs) : mesh_(mesh), uvs_(uvs) {}
+
+  bool take(Patch& patch) {
+    if (patch.moves_boundary && crossings_ < 0) crossings_ = count();
+    patch.exchange(uvs_);
+    if (!patch.moves_boundary) return true;
+    const std::int64_t now = count();
+    if (now > crossings_) {
+      patch.exchange(uvs_);
+      return false;
+    }
+    crossings_ = now;
+    return true;
+  }
+
+ private:
+  std::int64_t count() const { return count_crossings(mesh_.boundary, uvs_).count; }
+
+  const DiskMesh& mesh_;
+  std::vector<Vec2>& uvs_;
+  std::int64_t crossings_ = -1;  // not counted yet
+};
+
+template <class Density>
+std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                   std::vector<Vec2>& uvs, int threads, const std::vector<Index>& also,
+                   const Checkpoint& checkpoint) {
+  FaceEnergies<Density> energies(mesh, rest, uvs);
+  PatchWork work(mesh, uvs);
+  std::int64_t patches = 0;
+  std::vector<Index> outliers = energies.find_all(threads);
+  energies.keep_outliers(outliers);
+  outliers.insert(outliers.end(), also.begin(), also.end());
+  std::unordered_set<Index> treated;
+  for (int round = 0; round < kRounds && !outliers.empty(); ++round) {
+    treated.clear();
+    std::size_t done = 0;
+    for (const Index face : outliers) {
+      checkpoint((round + static_cast<double>(done++) / outliers.size()) / kRounds);
+      if (treated.contains(face)) continue;
+      Patch patch = cut_patch(mesh, rest, uvs, face, kRings);
+      NewtonOptions options;
+      options.energy = energy;
+      options.max_iterations = kNewtonSteps;
+      minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options);
+      if (!non_positive_faces(patch.faces, patch.uvs, 1).empty() || !work.take(patch)) continue;
+      ++patches;
+      treated.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
+    }
+    // No other face has changed.
+    outliers.insert(outliers.end(), treated.begin(), treated.end());
+    energies.keep_outliers(outliers);
+  }
+  return patches;
 }
 
 }  // namespace
@@ -72,39 +158,9 @@ std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                             int threads, const std::vector<Index>& also,
                             const Checkpoint& checkpoint) {
-  std::int64_t crossings = -1, patches = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    auto outliers = find_outliers(face_energies(energy, mesh, rest, uvs, threads), rest);
-    if (round == 0) outliers.insert(outliers.end(), also.begin(), also.end());
-    std::vector<bool> treated(mesh.faces.size(), false);
-    std::size_t done = 0;
-    for (const Index face : outliers) {
-      checkpoint((round + static_cast<double>(done++) / outliers.size()) / kRounds);
-      if (treated[face]) continue;
-      Patch patch = cut_patch(mesh, rest, uvs, face, kRings);
-      NewtonOptions options;
-      options.energy = energy;
-      options.max_iterations = kNewtonSteps;
-      minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options);
-      if (!non_positive_faces(patch.faces, patch.uvs, 1).empty()) continue;
-      if (patch.moves_boundary && crossings < 0) {
-        crossings = count_crossings(mesh.boundary, uvs).count;
-      }
-      patch.exchange(uvs);
-      if (patch.moves_boundary) {
-        const std::int64_t now = count_crossings(mesh.boundary, uvs).count;
-        if (now > crossings) {
-          patch.exchange(uvs);
-          continue;
-        }
-        crossings = now;
-      }
-      ++patches;
-      for (const Index f : patch.mesh_faces) treated[f] = true;
-    }
-    if (outliers.empty()) break;
-  }
-  return patches;
+  return with_density(energy, [&]<class Density>(Density) {
+    return clean<Density>(energy, mesh, rest, uvs, threads, also, checkpoint);
+  });
 }
 
 }  // namespace beltrami

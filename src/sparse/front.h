@@ -23,7 +23,8 @@ inline std::int64_t buffer_size(int height, int width) {
 
 /// The vectors that the kernels use.
 enum class Vectors { kBaseline, kAvx2 };
-/// The widest of this machine. Asking the processor takes microseconds: ask once for a sweep.
+/// The widest of this machine. Asking takes as long as a small factorization, and on a virtual
+/// machine longer: ask once for a solver.
 Vectors widest_vectors();
 
 /// Calls body(begin, end) over [0, count) in chunks, maybe side by side.

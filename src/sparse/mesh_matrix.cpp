@@ -62,15 +62,6 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
   set_zero();
 }
 
-std::vector<Place> MeshMatrix::places(const std::vector<Vec3>& positions) const {
-  std::vector<Place> places(free_count_);
-  for (Index v = 0; v < size_of(row_); ++v) {
-    if (row_[v] == kNone) continue;
-    for (int k = 0; k < 3; ++k) places[row_[v]][k] = static_cast<float>(positions[v][k]);
-  }
-  return places;
-}
-
 void MeshMatrix::set_zero() {
   std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0);
 }

@@ -20,8 +20,10 @@ class MeshMatrix {
   Index row(Index vertex) const { return row_[vertex]; }
   Index free_count() const { return free_count_; }
   const std::vector<Index>& rows() const { return row_; }
-  /// The places of the free vertices in the order of their rows, for SpdSolver::analyze.
-  std::vector<Place> places(const std::vector<Vec3>& positions) const;
+  /// The places of the free vertices in the order of their rows, for SpdSolver::analyze, on a
+  /// surface or in the plane.
+  template <class Point>
+  std::vector<Place> places(const std::vector<Point>& points) const;
 
   void set_zero();
   /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be
@@ -41,6 +43,17 @@ class MeshMatrix {
       slot_;  // per face and edge k: rank of its block below the diagonal
   SparseMatrix matrix_;
 };
+
+template <class Point>
+std::vector<Place> MeshMatrix::places(const std::vector<Point>& points) const {
+  std::vector<Place> places(free_count_, Place{});
+  for (std::size_t v = 0; v < row_.size(); ++v) {
+    if (row_[v] == kNone) continue;
+    for (int k = 0; k < points[v].size(); ++k)
+      places[row_[v]][k] = static_cast<float>(points[v][k]);
+  }
+  return places;
+}
 
 template <class Block>
 void MeshMatrix::add(Index face, const Triangle& corners, int i, int j, const Block& block) {

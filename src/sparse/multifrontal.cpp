@@ -84,9 +84,10 @@ StackPlan plan_stacks(const Symbolic& symbolic) {
 template <class T>
 class Numeric {
  public:
-  Numeric(const Symbolic& symbolic, const PermutedPattern& pattern, const T* values, T* factor,
-          int threads)
-      : symbolic_(symbolic),
+  Numeric(front::Vectors vectors, const Symbolic& symbolic, const PermutedPattern& pattern,
+          const T* values, T* factor, int threads)
+      : vectors_(vectors),
+        symbolic_(symbolic),
         pattern_(pattern),
         values_(values),
         factor_(factor),
@@ -255,7 +256,7 @@ class Numeric {
     }
   }
 
-  const front::Vectors vectors_ = front::widest_vectors();
+  const front::Vectors vectors_;
   const Symbolic& symbolic_;
   const PermutedPattern& pattern_;
   const T* values_;
@@ -270,8 +271,10 @@ class Numeric {
 template <class T>
 class TreeSolve {
  public:
-  TreeSolve(const Symbolic& symbolic, const T* factor, T* x, int columns, int threads)
-      : symbolic_(symbolic),
+  TreeSolve(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x, int columns,
+            int threads)
+      : vectors_(vectors),
+        symbolic_(symbolic),
         factor_(factor),
         x_(x),
         columns_(columns),
@@ -412,7 +415,7 @@ class TreeSolve {
     }
   }
 
-  const front::Vectors vectors_ = front::widest_vectors();
+  const front::Vectors vectors_;
   const Symbolic& symbolic_;
   const T* factor_;
   T* const x_;
@@ -589,12 +592,12 @@ bool Factor<T>::factorize(const Symbolic& symbolic, const PermutedPattern& patte
     values_ = allocate_large<T>(size);
     capacity_ = size;
   }
-  return Numeric<T>(symbolic, pattern, values, values_.get(), threads).run(poll);
+  return Numeric<T>(vectors_, symbolic, pattern, values, values_.get(), threads).run(poll);
 }
 
 template <class T>
 void Factor<T>::solve(const Symbolic& symbolic, T* x, int columns, int threads) const {
-  TreeSolve<T>(symbolic, values_.get(), x, columns, threads).run();
+  TreeSolve<T>(vectors_, symbolic, values_.get(), x, columns, threads).run();
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "sparse/front.h"
 #include "sparse/large_array.h"
 #include "sparse/symbolic.h"
 
@@ -28,6 +29,8 @@ PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbo
 template <class T>
 class Factor {
  public:
+  explicit Factor(front::Vectors vectors) : vectors_(vectors) {}
+
   /// `values`: per entry of the pattern. False if a pivot is not positive. The memory of the last
   /// factor is used again.
   [[nodiscard]] bool factorize(const Symbolic& symbolic, const PermutedPattern& pattern,
@@ -48,6 +51,7 @@ class Factor {
   }
 
  private:
+  front::Vectors vectors_;
   LargeArray<T> values_;
   std::int64_t capacity_ = 0;
 };

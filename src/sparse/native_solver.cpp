@@ -318,13 +318,14 @@ class NativeSolver final : public SpdSolver {
 
   const SolverOptions options_;
   const int least_single_;
+  const front::Vectors vectors_ = front::widest_vectors();
   Symbolic symbolic_;
   PermutedPattern pattern_;
   // The matrix in the order of L, scaled; with factors in single precision only, which need it.
   std::vector<double> values_, scaling_, unscaling_;
   // One of them is empty. A single one that turns out to be useless is replaced while solving.
-  mutable Factor<float> single_;
-  mutable Factor<double> double_;
+  mutable Factor<float> single_{vectors_};
+  mutable Factor<double> double_{vectors_};
 };
 
 }  // namespace

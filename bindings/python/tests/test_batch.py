@@ -111,6 +111,65 @@ def test_names_that_collide_are_refused_before_any_work(tmp_path):
     assert (tmp_path / "out" / "a" / "mesh.ply").read_bytes().startswith(b"ply")
 
 
+def test_a_result_may_not_replace_a_mesh(meshes, tmp_path):
+    before = [path.read_bytes() for path in meshes]
+    (tmp_path / "link").symlink_to(meshes[0].parent)
+    for folder in (meshes[0].parent, tmp_path / "link"):
+        with pytest.raises(ValueError, match=r"hump8\.obj is a mesh to flatten: name another"):
+            beltrami.batch(meshes, folder)
+    assert [path.read_bytes() for path in meshes] == before
+    assert beltrami.batch(meshes[:1], meshes[0].parent, suffix=".ply")[0].ok
+
+
+def test_one_path_is_no_list(meshes, tmp_path):
+    for path in (meshes[0], str(meshes[0])):
+        with pytest.raises(TypeError, match="give a list of paths"):
+            beltrami.batch(path, tmp_path / "out")
+
+
+def test_what_could_not_be_written_is_a_failure_and_tried_again(meshes, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "in").write_text("no folder")
+    records = beltrami.batch(meshes, out, root=tmp_path)
+    assert [record.status for record in records] == ["FILE_ERROR"] * 4
+    assert "in" in records[0].message
+    (out / "in").unlink()
+    (out / "in" / "hump8.obj").mkdir(parents=True)
+    records = beltrami.batch(meshes, out, root=tmp_path)
+    assert [record.ok for record in records] == [False, True, True, False]
+    assert "cannot be written" in records[0].message
+    (out / "in" / "hump8.obj").rmdir()
+    records = beltrami.batch(meshes, out, root=tmp_path)
+    assert [record.ok for record in records] == [True, True, True, False]
+    assert resumed(records) == [False, True, True, True]
+
+
+def test_another_mesh_of_the_same_name_size_and_time_is_done(tmp_path):
+    paths = []
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        paths.append(write_obj(tmp_path / folder / "mesh.obj", *grid(4)))
+        os.utime(paths[-1], (1, 1))
+    for path in paths:
+        records = beltrami.batch([path], tmp_path / "out")
+        assert (records[0].input, records[0].resumed) == (str(path), False)
+
+
+def test_numbers_of_numpy_are_options(meshes, tmp_path):
+    options = {
+        "coarse_faces": np.int64(60),
+        "tolerance": np.float32(0.1),
+        "refine": np.bool_(False),
+    }
+    record = beltrami.batch(meshes[:1], tmp_path / "out", **options)[0]
+    vertices, _, faces = read_obj(meshes[0])
+    expected = beltrami.parameterize(vertices, faces, **options).uv
+    assert read_obj(tmp_path / "out" / record.output)[1].tobytes() == expected.tobytes()
+    assert record.report["options"]["tolerance"] == float(np.float32(0.1))
+    assert resumed(beltrami.batch(meshes[:1], tmp_path / "out", **options)) == [True]
+
+
 def test_a_path_may_come_twice(meshes, tmp_path):
     records = beltrami.batch([meshes[0], meshes[0]], tmp_path / "out")
     assert records[0] == records[1]

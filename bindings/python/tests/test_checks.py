@@ -69,7 +69,7 @@ def test_uvs_that_are_not_finite_are_named():
         lambda: beltrami.check_injective(uv, FACES),
         lambda: beltrami.distortion(np.zeros((4, 3)), FACES, uv),
     ):
-        with pytest.raises(beltrami.NonFiniteError) as caught:
+        with pytest.raises(beltrami.NonFiniteError, match=r"^vertex 2: A coordinate") as caught:
             call()
         assert (caught.value.element, caught.value.element_kind) == (2, "vertex")
 
@@ -134,6 +134,13 @@ def test_distortion_of_a_result_is_its_own(bust):
     assert found.energy.symmetric_dirichlet == pytest.approx(result.energy.symmetric_dirichlet)
     assert found.energy.worst_face == result.energy.worst_face
     assert not found.flipped.any()
+
+
+def test_a_distortion_equals_itself():
+    vertices = np.column_stack([SQUARE, np.zeros(4)])
+    found, other = (beltrami.distortion(vertices, FACES, SQUARE) for _ in range(2))
+    assert found == found
+    assert len({found, other}) == 2
 
 
 def test_lengths_must_agree():

@@ -187,6 +187,8 @@ def test_errors_can_be_pickled():
         ({"threads": 1.5}, TypeError, r"threads is 1\.5: give a whole number"),
         ({"tolerance": "1"}, TypeError, "tolerance is '1': give a number"),
         ({"tolerance": float("nan")}, ValueError, "tolerance"),
+        ({"threads": 10**30}, beltrami.InvalidArgumentError, "out of range for the option threads"),
+        ({"tolerance": 10**400}, beltrami.InvalidArgumentError, "option tolerance"),
         ({"refine": 1}, TypeError, "refine is 1: give True or False"),
         ({"delaunay": "on"}, TypeError, "delaunay is 'on': give True or False"),
     ],

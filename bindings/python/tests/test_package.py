@@ -65,11 +65,33 @@ def test_every_public_name_is_documented(name):
         assert signature.return_annotation in ("None", None) or "Returns\n-------" in text
 
 
-@pytest.mark.parametrize("name", ["parameterize", "check_injective", "distortion", "plot.layout"])
-def test_arrays_are_documented_with_shapes_and_types(name):
-    text = inspect.getdoc(NAMES[name])
-    for line in re.findall(r"^(?:vertices|faces|uv)\w* : .*", text, re.M):
-        assert re.search(r"\((n, [23]|m, 3)\) array_like of (floats|integers)", line), line
+def arrays_of(thing):
+    """Yield the parameters and the fields that are arrays."""
+    if inspect.isclass(thing):
+        for name, kind in vars(thing).get("__annotations__", {}).items():
+            if kind == "Array":
+                yield name
+    elif callable(thing):
+        for name, parameter in inspect.signature(thing).parameters.items():
+            if "ArrayLike" in str(parameter.annotation) or name == "vertices":
+                yield name
+
+
+def test_arrays_are_documented_with_shapes_and_types():
+    described = 0
+    for name, thing in NAMES.items():
+        text = inspect.getdoc(thing) or ""
+        for array in arrays_of(thing):
+            if name == "Flattener.parameterize":
+                assert "As for `set_mesh`." in text
+                continue
+            shape = r"\((n, [23]|m, 3|m, 2|m,|3,)\) array(_like)? of (floats|integers|float\d\d)"
+            assert re.search(rf"^{array} : {shape}", text, re.M), (name, array)
+            described += 1
+        if isinstance(thing, property) and thing.fget.__annotations__["return"] == "Array":
+            assert re.match(r"An \(m,\) array of (bool|float64): ", text), name
+            described += 1
+    assert described > 25
 
 
 def test_every_option_is_a_keyword_with_its_default():

@@ -169,14 +169,56 @@ def test_axes_that_are_given_are_used(hump):
     assert plot.checkered(vertices, faces, uv, axes[2], resolution=99) is axes[2]
 
 
+def drawings(vertices, faces, uv):
+    """Return what draws each kind of picture."""
+    return [
+        lambda: plot.layout(uv, faces),
+        lambda: plot.heat_map(vertices, faces, uv),
+        lambda: plot.checkered(vertices, faces, uv),
+    ]
+
+
 def test_nothing_to_draw_is_refused():
-    with pytest.raises(ValueError, match="no faces"):
-        plot.layout(np.zeros((0, 2)), np.zeros((0, 3), int))
+    for draw in drawings(np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros((0, 2))):
+        with pytest.raises(beltrami.MeshError, match="no faces"):
+            draw()
+
+
+@pytest.mark.parametrize("shift", [-1, 1])
+def test_faces_without_their_vertices_are_refused(hump, shift):
+    vertices, faces = hump
+    for draw in drawings(vertices, faces + shift, vertices[:, :2]):
+        with pytest.raises(beltrami.IndexOutOfRangeError):
+            draw()
+
+
+def test_numbers_that_are_not_finite_are_refused(hump):
+    vertices, faces = hump
+    odd = vertices.copy()
+    odd[7] = np.inf
+    odd_uv = drawings(vertices, faces, odd[:, :2])
+    odd_vertices = drawings(odd, faces, vertices[:, :2])[1:]
+    for draw in odd_uv + odd_vertices:
+        with pytest.raises(beltrami.NonFiniteError) as caught:
+            draw()
+        assert caught.value.element == 7
+
+
+@pytest.mark.parametrize(
+    "options", [{"limit": 2.0}, {"measure": "area", "limit": 0.5}, {"resolution": 0}], ids=str
+)
+def test_numbers_that_make_no_picture_are_refused(hump, options):
+    name = "resolution" if "resolution" in options else "limit"
+    with pytest.raises(ValueError, match=f"{name} is .*: give a number"):
+        plot.heat_map(*hump, hump[0][:, :2], **options)
+    with pytest.raises(ValueError, match="cells is 0: give a number from 1"):
+        plot.checkered(*hump, hump[0][:, :2], cells=0)
 
 
 def test_a_layout_without_area_is_drawn():
     plot.layout(np.zeros((3, 2)), [[0, 1, 2]])
     plot.layout([[0, 0], [1, 0], [2, 0]], [[0, 1, 2]])
+    plot.checkered(np.eye(3), [[0, 1, 2]], np.zeros((3, 2)))
 
 
 # ---- Rasters ------------------------------------------------------------------------------

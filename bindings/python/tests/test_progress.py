@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import signal
+import socket
 import subprocess
 import sys
 import textwrap
@@ -15,7 +17,7 @@ import pytest
 from conftest import BUST, ROOT
 
 import beltrami
-from beltrami import _progress
+from beltrami import _interrupt, _progress
 
 # Minutes of work, for runs that are to be ended.
 ENDLESS = {"method": "cm", "tolerance": 0.0, "max_iterations": 1000000}
@@ -40,6 +42,11 @@ def test_only_false_cancels(hump):
     with pytest.raises(beltrami.Cancelled) as caught:
         beltrami.parameterize(*hump, progress=lambda *_: False)
     assert caught.value.status == "BELTRAMI_E_CANCELLED"
+
+
+def test_other_things_than_functions_are_refused(hump):
+    with pytest.raises(TypeError, match="progress is 'yes': give True, False or a function"):
+        beltrami.parameterize(*hump, progress="yes")
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt, SystemExit])
@@ -107,6 +114,11 @@ def test_a_terminal_shows_one_line_that_goes_away(hump, monkeypatch):
     assert "\n" not in screen.text
 
 
+def test_a_bar_shows_the_name_of_a_path():
+    assert _progress._short("/scans/bust.ply") == "bust.ply"
+    assert _progress._short("coarse") == "coarse"
+
+
 def test_elsewhere_nothing_is_printed(hump, monkeypatch, capfd):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     beltrami.parameterize(*hump, progress=True)
@@ -166,6 +178,78 @@ def test_ctrl_c_raises_keyboard_interrupt_promptly(delay):
         assert time.monotonic() - start < 2
         assert process.stdout.readline() == "True\n"
     assert process.returncode == 0
+
+
+def interrupt_soon():
+    """Have this process get the signal of Ctrl-C in 50 ms."""
+    threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
+def compute():
+    """Compute in C for some tenths of a second, deaf to signals."""
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 2_000_000)
+
+
+def test_ctrl_c_is_heard_while_python_does_not_run():
+    heard = []
+    with _interrupt.watched(lambda: heard.append(time.monotonic())) as interrupt:
+        interrupt_soon()
+        compute()
+        ended = time.monotonic()
+    assert interrupt.came
+    assert len(heard) == 1
+    assert ended - heard[0] > 0.1
+    assert signal.set_wakeup_fd(-1) == -1
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ctrl_c_interrupts_a_callback_that_waits(hump):
+    def wait(_fraction, _stage):
+        interrupt_soon()
+        time.sleep(30)
+
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        beltrami.parameterize(*hump, progress=wait)
+    assert time.monotonic() - start < 5
+
+
+def test_ctrl_c_at_any_time_leaves_a_flattener_that_works(hump):
+    flattener = beltrami.Flattener()
+    expected = flattener.parameterize(*hump).uv.tobytes()
+    for _ in range(30):
+        with contextlib.suppress(KeyboardInterrupt):
+            interrupt_soon()
+            while True:
+                flattener.run()
+        assert flattener.run().uv.tobytes() == expected
+
+
+def test_a_handler_of_the_host_is_left_alone(hump):
+    numbers = []
+    before = signal.signal(signal.SIGINT, lambda number, _frame: numbers.append(number))
+    try:
+        result = beltrami.parameterize(
+            *hump, progress=lambda *_: None if numbers else signal.raise_signal(signal.SIGINT)
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert result.injective
+    assert numbers == [signal.SIGINT]
+
+
+def test_an_event_loop_that_listens_to_signals_goes_on_listening(hump):
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        theirs.setblocking(False)
+        signal.set_wakeup_fd(theirs.fileno())
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                beltrami.parameterize(*hump, progress=lambda *_: signal.raise_signal(signal.SIGINT))
+            assert signal.set_wakeup_fd(-1) == theirs.fileno()
+        finally:
+            signal.set_wakeup_fd(-1)
+        assert ours.recv(1) == bytes([signal.SIGINT])
 
 
 # ---- Threads ------------------------------------------------------------------------------

@@ -28,6 +28,8 @@ def test_a_result_knows_all_about_itself(hump):
     assert result.options["coarse_faces"] == 100
     assert result.mesh is None
     assert "uv" not in repr(result)
+    assert {result: 1}[result] == 1
+    assert result != beltrami.parameterize(vertices, faces)
 
 
 def test_the_type_of_the_uvs_is_that_of_the_vertices(hump):
@@ -142,6 +144,16 @@ def test_a_refused_option_leaves_the_old_value(hump):
     assert flattener.parameterize(*hump).options["threads"] == 2
 
 
+def test_options_are_kept_as_plain_values():
+    flattener = beltrami.Flattener(
+        threads=np.int8(2), tolerance=np.float32(0.5), refine=np.bool_(True), delaunay=True
+    )
+    kept = flattener.options
+    found = [(type(kept[name]), kept[name]) for name in ("threads", "tolerance", "refine")]
+    assert found == [(int, 2), (float, 0.5), (bool, True)]
+    assert (kept["delaunay"], kept["method"]) == (True, "beltrami")
+
+
 def test_results_do_not_change_with_later_runs(hump):
     vertices, faces = hump
     flattener = beltrami.Flattener()
@@ -182,6 +194,14 @@ def test_a_trimesh_comes_back_with_its_uvs(hump):
     assert result.mesh.metadata["name"] == "hump"
     assert mesh.visual.kind != "texture"
     assert beltrami.Flattener().parameterize(mesh).mesh is not None
+
+
+def test_what_only_looks_like_a_trimesh_is_refused_before_any_work(hump):
+    class Mesh:
+        vertices, faces = hump
+
+    with pytest.raises(TypeError, match="faces are missing"):
+        beltrami.parameterize(Mesh())
 
 
 def test_a_trimesh_gets_the_delaunay_faces(bust):

@@ -25,8 +25,10 @@ from ._tables import EnergyChoice, FlattenChoice, InjectivityChoice, MethodChoic
 
 LOG = "batch.jsonl"
 # Exit codes of the program after which another try would end the same (docs/report.md): injective,
-# unusable mesh, not injective.
-_FINAL = (0, 2, 3)
+# unusable mesh, not injective. But what is wrong with a file, or with a full disk, may be mended.
+_UNUSABLE = 2
+_FINAL = (0, _UNUSABLE, 3)
+_FILE_ERROR = "FILE_ERROR"
 _REQUEST_TO_CANCEL = -6  # BELTRAMI_E_CANCELLED
 
 
@@ -109,8 +111,9 @@ def batch(
     Every mesh is a process of its own: one that fails, crashes or is killed becomes a record with
     its failure, and the others go on. ``out_dir/batch.jsonl`` gets a line for each when it ends. A
     mesh is left out where that log has a result for it, or its refusal, and neither the file (by
-    size and time), nor the options, nor the version of the library are others since; whatever
-    crashed or was cancelled is tried again. One call at a time may use a folder.
+    path, size and time), nor the options, nor the version of the library are others since; whatever
+    crashed, was cancelled, or could not be read or written is tried again. One call at a time may
+    use a folder.
 
     Parameters
     ----------
@@ -120,8 +123,9 @@ def batch(
         Folder for the results, which is made if need be: files with UVs, named as the meshes.
     scheduler : str or distributed.Client, optional
         Address of a Dask scheduler, such as "tcp://host:8786", or a client of one: the jobs run on
-        its workers, which need this package and the same paths. Left out, they run as processes on
-        this machine.
+        its workers, which need this version of the package and the same paths, one on each of
+        their threads: with `threads` above 1, have as many fewer of those. Left out, they run as
+        processes on this machine.
     suffix : {".obj", ".ply"}
         Format of the results.
     root : path, optional
@@ -194,14 +198,17 @@ def batch(
     Raises
     ------
     TypeError, ValueError
-        For options as `Flattener` does, and where two results would have the same name.
+        For options as `Flattener` does; where two results would have the same name, or one would
+        replace a mesh; for a mesh that is not below `root`.
     OSError
-        Where the folder or the log cannot be written.
+        Where the folder or the log cannot be written, or the scheduler not be reached.
+    ImportError
+        With a scheduler, but without Dask.
     Cancelled, KeyboardInterrupt
         Jobs under way are ended (on a cluster, only those that have not begun); another call
         resumes.
     """
-    options: dict[str, object] = {
+    given: dict[str, object] = {
         # options: items
         "method": method,
         "energy": energy,
@@ -220,7 +227,9 @@ def batch(
         "memory_limit": memory_limit,
         # end of options
     }
-    _library.arguments(options)  # refuses what is out of range, before any work
+    options = _library.Context().set_options(given)  # refuses what is out of range
+    if isinstance(paths, (str, os.PathLike)):
+        raise TypeError(f"paths is {paths!r}: give a list of paths")
     if suffix not in (".obj", ".ply"):
         raise ValueError(f"suffix is {suffix!r}: give '.obj' or '.ply'")
     folder = Path(out_dir)
@@ -231,7 +240,7 @@ def batch(
     done = {job.name: known[job.name] for job in work if _is_done(job, known.get(job.name))}
     left = list({job.name: job for job in work if job.name not in done}.values())
     if jobs is None:
-        jobs = max(1, (os.cpu_count() or 1) // threads)
+        jobs = _cores() // threads
     run = _on_processes(left, jobs) if scheduler is None else _on_dask(left, scheduler)
     fresh: dict[str, dict[str, Any]] = {}
     with hook_for(progress) as hook, _open_log(folder / LOG) as log:
@@ -281,9 +290,19 @@ def _job(
     return Job(str(path), str((folder / name).absolute()), name.as_posix(), arguments, identity)
 
 
+def _cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def _require_distinct(work: list[Job]) -> None:
+    meshes = {os.path.realpath(job.input) for job in work}
     inputs: dict[str, str] = {}
     for job in work:
+        if os.path.realpath(job.output) in meshes:
+            raise ValueError(f"{job.output} is a mesh to flatten: name another folder for results")
         other = inputs.setdefault(job.name, job.input)
         if other != job.input:
             raise ValueError(
@@ -298,6 +317,13 @@ def run_job(job: Job) -> dict[str, Any]:
 
 
 def _run_job(job: Job, processes: _Processes) -> dict[str, Any]:
+    try:
+        return _flatten(job, processes)
+    except OSError as error:
+        return _line(job, _UNUSABLE, str(error), None)
+
+
+def _flatten(job: Job, processes: _Processes) -> dict[str, Any]:
     Path(job.output).parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="beltrami-") as scratch:
         report_path = Path(scratch) / "report.json"
@@ -316,8 +342,8 @@ def _line(job: Job, code: int, stderr: str, report: dict[str, Any] | None) -> di
     if report is not None:
         status, message = report["status"], report["message"]
         verdict = (report["injective"] or {}).get("result") if code in (0, 3) else None
-    elif code == _FINAL[1]:
-        status, message = "FILE_ERROR", stderr.strip()
+    elif code == _UNUSABLE:
+        status, message = _FILE_ERROR, stderr.strip()
     return {
         "input": job.input,
         "output": job.name,
@@ -389,6 +415,8 @@ def _on_processes(work: list[Job], count: int) -> Generator[tuple[Job, dict[str,
 
 def _on_dask(work: list[Job], scheduler: Any) -> Generator[tuple[Job, dict[str, Any]], None, None]:
     """Do the same on the workers of a Dask cluster."""
+    if not work:
+        return
     from distributed import Client, as_completed
 
     client = scheduler if isinstance(scheduler, Client) else Client(scheduler)
@@ -449,6 +477,8 @@ def _open_log(path: Path) -> IO[bytes]:
 
 def _is_done(job: Job, line: dict[str, Any] | None) -> bool:
     if line is None or job.identity is None or line.get("identity") != job.identity:
+        return False
+    if line.get("input") != job.input or line.get("status") == _FILE_ERROR:
         return False
     has_result = line.get("injective") is not None
     return line.get("exit_code") in _FINAL and (not has_result or Path(job.output).exists())

@@ -87,9 +87,9 @@ def check_boundary(uv: npt.ArrayLike, faces: npt.ArrayLike) -> Certificate:
     return _library.check("boundary", *_uv_and_faces(uv, faces))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Distortion:
-    """The distortion of every face of a map, and its means.
+    """The distortion of every face of a map, and its means. It equals itself only.
 
     Attributes
     ----------

@@ -157,11 +157,14 @@ class Flattener:
         """
         with self._alone():
             for name, value in options.items():
-                self._context.set_options({name: value})
-                self._options[name] = value  # type: ignore[literal-required]
+                self._options.update(self._context.set_options({name: value}))  # type: ignore[typeddict-item]
 
     def set_mesh(self, vertices: Any, faces: npt.ArrayLike | None = None) -> None:
-        """Take a mesh over, for `run`; the arrays are free to change afterwards.
+        """Take a mesh over, for `run`.
+
+        The library has a copy, so the positions are free to change afterwards. Faces that were read
+        in place, and a ``trimesh.Trimesh``, are handed out again with the results: leave those as
+        they are.
 
         Parameters
         ----------

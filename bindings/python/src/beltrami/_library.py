@@ -14,9 +14,9 @@ from typing import Any, NoReturn, TypeVar
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _interrupt
 from ._arrays import Array
-from ._errors import ERRORS, BeltramiError
+from ._errors import ERRORS, BeltramiError, InvalidArgumentError
 from ._native import ffi, lib
 from ._tables import Certificate, Energy, Report, Stage
 
@@ -61,13 +61,12 @@ def status_name(status: int) -> str:
 
 def _fail(status: int, message: str, element: int, kind: int) -> NoReturn:
     name = status_name(status)
-    raise ERRORS.get(name, BeltramiError)(
-        message or text(lib.beltrami_status_advice(status)),
-        status,
-        name,
-        None if element == lib.BELTRAMI_NO_ELEMENT else element,
-        _KINDS.get(kind),
-    )
+    where = None if element == lib.BELTRAMI_NO_ELEMENT else element
+    if not message:
+        message = text(lib.beltrami_status_advice(status))
+        if where is not None:
+            message = f"{_KINDS[kind]} {where}: {message}"
+    raise ERRORS.get(name, BeltramiError)(message, status, name, where, _KINDS.get(kind))
 
 
 def _name_negative_index(error: BeltramiError, faces: Array) -> None:
@@ -157,6 +156,12 @@ class _Option:
             raise ValueError(f"{self.name} is {value!r}: give {choices}")
         return self.choices.index(value)
 
+    def plain(self, number: float) -> object:
+        """Return what `number` came from, as a plain bool, str, int or float."""
+        if self.is_switch:
+            return bool(number)
+        return self.choices[int(number)] if self.choices else number
+
     def arguments(self, value: object) -> list[str]:
         """Return the program's arguments for a valid value."""
         flag = f"--{self.name}"
@@ -190,8 +195,7 @@ _OPTIONS = _read_options()
 
 
 def arguments(options: Mapping[str, object]) -> list[str]:
-    """Return the arguments of the program for options by keyword. Raises as `Context` does."""
-    Context().set_options(options)
+    """Return the arguments of the program for options as `Context.set_options` returned them."""
     return [word for name, value in options.items() for word in _OPTIONS[name].arguments(value)]
 
 
@@ -243,15 +247,29 @@ class Context:
                 lib.beltrami_error_element_kind(self._context),
             )
 
-    def set_options(self, options: Mapping[str, object]) -> None:
-        """Set options by keyword. Raises TypeError, ValueError."""
+    def set_options(self, options: Mapping[str, object]) -> dict[str, object]:
+        """Set options by keyword; return them as plain values. Raises TypeError, ValueError."""
+        plain: dict[str, object] = {}
         for name, value in options.items():
             if name not in _OPTIONS:
                 raise TypeError(f"there is no option {name!r}: choose from {', '.join(_OPTIONS)}")
-            option = _OPTIONS[name]
-            is_float = option.type == lib.BELTRAMI_TYPE_FLOAT
-            set_number = lib.beltrami_set_float if is_float else lib.beltrami_set_int
-            self._check(set_number(self._context, option.key, option.number(value)))
+            plain[name] = self._set_option(_OPTIONS[name], value)
+        return plain
+
+    def _set_option(self, option: _Option, value: object) -> object:
+        is_float = option.type == lib.BELTRAMI_TYPE_FLOAT
+        set_number = lib.beltrami_set_float if is_float else lib.beltrami_set_int
+        try:
+            number = option.number(value)
+            status = set_number(self._context, option.key, number)
+        except OverflowError:  # of numbers that C's types do not hold
+            raise InvalidArgumentError(
+                f"{value!r} is out of range for the option {option.name}",
+                lib.BELTRAMI_E_INVALID_ARGUMENT,
+                "BELTRAMI_E_INVALID_ARGUMENT",
+            ) from None
+        self._check(status)
+        return option.plain(number)
 
     def set_mesh(self, vertices: Array, faces: Array) -> None:
         """Copy and validate a mesh in arrays of `_arrays`. Raises MeshError."""
@@ -271,19 +289,38 @@ class Context:
     def run(self, hook: Hook) -> str:
         """Flatten the mesh; returns the name of the status. Raises what the hook raises.
 
-        The hook is called in this thread. It is never left out: it is where Python notices Ctrl-C.
+        The hook is called in this thread. It is never left out: where another handler than Python's
+        own waits for Ctrl-C, it is there that it runs.
         """
         outer = _running.hook, _running.raised
-        _running.hook, _running.raised = hook, None
         try:
-            status = lib.beltrami_run(self._context, lib.beltrami_python_progress, ffi.NULL)
-            raised = _running.raised
+            with _interrupt.watched(self.cancel) as interrupt:
+                status, raised = self._run(hook, interrupt)
+            if interrupt.came:
+                # The request may have come too late for this run: the next one is not meant.
+                self._run(lambda _fraction, _stage: True, interrupt)
         finally:
             _running.hook, _running.raised = outer
         if raised is not None:
             raise raised
+        if interrupt.came:
+            raise KeyboardInterrupt
         self._check(status)
         return status_name(status)
+
+    def _run(self, hook: Hook, interrupt: _interrupt.Interrupt) -> tuple[int, BaseException | None]:
+        """Return the status, and what the hook raised."""
+
+        def told(fraction: float, stage: str) -> bool:
+            interrupt.in_callback = True
+            try:
+                return hook(fraction, stage) or interrupt.came
+            finally:
+                interrupt.in_callback = False
+
+        _running.hook, _running.raised = told, None
+        status = lib.beltrami_run(self._context, lib.beltrami_python_progress, ffi.NULL)
+        return status, _running.raised
 
     def cancel(self) -> None:
         """Ask the run under way, or else the next one, to end. From any thread."""

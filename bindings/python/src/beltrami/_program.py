@@ -9,11 +9,8 @@ from pathlib import Path
 
 def path() -> Path:
     """Return where the program `beltrami` of this package lies."""
-    return (
-        Path(__file__).resolve().parent
-        / "bin"
-        / ("beltrami.exe" if os.name == "nt" else "beltrami")
-    )
+    name = "beltrami.exe" if os.name == "nt" else "beltrami"
+    return Path(__file__).parent / "bin" / name
 
 
 def become(arguments: list[str]) -> None:

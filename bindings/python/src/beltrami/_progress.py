@@ -6,6 +6,7 @@ import contextlib
 import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Callable, Optional, Union
 
 from ._library import Hook
@@ -22,6 +23,11 @@ def _silent(_fraction: float, _stage: str) -> bool:
     return False
 
 
+def _short(stage: str) -> str:
+    """Return what a bar has room for: of a path, which is what a batch tells, the name."""
+    return Path(stage).name
+
+
 class _TextBar:
     """One line on stderr, where that is a terminal."""
 
@@ -36,7 +42,7 @@ class _TextBar:
         self._last = (now, stage)
         bar = ("#" * int(fraction * _BAR_WIDTH)).ljust(_BAR_WIDTH, ".")
         seconds = now - self._start
-        line = f"{stage:<10.10} [{bar}] {int(fraction * 100):3}% {seconds:7.1f} s"
+        line = f"{_short(stage):<10.10} [{bar}] {int(fraction * 100):3}% {seconds:7.1f} s"
         sys.stderr.write(f"\r\x1b[2K{line}")
         sys.stderr.flush()
         return False
@@ -55,7 +61,7 @@ class _TqdmBar:
         )
 
     def __call__(self, fraction: float, stage: str) -> bool:
-        self._bar.set_description_str(stage, refresh=False)
+        self._bar.set_description_str(_short(stage), refresh=False)
         self._bar.update(fraction - self._bar.n)
         return False
 
@@ -77,6 +83,8 @@ def hook_for(progress: Progress) -> Iterator[Hook]:
     if callable(progress):
         yield lambda fraction, stage: progress(fraction, stage) is False
         return
+    if not (progress is None or isinstance(progress, bool)):
+        raise TypeError(f"progress is {progress!r}: give True, False or a function")
     bar = _bar() if progress else None
     if bar is None:
         yield _silent

@@ -9,9 +9,9 @@ from ._arrays import Array
 from ._tables import Certificate, Energy, Options, Report, Stage
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Parameterization:
-    """UVs and all that is known about them.
+    """UVs and all that is known about them. It equals itself only: compare what it holds.
 
     Attributes
     ----------

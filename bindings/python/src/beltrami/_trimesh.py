@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 from ._arrays import Array
 
 
 def is_mesh(thing: object) -> bool:
-    """Whether `thing` has vertices and faces of its own, as a ``trimesh.Trimesh`` has."""
-    return hasattr(thing, "vertices") and hasattr(thing, "faces")
+    """Whether `thing` is a ``trimesh.Trimesh``: none is before trimesh has been imported."""
+    return isinstance(thing, getattr(sys.modules.get("trimesh"), "Trimesh", ()))
 
 
 def with_uv(mesh: Any, uv: Array, faces: Array) -> Any:

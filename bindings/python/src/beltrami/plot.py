@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _arrays, _raster, _view
 from ._arrays import Array
-from ._checks import Distortion
+from ._checks import Distortion, check_triangles
 from ._checks import distortion as _distortion
 
 if TYPE_CHECKING:
@@ -70,10 +70,13 @@ def layout(
     ------
     ImportError
         Without Matplotlib.
+    IndexOutOfRangeError, NonFiniteError
+        With the face or the vertex.
     TypeError, ValueError
-        For arrays of other shapes or types.
+        For arrays of other shapes or types, and without faces.
     """
     points, triangles = _arrays.coordinates(uv).astype(float), _arrays.indices(faces)
+    check_triangles(points, triangles)  # refuses what cannot be drawn
     canvas = _Canvas.around(points[triangles].reshape(-1, 2), resolution)
     flipped = _areas(points, triangles) < 0
     colours = np.where(flipped[:, None], _BAD, _FILL)
@@ -118,7 +121,8 @@ def heat_map(
         What the colours mean: one of the energies, area in the plane over area in space, or s1 / s2
         (1 where angles are kept). Flipped faces are red.
     limit : float, optional
-        The end of the scale; left out, 1% of the surface may lie beyond it.
+        The end of the scale, above that of no distortion; left out, 1% of the surface may lie
+        beyond it.
     cmap : str, optional
         Name of a colour map of Matplotlib.
     resolution : int
@@ -134,7 +138,7 @@ def heat_map(
     ImportError
         Without Matplotlib.
     BeltramiError, TypeError, ValueError
-        As `beltrami.distortion` does.
+        As `beltrami.distortion` does, and for a limit that the scale cannot end at.
     """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -208,11 +212,15 @@ def checkered(
     ------
     ImportError
         Without Matplotlib.
+    IndexOutOfRangeError, NonFiniteError
+        With the face or the vertex.
     TypeError, ValueError
-        For arrays of other shapes or types.
+        For arrays of other shapes or types, and without faces.
     """
+    _require_positive("cells", cells)
     space, triangles = _arrays.positions(vertices).astype(float), _arrays.indices(faces)
     coordinates = _arrays.coordinates(uv).astype(float)
+    _distortion(space, triangles, coordinates)  # refuses what cannot be drawn
     boundary = _boundary(triangles)
     frame = _view.frame(space, triangles, space[np.unique(boundary)], view, up)
     seen = (space - space[triangles].reshape(-1, 3).mean(axis=0)) @ frame.T
@@ -225,7 +233,8 @@ def checkered(
     at = np.einsum("ik,ikj->ij", weights, coordinates[corners])
     used = coordinates[triangles].reshape(-1, 2)
     low, high = used.min(axis=0), used.max(axis=0)
-    square = ((at - low) / (max(high - low) / cells)).astype(np.int64).sum(axis=1) % 2
+    side = (max(high - low) or 1.0) / cells
+    square = ((at - low) / side).astype(np.int64).sum(axis=1) % 2
     # Turned to the viewer or away, by the face itself: interpolated normals err at silhouettes.
     back = (_areas(seen[:, :2], triangles) < 0)[face]
     colours = np.where(back[:, None], _BACK[square], _CHECKER[square])
@@ -245,6 +254,7 @@ class _Canvas:
     """A rectangle of the plane as pixels, y up; more of them than are shown in the end."""
 
     def __init__(self, low: Array, high: Array, resolution: int) -> None:
+        _require_positive("resolution", resolution)
         extent = np.maximum(high - low, np.max(high - low) * 1e-3)
         extent = np.where(extent > 0, extent, 1.0)
         margin = 0.01 * extent.max()
@@ -256,8 +266,6 @@ class _Canvas:
     @classmethod
     def around(cls, points: Array, resolution: int) -> _Canvas:
         """Return a canvas that holds the points, (k, 2)."""
-        if len(points) == 0:
-            raise ValueError("there are no faces to draw")
         return cls(points.min(axis=0), points.max(axis=0), resolution)
 
     @property
@@ -330,6 +338,11 @@ def _draw_hidden_lines(
             py = np.clip(y + dy, 0, canvas.height - 1)
             visible = at[:, 2] >= raster.depth[py, px] - slack
             image[(py * canvas.width + px)[visible]] = (*_LINE, 1)
+
+
+def _require_positive(name: str, value: int) -> None:
+    if not value >= 1:
+        raise ValueError(f"{name} is {value!r}: give a number from 1")
 
 
 # ---- Meshes -------------------------------------------------------------------------------
@@ -416,6 +429,9 @@ class _Scale:
             "conformal": found.conformal,
         }[measure]
         self.cmap, self.extend = "viridis", "max"
+        start = {"symmetric-dirichlet": 2.0, "symmetric-arap": 0.0}.get(measure, 1.0)
+        if limit is not None and not limit > start:
+            raise ValueError(f"limit is {limit!r}: give a number above {start:g}")
         self.norm: Any
         if measure == "area":
             self.cmap, self.extend = "RdBu_r", "both"
@@ -423,9 +439,8 @@ class _Scale:
             end = limit or _rounded_up(end)
             self.norm = LogNorm(1 / end, end)
         elif measure == "symmetric-arap":
-            self.norm = Normalize(0, limit or _rounded_up(max(0.05, _most(self.values, areas))))
+            self.norm = Normalize(start, limit or _rounded_up(max(0.05, _most(self.values, areas))))
         else:
-            start = 2.0 if measure == "symmetric-dirichlet" else 1.0
             end = _rounded_up(max(1.1 * start, _most(self.values, areas)))
             self.norm = LogNorm(start, limit or end)
 

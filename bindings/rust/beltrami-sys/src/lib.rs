@@ -1,10 +1,4 @@
-//! Raw bindings to the C library [beltrami](https://github.com/beltrami/beltrami), which flattens
-//! disk-like triangle meshes to injective, low-distortion UVs. The crate `beltrami` is the safe
-//! interface on top of them.
-//!
-//! The documentation of every item is that of the C header. Enumerators are plain constants: a
-//! newer library may return numbers that these bindings do not know.
-#![doc = concat!("\n", include_str!("linking.md"))]
+#![doc = include_str!("../README.md")]
 #![no_std]
 // The names and the comments are the header's: what explains itself there has none.
 #![allow(missing_docs, non_camel_case_types, rustdoc::broken_intra_doc_links)]

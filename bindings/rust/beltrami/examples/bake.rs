@@ -40,8 +40,11 @@ fn run() -> Result<(), Box<dyn Error>> {
     let [input, output] = arguments.as_slice() else {
         return Err("usage: bake IN.obj OUT.png".into());
     };
-    let (models, _materials) = tobj::load_obj(input, &tobj::LoadOptions::default())?;
-    let model = models.first().ok_or("there is no object in the file")?;
+    let triangles = tobj::LoadOptions { triangulate: true, ..Default::default() };
+    let (models, _materials) = tobj::load_obj(input, &triangles)?;
+    let [model] = models.as_slice() else {
+        return Err(format!("{input} has {} objects: give one", models.len()).into());
+    };
     let positions = View::<_, 3>::from_flat(&model.mesh.positions)?;
     let faces = View::<_, 3>::from_flat(&model.mesh.indices)?;
     let mesh = Mesh::new(positions, faces);
@@ -53,7 +56,7 @@ fn run() -> Result<(), Box<dyn Error>> {
 
     let pixels = to_pixels(&uvs);
     let mut texture = vec![BACKGROUND; SIZE * SIZE];
-    for (face, distortion) in (0..faces.len()).filter_map(|face| faces.get(face)).zip(&distortion) {
+    for (face, distortion) in faces.iter().zip(&distortion) {
         fill(&mut texture, face.map(|vertex| pixels[vertex as usize]), colour(distortion));
     }
     write_png(output, &texture)?;
@@ -80,8 +83,9 @@ fn to_pixels(uvs: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// By how the area changes.
 fn colour(distortion: &FaceDistortion) -> [u8; 3] {
     let change = (distortion.s1 * distortion.s2).log2() / FULL_COLOUR;
-    let (full, part) = if change > 0.0 { (STRETCHED, change) } else { (SHRUNK, -change) };
-    let part = part.min(1.0); // NaN, of a face without area in 3D, is none
+    let change = if change.is_nan() { 0.0 } else { change }; // of a face without area in 3D
+    let full = if change > 0.0 { STRETCHED } else { SHRUNK };
+    let part = change.abs().min(1.0);
     let mut mixed = [0; 3];
     for ((mixed, neutral), full) in mixed.iter_mut().zip(NEUTRAL).zip(full) {
         *mixed = (neutral + part * (full - neutral)) as u8;
@@ -120,6 +124,7 @@ fn write_png(path: &str, texture: &[[u8; 3]]) -> Result<(), Box<dyn Error>> {
         png::Encoder::new(BufWriter::new(File::create(path)?), SIZE as u32, SIZE as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header()?.write_image_data(&texture.concat())?;
-    Ok(())
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&texture.concat())?;
+    Ok(writer.finish()?)
 }

@@ -4,7 +4,8 @@
 //! cargo run --release --example flatten_obj -- IN.obj OUT.obj [--energy symmetric-arap] ...
 //! ```
 //!
-//! Every option of the library is an option here.
+//! Every option of the library is an option here. The vertices that are written are those of tobj,
+//! which counts them in the order in which the faces name them; beltrami leaves that as it is.
 
 use std::env;
 use std::error::Error;
@@ -34,7 +35,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     };
     let options = parse_options(options)?;
 
-    let (models, _materials) = tobj::load_obj(input, &tobj::LoadOptions::default())?;
+    let triangles = tobj::LoadOptions { triangulate: true, ..Default::default() };
+    let (models, _materials) = tobj::load_obj(input, &triangles)?;
     let [model] = models.as_slice() else {
         return Err(format!("{input} has {} objects: give one", models.len()).into());
     };
@@ -88,14 +90,13 @@ fn write_obj(
     uvs: &[[f32; 2]],
 ) -> io::Result<()> {
     let mut out = BufWriter::new(File::create(path)?);
-    for [x, y, z] in (0..positions.len()).filter_map(|vertex| positions.get(vertex)) {
+    for [x, y, z] in positions.iter() {
         writeln!(out, "v {x} {y} {z}")?;
     }
     for [u, v] in uvs {
         writeln!(out, "vt {u} {v}")?;
     }
-    for [a, b, c] in (0..faces.len()).filter_map(|face| faces.get(face)) {
-        let [a, b, c] = [a + 1, b + 1, c + 1];
+    for [a, b, c] in faces.iter().map(|face| face.map(|vertex| vertex + 1)) {
         writeln!(out, "f {a}/{a} {b}/{b} {c}/{c}")?;
     }
     out.flush()

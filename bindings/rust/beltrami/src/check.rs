@@ -11,6 +11,7 @@ use crate::parameterization::{count, element};
 /// Orientation of the faces of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
+#[must_use = "it may say that faces are flipped"]
 pub struct Orientations {
     /// Faces of positive area in UV.
     pub positive: usize,
@@ -32,6 +33,7 @@ impl Orientations {
 /// Crossings of the boundary of a map with itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
+#[must_use = "it may say that the boundary crosses itself"]
 pub struct Crossings {
     /// Pairs of boundary edges that meet where they should not.
     pub count: usize,
@@ -80,8 +82,10 @@ impl Certificate {
         }
     }
 
-    pub(crate) fn bad_face(&self) -> Option<Element> {
-        self.orientations.first_bad_face.map(Element::Face)
+    /// Where the map is not injective.
+    pub(crate) fn bad_element(&self) -> Option<Element> {
+        let crossing = || self.crossings.first.map(|[vertex, _]| Element::Vertex(vertex));
+        self.orientations.first_bad_face.map(Element::Face).or_else(crossing)
     }
 }
 
@@ -210,13 +214,22 @@ pub fn check_boundary<'a>(
     Ok(judge(sys::beltrami_check_boundary, faces.into(), uvs.into())?.crossings)
 }
 
+/// Why a measure failed, with the element where it is one of the faces or the UVs: a measure does not
+/// name it, but the check that reads the same does.
+fn measure_failure(status: sys::beltrami_status, mesh: &Mesh<'_>, uvs: Uvs<'_>) -> Error {
+    match judge(sys::beltrami_check_triangles, mesh.faces, uvs) {
+        Err(error) if error.kind.status() == status => error,
+        _ => Error::from_status(status, None),
+    }
+}
+
 /// Distortion of any UVs, one per vertex, in the unit of length of the positions.
 ///
 /// # Errors
 ///
 /// [`InvalidArgument`](crate::ErrorKind::InvalidArgument) unless there is one UV per vertex,
-/// [`IndexOutOfRange`](crate::ErrorKind::IndexOutOfRange),
-/// [`NonFinite`](crate::ErrorKind::NonFinite), [`Empty`](crate::ErrorKind::Empty),
+/// [`IndexOutOfRange`](crate::ErrorKind::IndexOutOfRange) with the face,
+/// [`NonFinite`](crate::ErrorKind::NonFinite) with the vertex where it is a UV, [`Empty`](crate::ErrorKind::Empty),
 /// [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
 pub fn measure<'a>(mesh: &Mesh<'_>, uvs: impl Into<Uvs<'a>>) -> Result<Distortion, Error> {
     let uvs = uvs.into();
@@ -227,7 +240,7 @@ pub fn measure<'a>(mesh: &Mesh<'_>, uvs: impl Into<Uvs<'a>>) -> Result<Distortio
     let status =
         unsafe { sys::beltrami_measure(&mesh.raw(), &uvs.0.raw(), &mut raw, std::ptr::null_mut()) };
     if status < 0 {
-        return Err(Error::from_status(status, None));
+        return Err(measure_failure(status, mesh, uvs));
     }
     Ok(Distortion::new(&raw))
 }
@@ -256,7 +269,7 @@ pub fn measure_faces<'a>(
         )
     };
     if status < 0 {
-        return Err(Error::from_status(status, None));
+        return Err(measure_failure(status, mesh, uvs));
     }
     Ok(faces)
 }

@@ -199,11 +199,13 @@ impl<'a> Trampoline<'a> {
 
     fn report(&mut self, progress: Progress) -> ControlFlow<()> {
         let Some(closure) = &mut self.closure else { return ControlFlow::Continue(()) };
+        if self.panic.is_some() {
+            return ControlFlow::Break(());
+        }
         // The closure is not called again after a panic, so nobody sees what it left half-done but
-        // the caller, in whom the panic goes on.
+        // the caller, in whom the panic goes on. It is dropped there, too: that may panic as well.
         let flow = catch_unwind(AssertUnwindSafe(|| closure(progress))).unwrap_or_else(|payload| {
             self.panic = Some(payload);
-            self.closure = None;
             ControlFlow::Break(())
         });
         self.broke |= flow.is_break();

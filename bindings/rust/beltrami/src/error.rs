@@ -119,7 +119,7 @@ error_kinds! {
     NotInjectiveFloat32 = BELTRAMI_NOT_INJECTIVE_FLOAT32,
 }
 
-/// A failure: its kind, a sentence that says what to do, and the face or vertex concerned.
+/// A failure: its kind, the face or vertex concerned, and words that say what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Error {
@@ -127,7 +127,7 @@ pub struct Error {
     pub kind: ErrorKind,
     /// The face or vertex that is the cause, where one is.
     pub element: Option<Element>,
-    /// What happened and what to do about it, in one sentence.
+    /// What happened and what to do about it, with the element where there is one.
     pub message: Box<str>,
 }
 
@@ -144,7 +144,11 @@ impl Error {
 
     /// A status of the library, in its general words.
     pub(crate) fn from_status(status: sys::beltrami_status, element: Option<Element>) -> Error {
-        Error { kind: ErrorKind::from_status(status), element, message: advice(status).into() }
+        let message = match element {
+            Some(element) => format!("{} See {element}.", advice(status)).into(),
+            None => advice(status).into(),
+        };
+        Error { kind: ErrorKind::from_status(status), element, message }
     }
 
     /// The last failure of a context.

@@ -25,7 +25,7 @@ use crate::parameterization::Parameterization;
 /// let faces = [[0_u32, 1, 2], [0, 2, 3]];
 ///
 /// let mut flattener = Flattener::with_options(&Options::new().unit_square(true))?;
-/// let map = flattener.flatten(&Mesh::new(&positions, &faces))?.ensure_injective()?;
+/// let map = flattener.flatten(&Mesh::new(&positions, &faces))?.ensure_float32_injective()?;
 /// let uvs: Vec<[f32; 2]> = map.uvs();
 /// # assert_eq!(uvs.len(), 4);
 /// # Ok::<(), beltrami::Error>(())
@@ -185,6 +185,7 @@ impl Flattener {
         drop(watch);
         self.maybe_late_request = control.token.is_cancelled();
         if let Some(payload) = trampoline.panic.take() {
+            drop(trampoline); // not while a panic is on its way, or another one would abort
             resume_unwind(payload);
         }
         self.check(status)?;

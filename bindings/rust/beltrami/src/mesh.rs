@@ -155,6 +155,7 @@ pub(crate) mod private {
 /// # assert_eq!((mesh.positions.len(), mesh.faces.len()), (4, 2));
 /// ```
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Mesh<'a> {
     /// One position per vertex.
     pub positions: Positions<'a>,

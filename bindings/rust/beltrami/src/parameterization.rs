@@ -150,7 +150,8 @@ pub struct Stage {
 ///
 /// A run that ends with a reservation has a result all the same, the best map that was found, and
 /// so it is `Ok`: whoever only wants to look at a map can. [`status`](Self::status) tells, and
-/// [`ensure_injective`](Self::ensure_injective) makes an error of a map that is not injective:
+/// [`ensure_injective`](Self::ensure_injective) makes an error of a map that is not injective, as
+/// [`ensure_float32_injective`](Self::ensure_float32_injective) does for UVs in single precision:
 ///
 /// ```
 /// # use beltrami::{Flattener, Mesh};
@@ -158,7 +159,7 @@ pub struct Stage {
 /// # let faces = [[0_u32, 1, 2], [0, 2, 3]];
 /// # let mesh = Mesh::new(&positions, &faces);
 /// # let mut flattener = Flattener::new()?;
-/// let uvs: Vec<[f32; 2]> = flattener.flatten(&mesh)?.ensure_injective()?.uvs();
+/// let uvs: Vec<[f32; 2]> = flattener.flatten(&mesh)?.ensure_float32_injective()?.uvs();
 /// # Ok::<(), beltrami::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -188,17 +189,33 @@ impl<'a> Parameterization<'a> {
     ///
     /// # Errors
     ///
-    /// [`NotInjective`](ErrorKind::NotInjective), with a face that is not positive where there is
-    /// one; with the option `float32`
+    /// [`NotInjective`](ErrorKind::NotInjective), with a face that is not positive or a vertex where
+    /// the boundary crosses itself; with the option `float32`
     /// [`NotInjectiveFloat32`](ErrorKind::NotInjectiveFloat32).
     pub fn ensure_injective(self) -> Result<Self, Error> {
-        let certificate = self.certificate();
-        let kind = match self.status() {
-            Status::NotInjectiveFloat32 => ErrorKind::NotInjectiveFloat32,
-            _ if certificate.injective => return Ok(self),
-            _ => ErrorKind::NotInjective,
-        };
-        Err(Error::from_status(kind.status(), certificate.bad_face()))
+        self.ensure(&self.certificate())
+    }
+
+    /// The map itself if it is injective as [`uvs`](Self::uvs) returns it in single precision,
+    /// whether the option `float32` asked for that or not.
+    ///
+    /// # Errors
+    ///
+    /// As of [`ensure_injective`](Self::ensure_injective), and
+    /// [`NotInjectiveFloat32`](ErrorKind::NotInjectiveFloat32) where the map is injective in double
+    /// precision alone.
+    pub fn ensure_float32_injective(self) -> Result<Self, Error> {
+        self.ensure(&self.float32_certificate())
+    }
+
+    /// The map itself if the certificate, one of its own, says that it is injective.
+    fn ensure(self, certificate: &Certificate) -> Result<Self, Error> {
+        if certificate.injective {
+            return Ok(self);
+        }
+        let double = self.is_injective() || self.status() == Status::NotInjectiveFloat32;
+        let kind = if double { ErrorKind::NotInjectiveFloat32 } else { ErrorKind::NotInjective };
+        Err(Error::from_status(kind.status(), certificate.bad_element()))
     }
 
     /// One (u, v) for every vertex, in the order of the vertices: in the mesh's unit of length, or
@@ -206,7 +223,7 @@ impl<'a> Parameterization<'a> {
     ///
     /// Single precision is rounded to nearest, but for the vertices that must move a little further
     /// for the map to stay injective: [`float32_certificate`](Self::float32_certificate) tells
-    /// whether it did.
+    /// whether it did, and [`ensure_float32_injective`](Self::ensure_float32_injective) makes sure.
     pub fn uvs<T: Uv>(&self) -> Vec<T> {
         let mut uvs = vec![T::default(); count(self.result().vertices)];
         self.fill_uvs(T::room(&mut uvs));

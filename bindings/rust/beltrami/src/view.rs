@@ -66,7 +66,7 @@ scalars! {
 #[derive(Clone, Copy)]
 pub struct View<'a, T, const N: usize> {
     first: *const T,
-    /// Bytes from one item to the next.
+    /// Bytes from one item to the next; any number where there is no next one.
     stride: usize,
     len: usize,
     memory: PhantomData<&'a [T]>,
@@ -115,8 +115,9 @@ impl<'a, T: Scalar, const N: usize> View<'a, T, N> {
         len: usize,
     ) -> Result<Self, Error> {
         let covered = strided_range::<N>(numbers.len(), offset, stride, len)?;
+        let stride = stride_in_bytes::<T>(stride, len);
         // SAFETY: strided_range made sure that the last item ends within the numbers.
-        Ok(unsafe { View::new(numbers[covered].as_ptr(), stride * size_of::<T>(), len) })
+        Ok(unsafe { View::new(numbers[covered].as_ptr(), stride, len) })
     }
 
     /// The field of every item that `field` points to: positions in an array of vertices with
@@ -151,12 +152,25 @@ impl<'a, T: Scalar, const N: usize> View<'a, T, N> {
 
     /// A copy of item `index`, or `None` past the last.
     pub fn get(&self, index: usize) -> Option<[T; N]> {
-        (index < self.len).then(|| {
-            let item = self.first.cast::<u8>().wrapping_add(index * self.stride);
-            // SAFETY: every constructor made sure that there are N numbers at each of the `len`
-            // places, in memory that is borrowed for 'a.
-            unsafe { item.cast::<[T; N]>().read_unaligned() }
-        })
+        // SAFETY: it is within the length.
+        (index < self.len).then(|| unsafe { self.item(index) })
+    }
+
+    /// Copies of all items, in their order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = [T; N]> + DoubleEndedIterator + 'a {
+        let view = *self;
+        // SAFETY: it is within the length.
+        (0..view.len).map(move |index| unsafe { view.item(index) })
+    }
+
+    /// # Safety
+    ///
+    /// `index` is less than the length.
+    unsafe fn item(&self, index: usize) -> [T; N] {
+        let item = self.first.cast::<u8>().wrapping_add(index * self.stride);
+        // SAFETY: every constructor made sure that there are N numbers at each of the `len` places,
+        // in memory that is borrowed for 'a.
+        unsafe { item.cast::<[T; N]>().read_unaligned() }
     }
 
     /// # Safety
@@ -201,8 +215,9 @@ impl<'a, T: Scalar, const N: usize> ViewMut<'a, T, N> {
         len: usize,
     ) -> Result<Self, Error> {
         let covered = strided_range::<N>(numbers.len(), offset, stride, len)?;
+        let stride = stride_in_bytes::<T>(stride, len);
         // SAFETY: strided_range made sure that the last item ends within the numbers.
-        Ok(unsafe { ViewMut::new(numbers[covered].as_mut_ptr(), stride * size_of::<T>(), len) })
+        Ok(unsafe { ViewMut::new(numbers[covered].as_mut_ptr(), stride, len) })
     }
 
     /// As [`View::from_field`].
@@ -268,8 +283,7 @@ impl<'a, T: Scalar, const N: usize> From<&'a mut [[T; N]]> for ViewMut<'a, T, N>
 
 impl<T: Scalar + fmt::Debug, const N: usize> fmt::Debug for View<'_, T, N> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let items = (0..self.len).filter_map(|index| self.get(index));
-        formatter.debug_list().entries(items).finish()
+        formatter.debug_list().entries(self.iter()).finish()
     }
 }
 
@@ -351,6 +365,16 @@ fn strided_range<const N: usize>(
                  {numbers} numbers"
             ))
         })
+}
+
+/// The bytes from one of `len` items to the next; 0, which the library takes for packed, where there
+/// is no next one, and `stride` may be any number.
+fn stride_in_bytes<T>(stride: usize, len: usize) -> usize {
+    if len > 1 {
+        stride * size_of::<T>() // two items lie in memory, so the number of bytes is one
+    } else {
+        0
+    }
 }
 
 /// Where in an `S` its field `F` lies, if it is the same place in every item of a slice at `base`

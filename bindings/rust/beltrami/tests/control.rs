@@ -184,6 +184,27 @@ fn a_panic_goes_round_the_library_and_on() {
 }
 
 #[test]
+fn a_closure_that_panics_again_when_it_is_dropped_does_so_outside_the_library() {
+    struct Bomb;
+    impl Drop for Bomb {
+        fn drop(&mut self) {
+            panic!("dropped");
+        }
+    }
+    let (positions, faces) = sheet(4);
+    let bomb = Bomb;
+    let control = Control::new().on_progress(move |_| {
+        let _held = &bomb;
+        panic!("called");
+    });
+    let mut flattener = Flattener::new().unwrap();
+    let mesh = Mesh::new(&positions, &faces);
+    let run = AssertUnwindSafe(|| flattener.flatten_with(&mesh, control).map(drop));
+    assert_eq!(catch_unwind(run).unwrap_err().downcast_ref(), Some(&"dropped"));
+    assert!(flattener.run(Control::new()).is_ok());
+}
+
+#[test]
 fn a_flattener_moves_to_another_thread() {
     let (positions, faces) = sheet(8);
     let mut flattener = Flattener::new().unwrap();

@@ -27,7 +27,7 @@ fn a_sheet_becomes_an_injective_map_of_low_distortion() {
     let map = flattener.flatten(&Mesh::new(&positions, &faces)).unwrap();
     assert_eq!(map.status(), Status::Injective);
     assert!(map.is_injective());
-    let map = map.ensure_injective().unwrap();
+    let map = map.ensure_injective().unwrap().ensure_float32_injective().unwrap();
     let uvs = map.uvs::<[f64; 2]>();
     assert!(check_injective(&faces, &uvs).unwrap().injective);
     assert_eq!(map.certificate(), check_injective(&faces, &uvs).unwrap());
@@ -158,6 +158,10 @@ fn a_map_that_is_not_injective_is_a_result_and_an_error_on_demand() {
     assert!(check_triangles(&faces, &uvs).unwrap().all_positive());
     let crossings = check_boundary(&faces, &uvs).unwrap();
     assert!(crossings.count > 0 && crossings.first.is_some());
+    let first = map.certificate().crossings.first;
+    assert_eq!(refused.element, first.map(|[vertex, _]| Element::Vertex(vertex)));
+    let refused = map.ensure_float32_injective().map(drop).unwrap_err();
+    assert_eq!(refused.kind, ErrorKind::NotInjective);
 
     flattener.set_options(&Options::new()).unwrap();
     let map = flattener.flatten(&mesh).unwrap().ensure_injective().unwrap();
@@ -194,7 +198,9 @@ fn a_map_beyond_single_precision_is_no_injective_one_in_it() {
     let refused = map.ensure_injective().map(drop).unwrap_err();
     assert_eq!(refused.kind, ErrorKind::NotInjectiveFloat32);
     flattener.set_options(&Options::new()).unwrap();
-    assert!(flattener.flatten(&mesh).unwrap().ensure_injective().is_ok());
+    let map = flattener.flatten(&mesh).unwrap().ensure_injective().unwrap();
+    let refused = map.ensure_float32_injective().map(drop).unwrap_err();
+    assert_eq!(refused.kind, ErrorKind::NotInjectiveFloat32);
 }
 
 #[test]
@@ -267,11 +273,32 @@ fn checks_refuse_what_is_no_map() {
     let uvs = [[0.0_f32, 0.0], [1.0, 0.0], [1.0, f32::NAN], [0.0, 1.0]];
     let error = check_injective(&faces, &uvs).unwrap_err();
     assert_eq!((error.kind, error.element), (ErrorKind::NonFinite, Some(Element::Vertex(2))));
+    assert!(error.to_string().contains("vertex 2"), "{error}");
     let error = check_triangles(&faces, &uvs[..2]).unwrap_err();
     assert_eq!((error.kind, error.element), (ErrorKind::IndexOutOfRange, Some(Element::Face(0))));
+}
+
+#[test]
+fn measures_refuse_what_is_no_map() {
     let (positions, faces) = sheet(2);
-    let error = measure(&Mesh::new(&positions, &faces), &uvs).unwrap_err();
-    assert_eq!(error.kind, ErrorKind::InvalidArgument);
+    let refusal = |positions: &[[f64; 3]], faces: &[[u32; 3]], uvs: &[[f64; 2]]| {
+        let mesh = Mesh::new(positions, faces);
+        let error = measure(&mesh, uvs).unwrap_err();
+        assert_eq!(measure_faces(&mesh, uvs).unwrap_err(), error);
+        (error.kind, error.element)
+    };
+    let flat: Vec<_> = positions.iter().map(|&[x, y, _]| [x, y]).collect();
+    assert_eq!(refusal(&positions, &faces, &flat[1..]), (ErrorKind::InvalidArgument, None));
+    assert_eq!(refusal(&positions, &[], &flat), (ErrorKind::Empty, None));
+    let beyond = refusal(&positions, &[[0, 1, 2], [0, 2, 9]], &flat);
+    assert_eq!(beyond, (ErrorKind::IndexOutOfRange, Some(Element::Face(1))));
+    let mut holed = flat.clone();
+    holed[3][0] = f64::INFINITY;
+    let infinite = refusal(&positions, &faces, &holed);
+    assert_eq!(infinite, (ErrorKind::NonFinite, Some(Element::Vertex(3))));
+    let mut torn = positions.clone();
+    torn[5][2] = f64::NAN;
+    assert_eq!(refusal(&torn, &faces, &flat), (ErrorKind::NonFinite, None));
 }
 
 #[test]

@@ -2,8 +2,11 @@
 
 use beltrami::{ErrorKind, View, ViewMut};
 
+/// All items, as both ways to them have them.
 fn items<const N: usize>(view: &View<'_, f32, N>) -> Vec<[f32; N]> {
-    (0..view.len()).map(|index| view.get(index).unwrap()).collect()
+    let items: Vec<_> = view.iter().collect();
+    assert!(items.iter().copied().map(Some).eq((0..view.len()).map(|index| view.get(index))));
+    items
 }
 
 #[test]
@@ -37,6 +40,8 @@ fn strides_reach_to_the_last_number_and_no_further() {
     assert!(strided(9, 3, 1).is_err());
     assert!(strided(usize::MAX, 3, 1).is_err());
     assert!(strided(0, usize::MAX, 3).is_err());
+    assert_eq!(items(&strided(8, usize::MAX, 1).unwrap()), [[8.0, 9.0, 10.0]], "no next item");
+    assert!(strided(0, usize::MAX, 0).unwrap().is_empty());
     assert!(strided(0, 3, usize::MAX).is_err());
 }
 
@@ -69,6 +74,7 @@ fn mutable_views_are_checked_alike() {
     let mut numbers = [0.0_f32; 11];
     assert!(ViewMut::<_, 3>::strided(&mut numbers, 0, 4, 3).is_ok());
     assert!(ViewMut::<_, 3>::strided(&mut numbers, 1, 4, 3).is_err());
+    assert_eq!(ViewMut::<_, 3>::strided(&mut numbers, 8, usize::MAX, 1).unwrap().len(), 1);
     assert!(ViewMut::<_, 2>::from_flat(&mut numbers).is_err());
     let mut boxes = [Box::new([0.0_f32; 2])];
     assert!(ViewMut::from_field(&mut boxes, |item| item.as_mut()).is_err());
