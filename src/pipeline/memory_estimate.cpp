@@ -24,8 +24,11 @@ namespace {
 // ---- Measured ----------------------------------------------------------------------------------
 
 /// Numbers of the factor per row and log2(rows). By minimum degree, which is worst where all
-/// vertices are alike: 2.0 to 2.7 on scans, 4.7 on regular grids. And by nested dissection.
-constexpr double kFillByDegree = 2.7, kFillOfRegular = 2.5, kFillByDissection = 2.6;
+/// vertices are alike: 2.0 to 2.7 on scans, 4.7 on regular grids. By nested dissection in space,
+/// and in the plane: composite majorization starts from Tutte's embedding, which squeezes most of
+/// the mesh.
+constexpr double kFillByDegree = 2.7, kFillOfRegular = 2.5;
+constexpr double kFillInSpace = 2.75, kFillInPlane = 3.5;
 /// Bytes per row of what describes the factor: supernodes and their rows.
 constexpr double kSymbolic = 48;
 /// Numbers per row in the update matrices of a factorization: on one thread, and on each other.
@@ -89,30 +92,29 @@ struct System {
   double kept, peak;
 };
 
-enum class Ordering { kByDegree, kByPlaces };
-
-/// Entries of the factor, or blocks of it. It never has fewer for more rows, though dissection is
-/// better than minimum degree, and left to large systems.
-double factor_entries(double rows, double regular, Ordering ordering) {
+/// Entries of the factor, or blocks of it; `fill` is that of a dissection. It never has fewer for
+/// more rows, though dissection is better than minimum degree, and left to large systems.
+double factor_entries(double rows, double regular, double fill) {
   const auto by_degree = [regular](double count) {
     return (kFillByDegree + kFillOfRegular * regular) * count * std::log2(count + 2);
   };
-  if (ordering == Ordering::kByDegree || rows < kLeastDissected) return by_degree(rows);
-  return std::max(kFillByDissection * rows * std::log2(rows), by_degree(kLeastDissected));
+  if (rows < kLeastDissected) return by_degree(rows);
+  return std::max(fill * rows * std::log2(rows), by_degree(kLeastDissected));
 }
 
 /// With blocks of one. Small systems have it in double precision anyway.
-double factor_bytes(const Counts& n, Ordering ordering, Precision precision) {
+double factor_bytes(const Counts& n, Precision precision, double fill) {
   const auto in_double = [&](double rows) {
-    return sizeof(double) * factor_entries(rows, n.regular, ordering);
+    return sizeof(double) * factor_entries(rows, n.regular, fill);
   };
   const double bytes = in_double(n.vertices);
   if (precision == Precision::kDouble || n.vertices < kLeastSingle) return bytes;
   return std::max(0.5 * bytes, in_double(kLeastSingle));
 }
 
-System system_bytes(const Counts& n, int block, Precision precision, Ordering ordering,
-                    int threads) {
+/// Of blocks of one in space, of two in the plane.
+System system_bytes(const Counts& n, int block, Precision precision, int threads) {
+  const double fill = block == 1 ? kFillInSpace : kFillInPlane;
   const bool single = precision == Precision::kSingle;
   const double scalar = single ? sizeof(float) : sizeof(double);
   const double rows = n.vertices, squares = rows * block * block;
@@ -120,7 +122,7 @@ System system_bytes(const Counts& n, int block, Precision precision, Ordering or
   const double matrix =
       entries * (sizeof(double) + sizeof(int)) + rows * (1 + block) * kIndex + n.faces * 3 * kIndex;
   const double pattern = entries * 2 * sizeof(int) + rows * block * sizeof(int);
-  const double factor = block * block * factor_bytes(n, ordering, precision);
+  const double factor = block * block * factor_bytes(n, precision, fill);
   const double scaled = single ? entries * kReal + rows * block * 2 * kReal : 0;
   const double kept = matrix + pattern + rows * kSymbolic + scaled + factor;
   const double others = std::min(threads - 1.0, kMostTasks);
@@ -135,7 +137,7 @@ System system_bytes(const Counts& n, int block, Precision precision, Ordering or
 /// Newton's method on all faces, without the map itself.
 double newton_bytes(const Counts& n, int threads) {
   const double fields = 5 * n.vertices * kUv + n.faces * kReal;  // and the weights of the faces
-  return fields + system_bytes(n, 2, Precision::kDouble, Ordering::kByDegree, threads).peak;
+  return fields + system_bytes(n, 2, Precision::kDouble, threads).peak;
 }
 
 /// Composite majorization from Tutte's embedding; in a scaffold, the mesh is copied into it.
@@ -146,7 +148,7 @@ double cm_bytes(const Counts& n, int threads, bool scaffold) {
 }
 
 double tutte_bytes(const Counts& n) {
-  return 3 * n.vertices * kUv + system_bytes(n, 1, Precision::kDouble, Ordering::kByDegree, 1).peak;
+  return 3 * n.vertices * kUv + system_bytes(n, 1, Precision::kDouble, 1).peak;
 }
 
 /// What is known of the fine mesh from the prolongation on, the map with it.
@@ -157,7 +159,7 @@ double fine_bytes(const Counts& n) {
 /// The harmonic map in the prolonged Beltrami coefficients.
 double harmonic_bytes(const Counts& n, int threads) {
   return n.faces * sizeof(Cotangents) + 2 * n.vertices * kUv +
-         system_bytes(n, 1, Precision::kSingle, Ordering::kByPlaces, threads).peak;
+         system_bytes(n, 1, Precision::kSingle, threads).peak;
 }
 
 /// What is alive beside the work of the metric mode: the problem, and where the coarse map has the
@@ -168,7 +170,7 @@ double metric_problem_bytes(const Counts& n) {
 
 /// The metric solve, then L-BFGS with its factor.
 double metric_bytes(const Counts& n, int threads) {
-  const System system = system_bytes(n, 1, Precision::kSingle, Ordering::kByPlaces, threads);
+  const System system = system_bytes(n, 1, Precision::kSingle, threads);
   const double solve = n.faces * sizeof(EdgeWeights) + system.peak;
   const double polish = system.kept + kPolishFields * n.vertices * kUv;
   return metric_problem_bytes(n) + std::max(solve, polish);
@@ -176,7 +178,7 @@ double metric_bytes(const Counts& n, int threads) {
 
 /// An extra beside the factor of the metric solve.
 double extra_bytes(const Counts& n, Extra extra, int threads) {
-  const double factor = system_bytes(n, 1, Precision::kSingle, Ordering::kByPlaces, threads).kept;
+  const double factor = system_bytes(n, 1, Precision::kSingle, threads).kept;
   const double work = extra == Extra::kNewtonSteps
                           ? newton_bytes(n, threads)
                           : n.faces * sizeof(EdgeWeights) + harmonic_bytes(n, threads);
@@ -187,15 +189,14 @@ double extra_bytes(const Counts& n, Extra extra, int threads) {
 double reduced_bytes(const Counts& n) {
   const double metas = std::min(kMetas + kCurvedMetas * n.boundary, n.boundary);
   const double basis = kRowsOfSample * std::min(kSamples + metas, n.faces) * metas * kReal;
-  const System system = system_bytes(n, 1, Precision::kDouble, Ordering::kByPlaces, 1);
+  const System system = system_bytes(n, 1, Precision::kDouble, 1);
   return fine_bytes(n) + n.faces * sizeof(Cotangents) + n.vertices * kUv +
          std::max(system.peak, system.kept + basis);
 }
 
 double boundary_first_bytes(const Counts& n) {
   // Columns of curvatures and of factors, the places, and products of the Laplacian with them.
-  return fine_bytes(n) + 5 * n.vertices * kUv +
-         system_bytes(n, 1, Precision::kSingle, Ordering::kByPlaces, 1).peak;
+  return fine_bytes(n) + 5 * n.vertices * kUv + system_bytes(n, 1, Precision::kSingle, 1).peak;
 }
 
 /// As if the simplifier kept the shares of vertices and boundary edges.
