@@ -229,6 +229,14 @@ beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh
   });
 }
 
+beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes) {
+  return enter(context, [&](beltrami_context& self) {
+    if (bytes == nullptr) throw Error(BELTRAMI_E_INVALID_ARGUMENT, "bytes is NULL");
+    *bytes = self.estimate_memory();
+    return BELTRAMI_OK;
+  });
+}
+
 beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress, void* user) {
   return enter(context, [&](beltrami_context& self) { return self.run(progress, user); });
 }

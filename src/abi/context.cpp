@@ -1,12 +1,14 @@
 #include "abi/context.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "abi/buffers.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "mesh/rest_shape.h"
+#include "pipeline/memory_estimate.h"
 
 static_assert(std::atomic<bool>::is_always_lock_free,
               "beltrami_cancel may be called from a signal handler");
@@ -60,6 +62,20 @@ class RunMark {
   bool used_ = false;
 };
 
+/// Throws Error OUT_OF_MEMORY. A limit of 0 allows everything.
+void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
+  constexpr std::uint64_t kMebibyte = 1 << 20;
+  const auto allowed = static_cast<std::uint64_t>(limit);
+  if (limit == 0 || estimate <= allowed) return;
+  throw Error(BELTRAMI_E_OUT_OF_MEMORY,
+              "the run is estimated to need " +
+                  std::to_string((estimate + kMebibyte - 1) / kMebibyte) +
+                  " MiB of memory, and the option memory-limit allows " +
+                  std::to_string(allowed / kMebibyte) +
+                  " MiB: raise it, flatten a mesh with fewer faces, or do without cm, refine and "
+                  "many threads (fewer coarse-faces hardly help)");
+}
+
 }  // namespace
 
 LoadedMesh load_mesh(const beltrami_mesh* theirs) {
@@ -83,9 +99,16 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs) {
 
 }  // namespace beltrami
 
+std::uint64_t beltrami_context::estimate_memory() const {
+  if (!mesh) {
+    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
+  }
+  return beltrami::estimate_memory(mesh->input.disk, options);
+}
+
 beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   using beltrami::Error;
-  if (!mesh) throw Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
+  beltrami::require_within_limit(estimate_memory(), options.memory_limit);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);

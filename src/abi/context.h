@@ -35,7 +35,12 @@ struct beltrami_context {
   std::atomic<bool> cancelled{false};
   bool running = false;
 
-  /// Flattens the mesh. Throws Error INVALID_STATE, CANCELLED or SOLVER; keeps old results then.
+  /// Bytes that the library will hold at the peak of the next run: see beltrami_estimate_memory.
+  /// Throws Error INVALID_STATE where there is no mesh.
+  std::uint64_t estimate_memory() const;
+
+  /// Flattens the mesh. Throws Error INVALID_STATE, OUT_OF_MEMORY, CANCELLED or SOLVER; keeps old
+  /// results then.
   beltrami_status run(beltrami_progress progress, void* user);
 
   /// The results. Throws Error INVALID_STATE where there are none.

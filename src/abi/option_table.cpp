@@ -137,6 +137,17 @@ const OptionEntry kOptions[] = {
      "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the "
      "fine mesh is flattened: what is injective then are its own triangles on the same vertices.",
      0, std::size(kSwitch) - 1, kSwitch, get<&Options::delaunay>, set<&Options::delaunay>},
+    {BELTRAMI_OPTION_MEMORY_LIMIT,
+     BELTRAMI_TYPE_INT,
+     "memory-limit",
+     "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before "
+     "it starts, and steps that only hard meshes need are left out where they would exceed it; 0 "
+     "sets no limit.",
+     0,
+     1e14,
+     {},
+     get<&Options::memory_limit>,
+     set<&Options::memory_limit>},
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.

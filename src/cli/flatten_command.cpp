@@ -72,6 +72,9 @@ class Flattening {
   void flatten() {
     // A signal from before the guard has cancelled nothing yet.
     throw_if_interrupted();
+    std::uint64_t estimate = 0;
+    require(beltrami_estimate_memory(context_.get(), &estimate));
+    report_.estimated_memory_bytes = estimate;
     const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
       static_cast<ProgressBar*>(bar)->show(fraction, stage);
       return interrupted();

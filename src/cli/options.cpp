@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "failure.h"
 
@@ -53,6 +54,8 @@ std::string wrapped(std::string text) {
 std::string help_text(const Option& option) {
   std::string text = option.info.summary;
   if (option.is_flag()) return wrapped(text);
+  if (option.is_byte_count())
+    text += " K, M and G behind the number multiply it by powers of 1024.";
   text += " [";
   if (option.info.type != BELTRAMI_TYPE_CHOICE) text += range_of(option) + "; ";
   return wrapped(text + "default " + default_word(option) + "]");
@@ -73,9 +76,26 @@ std::string parse_number(const std::string& text, const Option& option, Number& 
   return "'" + text + "' is not " + kind + " from " + range_of(option);
 }
 
+/// A number of bytes with a unit or without: "1048576", "1024K", "1M".
+std::string parse_bytes(const std::string& text, Option& option) {
+  constexpr std::string_view kUnits = "KMG";
+  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  if (unit == std::string_view::npos) return parse_number(text, option, option.integer);
+  const std::int64_t factor = std::int64_t{1024} << (10 * unit);
+  Option scaled = option;
+  scaled.info.maximum = std::floor(option.info.maximum / static_cast<double>(factor));
+  const std::string number(text, 0, text.size() - 1);
+  if (!parse_number(number, scaled, scaled.integer).empty()) {
+    return "'" + text + "' is not a whole number of bytes from " + range_of(option);
+  }
+  option.integer = scaled.integer * factor;
+  return "";
+}
+
 }  // namespace
 
 std::string parse_option(const std::string& text, Option& option) {
+  if (option.is_byte_count()) return parse_bytes(text, option);
   if (option.info.type == BELTRAMI_TYPE_INT) return parse_number(text, option, option.integer);
   if (option.info.type == BELTRAMI_TYPE_FLOAT) return parse_number(text, option, option.real);
   for (std::size_t i = 0; i < option.choices.size(); ++i) {
@@ -117,6 +137,7 @@ void Options::add_to(CLI::App& command) {
     command.add_option_function<std::string>(flag, parse, help_text(option))
         ->type_name(option.info.type == BELTRAMI_TYPE_CHOICE  ? joined_choices(option, "|")
                     : option.info.type == BELTRAMI_TYPE_FLOAT ? "X"
+                    : option.is_byte_count()                  ? "BYTES"
                                                               : "N");
   }
 }

@@ -1,4 +1,5 @@
-// The options of a run, as the library describes them: this program knows none by itself.
+// The options of a run, as the library describes them: this program knows none by itself, but for
+// which of them counts bytes.
 #pragma once
 
 #include <beltrami/beltrami.h>
@@ -24,6 +25,8 @@ struct Option {
   bool is_flag() const {
     return info.type == BELTRAMI_TYPE_INT && info.minimum == 0 && info.maximum == 1;
   }
+  /// Bytes may be given in units: 512M.
+  bool is_byte_count() const { return info.key == BELTRAMI_OPTION_MEMORY_LIMIT; }
 };
 
 class Options {

@@ -145,6 +145,16 @@ void append_verdict(const Report& report, std::string& text) {
   text += "\n";
 }
 
+void append_memory(const Report& report, std::string& text) {
+  constexpr double kMebibyte = 1 << 20;
+  const std::uint64_t peak = peak_memory_bytes();
+  if (peak == 0 || !report.estimated_memory_bytes) return;
+  append(text,
+         "memory     %.0f MiB at the peak of the program; %.0f MiB were estimated for the run\n",
+         static_cast<double>(peak) / kMebibyte,
+         static_cast<double>(*report.estimated_memory_bytes) / kMebibyte);
+}
+
 }  // namespace
 
 void Report::set_failure(const Failure& failure) {
@@ -173,6 +183,7 @@ std::string to_json(const Report& report) {
       {"stages", stages_json(report)},
       {"seconds", number(report.seconds)},
       {"peak_memory_bytes", peak_memory_bytes()},
+      {"estimated_memory_bytes", optional(report.estimated_memory_bytes)},
       {"threads", optional(report.threads)}};
   // Paths need not be UTF-8, but JSON must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -207,6 +218,7 @@ std::string to_summary(const Report& report, const std::string& written) {
     append(text, "note       stopped at the iteration limit before it converged\n");
   }
   append(text, "time       %.2f s\n", report.seconds);
+  append_memory(report, text);
   if (!written.empty()) text += "written    " + one_line(written) + "\n";
   return text;
 }

@@ -47,6 +47,8 @@ struct Report {
   std::optional<beltrami_result> result;
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
+  std::optional<std::uint64_t>
+      estimated_memory_bytes;  ///< of the run, see beltrami_estimate_memory
   double seconds = 0;
 
   void set_failure(const Failure& failure);

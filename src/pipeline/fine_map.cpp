@@ -12,6 +12,7 @@
 #include "flatten/reduced.h"
 #include "flatten/uv_prolongation.h"
 #include "fullspace/tutte.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
@@ -36,12 +37,16 @@ constexpr double kReachGrowth = 3;
 
 }  // namespace
 
-Index Run::coarse_target() const {
-  const double share = kCoarseShare * disk_->face_count();
-  const auto target = options_.coarse_faces > 0
-                          ? options_.coarse_faces
+Index coarse_faces(Index faces, const Options& options) {
+  const double share = kCoarseShare * faces;
+  const auto target = options.coarse_faces > 0
+                          ? options.coarse_faces
                           : std::max(kLeastCoarseFaces, static_cast<std::int64_t>(share));
-  return static_cast<Index>(std::min<std::int64_t>({target, coarse_limit_, input_.face_count()}));
+  return static_cast<Index>(std::min<std::int64_t>(target, faces));
+}
+
+Index Run::coarse_target() const {
+  return std::min(coarse_limit_, coarse_faces(input_.face_count(), options_));
 }
 
 void Run::solve_coarse(FineProblem& fine) {
@@ -234,6 +239,7 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
     for (int round = 0; round < kRotations && flips > kManyFlips; ++round) flips = solve(true);
     const double share = static_cast<double>(flips) / disk_->face_count();
     if (flips <= kManyFlips || share <= kFlippedShare) return;
+    if (!affords(*disk_, options_, Extra::kHarmonicMap)) return;
     // On extreme models the free map flips far more than the harmonic one.
     std::vector<Vec2> harmonic = carried;
     solve_harmonic(*disk_, modified_cotangents(fine.rest, fine.metric, options_.threads), harmonic,
@@ -309,7 +315,8 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
       before_last_round = polished.energies.front();
       if (gained <= kLittleGain * energy) break;
     }
-    if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back()) {
+    if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
+        affords(*disk_, options_, Extra::kNewtonSteps)) {
       statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
     }
     clean({});

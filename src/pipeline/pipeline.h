@@ -32,6 +32,9 @@ struct Options {
   double time_limit = 0;      ///< wall seconds after which refinement stops; 0: none
   bool float32 = false;       ///< deliver single-precision numbers
   bool delaunay = false;      ///< flatten on the intrinsic Delaunay triangulation
+
+  /// Bytes that the run is to stay within by its estimate; 0: any number.
+  std::int64_t memory_limit = 0;
 };
 
 struct StageStatistics {

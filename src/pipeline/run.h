@@ -29,6 +29,10 @@ struct FineProblem {
   std::vector<Cotangents> cotangents;  ///< for the harmonic solves
 };
 
+/// Faces that a mesh of so many is simplified to: the option's number, or max(1%, 10,000), and no
+/// more than it has.
+Index coarse_faces(Index faces, const Options& options);
+
 class Run {
  public:
   Run(const DiskMesh& disk, const Options& options, const Progress& progress,

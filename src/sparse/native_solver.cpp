@@ -16,8 +16,6 @@ namespace {
 
 constexpr int kMaxSteps = 16;
 
-// Below so many vertices minimum degree takes less time than nested dissection saves.
-constexpr int kLeastDissected = 250000;
 // Multiplications per vertex^(3/2) that nested dissection of a surface does not exceed, unless its
 // places mislead.
 constexpr double kMostWork = 20;

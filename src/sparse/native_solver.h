@@ -7,11 +7,16 @@
 
 namespace beltrami {
 
+/// Below so many vertices minimum degree takes less time than nested dissection saves.
+inline constexpr int kLeastDissected = 250000;
+/// Below so many rows factors in double precision stay in the caches.
+inline constexpr int kLeastSingle = 50000;
+
 /// A multifrontal Cholesky factorization. Small matrices are ordered by minimum degree, large ones
 /// by nested dissection where their places are known and make it the better order.
 /// Smaller matrices than `least_single` are factorized in double precision whatever the options
-/// say: their factors stay in the caches, and iterating would cost more than it saves.
+/// say: iterating would cost more than it saves.
 std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options = {},
-                                              int least_single = 50000);
+                                              int least_single = kLeastSingle);
 
 }  // namespace beltrami

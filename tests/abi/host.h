@@ -59,6 +59,19 @@ inline beltrami_status set_mesh(const Context& context, const meshes::TriangleLi
   return beltrami_set_mesh(context.get(), &mesh_view);
 }
 
+/// Sets an integer or a choice.
+inline void set_option(const Context& context, std::int32_t key, std::uint64_t value) {
+  EXPECT_EQ(beltrami_set_int(context.get(), key, static_cast<std::int64_t>(value)), BELTRAMI_OK)
+      << message(context);
+}
+
+/// The bytes that the next run is estimated to need.
+inline std::uint64_t estimate(const Context& context) {
+  std::uint64_t bytes = 0;
+  EXPECT_EQ(beltrami_estimate_memory(context.get(), &bytes), BELTRAMI_OK) << message(context);
+  return bytes;
+}
+
 /// A context with this mesh, set to the method that depends on the fewest stages.
 inline Context loaded(const meshes::TriangleList& mesh) {
   Context context = create();

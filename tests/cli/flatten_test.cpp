@@ -108,9 +108,27 @@ TEST(Flatten, ReportsEveryKey) {
   EXPECT_EQ(json["stages"].front()["name"], "read");
   EXPECT_EQ(json["stages"].back()["name"], "picture");
   for (const char* key : {"version", "coarse_faces", "flips_before_repair", "seconds",
-                          "peak_memory_bytes", "threads"}) {
+                          "peak_memory_bytes", "estimated_memory_bytes", "threads"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
+}
+
+TEST(Flatten, StaysWithinAMemoryLimitOrSaysWhatItNeeds) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(6)), out = directory.path("out.obj");
+  const std::string report = directory.path("r.json");
+  const Outcome refused = run({"flatten", in, out, "--memory-limit", "1M", "--report", report});
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_NE(refused.err.find("memory-limit allows 1 MiB"), std::string::npos) << refused.err;
+  EXPECT_EQ(directory.names().size(), 2u) << "an output was written";
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["status"], "BELTRAMI_E_OUT_OF_MEMORY");
+  EXPECT_EQ(json["options"]["memory-limit"], 1 << 20);
+  EXPECT_GT(json["estimated_memory_bytes"], 1 << 20);
+
+  const Outcome flattened = run({"flatten", in, out, "--memory-limit", "1G"});
+  EXPECT_EQ(flattened.exit_code, 0) << flattened.err;
+  EXPECT_NE(flattened.out.find("MiB"), std::string::npos) << flattened.out;
 }
 
 TEST(Flatten, WithOnlyOneIterationIsStillInjective) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "options.h"
 #include "progress_bar.h"
@@ -34,6 +35,22 @@ TEST(ParseOption, TakesNumbersInRange) {
   EXPECT_EQ(parse_option("1e-4", option), "");
   EXPECT_EQ(option.real, 1e-4);
   for (const char* text : {"nan", "inf", "1,5", "2"}) EXPECT_NE(parse_option(text, option), "");
+}
+
+TEST(ParseOption, TakesBytesInUnits) {
+  Option option = number_option(BELTRAMI_TYPE_INT, 0, 5e9);
+  option.info.key = BELTRAMI_OPTION_MEMORY_LIMIT;
+  for (const auto& [text, bytes] : {std::pair<const char*, std::int64_t>{"1000", 1000},
+                                    {"3K", 3 << 10},
+                                    {"512M", 512 << 20},
+                                    {"4G", std::int64_t{4} << 30}}) {
+    EXPECT_EQ(parse_option(text, option), "");
+    EXPECT_EQ(option.integer, bytes) << text;
+  }
+  for (const char* text : {"5G", "-1K", "1.5G", "K", "1T", "1 G", "9999999999999999999G"}) {
+    EXPECT_NE(parse_option(text, option).find(text), std::string::npos) << text;
+    EXPECT_EQ(option.integer, std::int64_t{4} << 30) << "the old value stays";
+  }
 }
 
 TEST(ParseOption, TakesNamedChoices) {

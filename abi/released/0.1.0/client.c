@@ -115,8 +115,11 @@ static void fail_with_an_element(beltrami_context* context) {
 
 static void flatten(beltrami_context* context) {
   const beltrami_mesh mesh = describe_sheet();
+  uint64_t bytes[2] = {0, 7};
   int calls = 0;
   REQUIRE(beltrami_set_mesh(context, &mesh) == BELTRAMI_OK);
+  REQUIRE(beltrami_estimate_memory(context, bytes) == BELTRAMI_OK);
+  REQUIRE(bytes[0] > sizeof positions && bytes[1] == 7);
   beltrami_cancel(context);
   REQUIRE(beltrami_run(context, NULL, NULL) == BELTRAMI_E_CANCELLED);
   REQUIRE(beltrami_run(context, count_calls, &calls) == BELTRAMI_OK);

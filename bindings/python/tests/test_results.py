@@ -123,6 +123,19 @@ def test_a_flattener_without_a_mesh_says_so():
     assert caught.value.status == "BELTRAMI_E_INVALID_STATE"
 
 
+def test_a_run_needs_no_more_memory_than_it_is_allowed(hump):
+    flattener = beltrami.Flattener()
+    with pytest.raises(beltrami.InvalidStateError, match="no mesh"):
+        flattener.estimate_memory()
+    flattener.set_mesh(*hump)
+    needed = flattener.estimate_memory()
+    flattener.set_options(memory_limit=needed - 1)
+    with pytest.raises(MemoryError, match="memory-limit"):
+        flattener.run()
+    flattener.set_options(memory_limit=needed)
+    assert flattener.run().injective
+
+
 def test_a_refused_option_leaves_the_old_value(hump):
     flattener = beltrami.Flattener(threads=2)
     with pytest.raises(ValueError, match="threads"):

@@ -99,6 +99,7 @@ def batch(
     time_limit: float = 0.0,
     float32: bool = False,
     delaunay: bool = False,
+    memory_limit: int = 0,
     # end of options
     suffix: str = ".obj",
     root: str | os.PathLike[str] | None = None,
@@ -184,6 +185,10 @@ def batch(
     delaunay : bool, default False
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
+    memory_limit : int, default 0
+        Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
+        left out if they would exceed it, and a run that would do so without them ends before it
+        starts; 0 sets no limit. A number from 0 to 1e+14.
 
     Returns
     -------
@@ -219,6 +224,7 @@ def batch(
         "time_limit": time_limit,
         "float32": float32,
         "delaunay": delaunay,
+        "memory_limit": memory_limit,
         # end of options
     }
     options = _library.Context().set_options(given)  # refuses what is out of range

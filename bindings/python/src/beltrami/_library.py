@@ -280,6 +280,12 @@ class Context:
             _name_negative_index(error, faces)
             raise
 
+    def estimate_memory(self) -> int:
+        """Return the bytes that the next run is estimated to need. Raises InvalidStateError."""
+        out = ffi.new("uint64_t*")
+        self._check(lib.beltrami_estimate_memory(self._context, out))
+        return int(out[0])
+
     def run(self, hook: Hook) -> str:
         """Flatten the mesh; returns the name of the status. Raises what the hook raises.
 

@@ -31,6 +31,7 @@ class Options(TypedDict, total=False):
     time_limit: float
     float32: bool
     delaunay: bool
+    memory_limit: int
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,13 @@ impl IntoValue for u32 {
     }
 }
 
+impl IntoValue for u64 {
+    /// Beyond all ranges where it does not fit, so that the library refuses it.
+    fn into_value(self) -> Value {
+        Value::Int(i64::try_from(self).unwrap_or(i64::MAX))
+    }
+}
+
 impl IntoValue for f64 {
     fn into_value(self) -> Value {
         Value::Float(self)

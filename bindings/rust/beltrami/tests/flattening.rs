@@ -5,8 +5,8 @@ mod support;
 use std::mem::size_of;
 
 use beltrami::{
-    check_boundary, check_injective, check_triangles, measure, measure_faces, Delaunay, Element,
-    Error, ErrorKind, Flattener, Injectivity, Mesh, Method, Options, Status, View,
+    check_boundary, check_injective, check_triangles, measure, measure_faces, Control, Delaunay,
+    Element, Error, ErrorKind, Flattener, Injectivity, Mesh, Method, Options, Status, View,
 };
 use support::{sheet, single, spiral};
 
@@ -35,6 +35,23 @@ fn a_sheet_becomes_an_injective_map_of_low_distortion() {
     assert!((2.0..2.2).contains(&map.distortion().symmetric_dirichlet));
     assert_eq!(map.faces::<u32>(), faces);
     assert_eq!(map.faces::<u64>()[5], faces[5].map(u64::from));
+}
+
+#[test]
+fn a_run_needs_no_more_memory_than_it_is_allowed() {
+    let (positions, faces) = sheet(20);
+    let mut flattener = Flattener::new().unwrap();
+    assert_eq!(flattener.estimate_memory().unwrap_err().kind, ErrorKind::InvalidState);
+    flattener.set_mesh(&Mesh::new(&positions, &faces)).unwrap();
+    let bytes = flattener.estimate_memory().unwrap();
+    flattener.set_options(&Options::new().memory_limit(bytes - 1)).unwrap();
+    let refused = flattener.run(Control::new()).unwrap_err();
+    assert_eq!(refused.kind, ErrorKind::OutOfMemory);
+    assert!(refused.to_string().contains("memory-limit"), "{refused}");
+    flattener.set_options(&Options::new().memory_limit(bytes)).unwrap();
+    assert!(flattener.run(Control::new()).unwrap().is_injective());
+    let beyond = Options::new().memory_limit(u64::MAX);
+    assert_eq!(flattener.set_options(&beyond).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 #[test]

@@ -259,12 +259,15 @@ fn render_option(key: usize, option: &Entry) -> String {
         _ => "&[]".into(),
     };
     let (method, taken) = (option.name.replace('-', "_"), rust_type(option));
+    // Whole literals are of 32 bits where nothing says otherwise.
+    let whole = option.maximum <= f64::from(i32::MAX);
+    let maximum = if whole { option.maximum.to_string() } else { format!("{:?}", option.maximum) };
     writeln!(source, "    {method}({taken}) = {key} {:?}", option.name).unwrap();
     writeln!(source, "        {:?}", option.summary).unwrap();
     writeln!(
         source,
-        "        {:?}({choices}), {}..={}, default {};",
-        option.kind, option.minimum, option.maximum, option.default
+        "        {:?}({choices}), {}..={maximum}, default {};",
+        option.kind, option.minimum, option.default
     )
     .unwrap();
     source

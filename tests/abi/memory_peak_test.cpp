@@ -1,0 +1,83 @@
+// The memory that a run takes against its estimate, measured from outside: of the native solver,
+// and without sanitizers, whose own memory counts. CTest runs each test in a process of its own,
+// whose peak is therefore the test's.
+#include <malloc.h>
+
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abi/host.h"
+
+namespace beltrami {
+namespace {
+
+using namespace host;
+
+double memory_of_process(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(key + ":")) return 1024 * std::stod(line.substr(key.size() + 1));
+  }
+  return 0;
+}
+
+/// What the process grows by from `before` to its peak from here on.
+class PeakFrom {
+ public:
+  explicit PeakFrom(double before) : before_(before) {
+    malloc_trim(0);
+    std::ofstream("/proc/self/clear_refs") << 5;  // the kernel's mark of the peak starts anew
+  }
+  double bytes() const { return memory_of_process("VmHWM") - before_; }
+
+ private:
+  double before_;
+};
+
+using Setting = std::pair<std::int32_t, int>;  // key and value of an option
+
+class MemoryOfMode : public testing::TestWithParam<std::vector<Setting>> {};
+
+TEST_P(MemoryOfMode, TakesNoMoreThanEstimated) {
+  const meshes::TriangleList mesh = meshes::bumps(230, 230);
+  malloc_trim(0);
+  const double before = memory_of_process("VmRSS");
+  const Context context = create();
+  for (const auto& [key, value] : GetParam())
+    set_option(context, key, static_cast<std::uint64_t>(value));
+  ASSERT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
+  const auto estimated = static_cast<double>(estimate(context));
+  const PeakFrom peak(before);
+  ASSERT_GE(run(context), BELTRAMI_OK) << message(context);
+  EXPECT_LE(peak.bytes(), estimated);
+  EXPECT_GE(peak.bytes(), 0.3 * estimated) << "the estimate says nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Modes, MemoryOfMode,
+    testing::Values(std::vector<Setting>{{BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_DIRICHLET},
+                                         {BELTRAMI_OPTION_THREADS, 2}},
+                    std::vector<Setting>{{BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_GIF}},
+                    std::vector<Setting>{{BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_CM},
+                                         {BELTRAMI_OPTION_MAX_ITERATIONS, 1}}));
+
+// The least limit, which has no room for what few meshes need.
+TEST(MemoryOfLimitedRun, StaysWithinItsLimit) {
+  const meshes::TriangleList mesh = meshes::bumps(230, 230);
+  malloc_trim(0);
+  const double before = memory_of_process("VmRSS");
+  const Context context = create();
+  ASSERT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
+  set_option(context, BELTRAMI_OPTION_MEMORY_LIMIT, 1);
+  const std::uint64_t limit = estimate(context);
+  set_option(context, BELTRAMI_OPTION_MEMORY_LIMIT, limit);
+  const PeakFrom peak(before);
+  ASSERT_GE(run(context), BELTRAMI_OK) << message(context);
+  EXPECT_LE(peak.bytes(), static_cast<double>(limit));
+  EXPECT_GE(peak.bytes(), 0.5 * static_cast<double>(limit)) << "the estimate says nothing";
+}
+
+}  // namespace
+}  // namespace beltrami
