@@ -78,11 +78,11 @@ void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
 
 }  // namespace
 
-LoadedMesh load_mesh(const beltrami_mesh* theirs) {
+LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
   LoadedMesh loaded;
   loaded.vertex_count = mesh.vertex_count;
-  loaded.input = read_disk(mesh);
+  loaded.input = read_disk(mesh, threads);
   DiskMesh& disk = loaded.input.disk;
   loaded.frame = normalise(disk.positions, disk.faces);
   loaded.area = surface_area(disk) / loaded.frame.scale / loaded.frame.scale;

@@ -23,7 +23,7 @@ struct LoadedMesh {
 };
 
 /// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.
-LoadedMesh load_mesh(const beltrami_mesh* mesh);
+LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads);
 
 }  // namespace beltrami
 

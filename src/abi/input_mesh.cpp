@@ -31,8 +31,9 @@ std::vector<Item> arranged(const std::vector<Item>& items, const std::vector<Ind
 }
 
 /// Renumbers vertices and faces by where they are. Precondition: finite positions.
-void arrange(const std::vector<Vec3>& positions, InputDisk& input, std::vector<Triangle>& faces) {
-  const std::vector<Index> order = along_hilbert_curve(positions);
+void arrange(const std::vector<Vec3>& positions, int threads, InputDisk& input,
+             std::vector<Triangle>& faces) {
+  const std::vector<Index> order = along_hilbert_curve(positions, threads);
   std::vector<Index> place(order.size());
   for (Index i = 0; i < size_of(order); ++i) place[order[i]] = i;
   for (Triangle& face : faces) {
@@ -53,7 +54,7 @@ InputTriangles read_triangles(const beltrami_mesh& mesh) {
   return triangles;
 }
 
-InputDisk read_disk(const beltrami_mesh& mesh) {
+InputDisk read_disk(const beltrami_mesh& mesh, int threads) {
   InputTriangles triangles = read_triangles(mesh);
   InputDisk input;
   input.original = std::move(triangles.original);
@@ -61,9 +62,9 @@ InputDisk read_disk(const beltrami_mesh& mesh) {
   try {
     validate_indices(size_of(positions), triangles.faces);
     validate_positions(positions);
-    arrange(positions, input, triangles.faces);
+    arrange(positions, threads, input, triangles.faces);
     positions = read_positions(mesh, input.original);
-    input.disk = build_disk(std::move(positions), std::move(triangles.faces));
+    input.disk = build_disk(std::move(positions), std::move(triangles.faces), threads);
   } catch (const Error& error) {
     if (error.element().kind != BELTRAMI_ELEMENT_NONE) {
       fail_in_input_numbers(mesh, input, read_positions(mesh, input.original));

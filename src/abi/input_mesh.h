@@ -29,7 +29,7 @@ struct InputDisk {
 /// Reads and validates the caller's mesh, and numbers its vertices and faces by where they are.
 /// Throws Error INVALID_ARGUMENT or a mesh status, whose element and message count as the input
 /// does. Positions of unused vertices are not looked at.
-InputDisk read_disk(const beltrami_mesh& mesh);
+InputDisk read_disk(const beltrami_mesh& mesh, int threads);
 
 /// The same for checks of the topology alone: all positions zero, the order as in the input.
 InputDisk read_topology(const beltrami_mesh& mesh);

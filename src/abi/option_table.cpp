@@ -140,7 +140,8 @@ const OptionEntry kOptions[] = {
     {BELTRAMI_OPTION_MEMORY_LIMIT,
      BELTRAMI_TYPE_INT,
      "memory-limit",
-     "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before "
+     "Bytes of memory that a run is to stay within by its estimate: one that needs more ends "
+     "before "
      "it starts, and steps that only hard meshes need are left out where they would exceed it; 0 "
      "sets no limit.",
      0,

@@ -42,7 +42,7 @@ void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotange
                     std::vector<Vec2>& uvs, int threads) {
   DenseMatrix rhs = DenseMatrix::Zero(mesh.vertex_count(), 2);
   MeshMatrix laplacian =
-      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
+      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary, threads,
                          [&](Index row, Index vertex, double weight) {
                            rhs.row(row) += weight * uvs[vertex].transpose();
                          });

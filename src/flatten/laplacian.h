@@ -23,15 +23,15 @@ Cotangents modified_cotangents(const RestTriangle& rest, Complex mu);
 std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& rest,
                                             const std::vector<FaceMetric>& metric, int threads);
 
-/// Adds the stiffness of one face: edge k, opposite to corner k, with weights[k].
-inline void add_stiffness(MeshMatrix& laplacian, Index face, const Triangle& corners,
-                          const std::array<double, 3>& weights) {
+/// Adds the stiffness of one face by add(i, j, block): edge k, opposite to corner k, with
+/// weights[k].
+template <class Add>
+void add_stiffness(const std::array<double, 3>& weights, const Add& add) {
   for (int k = 0; k < 3; ++k) {
     const int i = next_corner(k), j = previous_corner(k);
-    const double weight = weights[k];
-    laplacian.add(face, corners, i, i, [=](int, int) { return weight; });
-    laplacian.add(face, corners, j, j, [=](int, int) { return weight; });
-    laplacian.add(face, corners, i, j, [=](int, int) { return -weight; });
+    const double at_corner = weights[i] + weights[j], at_edge = -weights[k];
+    add(k, k, [=](int, int) { return at_corner; });
+    add(i, j, [=](int, int) { return at_edge; });
   }
 }
 
@@ -41,18 +41,19 @@ inline void add_stiffness(MeshMatrix& laplacian, Index face, const Triangle& cor
 template <class Pull>
 MeshMatrix assemble_laplacian(Index vertex_count, const std::vector<Triangle>& faces,
                               const std::vector<Cotangents>& cotangents,
-                              const std::vector<bool>& fixed, Pull&& pull) {
-  MeshMatrix laplacian(vertex_count, faces, fixed, 1);
+                              const std::vector<bool>& fixed, int threads, Pull&& pull) {
+  MeshMatrix laplacian(vertex_count, faces, fixed, 1, threads);
+  laplacian.add_up(faces, threads, [&](Index f, const auto& add) {
+    const Cotangents& c = cotangents[f];
+    add_stiffness({0.5 * c[0], 0.5 * c[1], 0.5 * c[2]}, add);
+  });
   for (Index f = 0; f < size_of(faces); ++f) {
-    std::array<double, 3> weights;
     for (int k = 0; k < 3; ++k) {
-      weights[k] = 0.5 * cotangents[f][k];
       const Index a = faces[f][next_corner(k)], b = faces[f][previous_corner(k)];
       const Index row_a = laplacian.row(a), row_b = laplacian.row(b);
-      if (row_a != kNone && row_b == kNone) pull(row_a, b, weights[k]);
-      if (row_b != kNone && row_a == kNone) pull(row_b, a, weights[k]);
+      if (row_a != kNone && row_b == kNone) pull(row_a, b, 0.5 * cotangents[f][k]);
+      if (row_b != kNone && row_a == kNone) pull(row_b, a, 0.5 * cotangents[f][k]);
     }
-    add_stiffness(laplacian, f, faces[f], weights);
   }
   return laplacian;
 }

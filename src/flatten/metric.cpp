@@ -109,7 +109,8 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
 
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                  const std::vector<bool>& held, const SolverOptions& options)
-    : matrix_(mesh.vertex_count(), mesh.faces, held, 1) {
+    : matrix_(mesh.vertex_count(), mesh.faces, held, 1, options.threads),
+      threads_(options.threads) {
   assemble(mesh, stiffness);
   if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_, mesh.positions, options);
 }
@@ -122,9 +123,8 @@ void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>
 }
 
 void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    add_stiffness(matrix_, f, mesh.faces[f], stiffness[f]);
-  }
+  matrix_.add_up(mesh.faces, threads_,
+                 [&](Index f, const auto& add) { add_stiffness(stiffness[f], add); });
 }
 
 /// The rows of the free vertices.
@@ -132,18 +132,22 @@ template <class Rows>
 DenseMatrix MetricLaplacian::packed(const Rows& rhs) const {
   const std::vector<Index>& row = matrix_.rows();
   DenseMatrix result(matrix_.free_count(), rhs.cols());
-  for (Index v = 0; v < size_of(row); ++v) {
-    if (row[v] != kNone) result.row(row[v]) = rhs.row(v);
-  }
+  parallel_for(threads_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      if (row[v] != kNone) result.row(row[v]) = rhs.row(v);
+    }
+  });
   return result;
 }
 
 template <class Rows>
 void MetricLaplacian::unpack(const DenseMatrix& x, Rows&& result) const {
   const std::vector<Index>& row = matrix_.rows();
-  for (Index v = 0; v < size_of(row); ++v) {
-    if (row[v] != kNone) result.row(v) = x.row(row[v]);
-  }
+  parallel_for(threads_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      if (row[v] != kNone) result.row(v) = x.row(row[v]);
+    }
+  });
 }
 
 DenseMatrix MetricLaplacian::solve(const DenseMatrix& rhs) const {

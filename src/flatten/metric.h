@@ -57,6 +57,7 @@ class MetricLaplacian {
   void unpack(const DenseMatrix& x, Rows&& result) const;
 
   MeshMatrix matrix_;
+  int threads_;
   std::unique_ptr<SpdSolver> solver_;
 };
 

@@ -10,7 +10,7 @@ ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& 
   for (Index i = 0; i < size_of(mesh.boundary); ++i) position_[mesh.boundary[i]] = i;
   std::vector<Eigen::Triplet<double>> pull;
   MeshMatrix laplacian =
-      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
+      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary, 1,
                          [&](Index row, Index vertex, double weight) {
                            const Index at = position_[vertex], meta = metas_.piece[at];
                            const double share = metas_.share[at];

@@ -62,41 +62,43 @@ FaceModel face_model(const RestTriangle& rest, const LinearMap& map, const Densi
   return model;
 }
 
-/// Adds up a density over all faces, weighted by `weight(face)`. Faces are modelled in parallel and
-/// scattered in order, so the bits do not depend on the number of threads.
+/// Adds up a density over all faces, weighted by `weight(face)`.
 template <class Density, class Weight>
 void assemble(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
               const std::vector<Vec2>& uvs, const Density& density, const Weight& weight,
               int threads, MeshMatrix& hessian, Eigen::VectorXd& gradient) {
-  constexpr Index kBatch = 16384;
-  constexpr Index kGrain = 1024;
+  struct Aside {
+    Index row;
+    Vec2 term;
+  };
   hessian.set_zero();
   gradient.setZero(2 * hessian.free_count());
-  std::vector<FaceModel> models(std::min(kBatch, size_of(faces)));
-  for (Index first = 0; first < size_of(faces); first += kBatch) {
-    const Index count = std::min(kBatch, size_of(faces) - first);
-    parallel_for(threads, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) {
-        const Triangle& t = faces[first + i];
-        const RestTriangle& r = rest[first + i];
-        const LinearMap map = linear_map(r, uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-        models[i] = face_model(r, map, density);
-        const double w = weight(static_cast<Index>(first + i));
-        models[i].gradient *= w;
-        models[i].hessian *= w;
-      }
-    });
-    for (Index i = 0; i < count; ++i) {
-      const Triangle& t = faces[first + i];
-      for (int k = 0; k < 3; ++k) {
-        const Index row = hessian.row(t[k]);
-        if (row != kNone) gradient.segment<2>(2 * row) += models[i].gradient.segment<2>(2 * k);
-        for (int l = k; l < 3; ++l) {
-          hessian.add(first + i, t, k, l,
-                      [&](int r, int c) { return models[i].hessian(2 * k + r, 2 * l + c); });
-        }
+  const FaceChunks& chunks = hessian.chunks();
+  std::vector<std::vector<Aside>> aside(chunks.count());
+  hessian.add_up(faces, threads, [&](Index f, const auto& add) {
+    const Triangle& t = faces[f];
+    FaceModel model =
+        face_model(rest[f], linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]), density);
+    const double w = weight(f);
+    for (int k = 0; k < 3; ++k) {
+      const Index row = hessian.row(t[k]);
+      if (row == kNone) continue;
+      const Vec2 term = w * model.gradient.template segment<2>(2 * k);
+      if (chunks.shared(t[k])) {
+        aside[FaceChunks::of(f)].push_back({row, term});
+      } else {
+        gradient.segment<2>(2 * row) += term;
       }
     }
+    model.hessian *= w;
+    for (int k = 0; k < 3; ++k) {
+      for (int l = k; l < 3; ++l) {
+        add(k, l, [&](int r, int c) { return model.hessian(2 * k + r, 2 * l + c); });
+      }
+    }
+  });
+  for (const std::vector<Aside>& later : aside) {
+    for (const Aside& a : later) gradient.segment<2>(2 * a.row) += a.term;
   }
 }
 

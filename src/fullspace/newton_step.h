@@ -55,7 +55,7 @@ class NewtonStepper {
         weights_(std::move(weights)),
         threads_(threads),
         density_(density),
-        hessian_(static_cast<Index>(fixed.size()), faces, fixed, 2),
+        hessian_(static_cast<Index>(fixed.size()), faces, fixed, 2, threads),
         solver_(make_spd_solver({Precision::kDouble, threads})) {
     double total = 0;
     for (Index f = 0; f < counted; ++f) total += weights_[f];

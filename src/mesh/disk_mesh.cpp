@@ -1,92 +1,143 @@
 #include "mesh/disk_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace beltrami {
 namespace {
+
+constexpr std::int64_t kGrain = 16384;
 
 std::string quoted(Index index) {
   return std::to_string(index);
 }
 
-/// Pairs half-edges by counting sort over the smaller end vertex: no hash map, no comparison sort.
-/// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned.
-std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces) {
-  const Index halfedge_count = 3 * size_of(faces);
-  std::vector<Index> start(vertex_count + 1, 0);
-  const auto ends = [&](Index h) {
-    const Triangle& face = faces[h / 3];
-    return std::array<Index, 2>{face[h % 3], face[next_corner(h % 3)]};
-  };
-  for (Index h = 0; h < halfedge_count; ++h) {
-    const auto [from, to] = ends(h);
-    ++start[std::min(from, to) + 1];
-  }
-  for (Index v = 0; v < vertex_count; ++v) start[v + 1] += start[v];
-  std::vector<Index> bucket(halfedge_count);
-  {
-    std::vector<Index> cursor(start.begin(), start.end() - 1);
-    for (Index h = 0; h < halfedge_count; ++h) {
-      const auto [from, to] = ends(h);
-      bucket[cursor[std::min(from, to)]++] = h;
-    }
-  }
+/// Half-edges by the smaller of their end vertices.
+struct Buckets {
+  std::vector<Index> start;     ///< per vertex, and one more
+  std::vector<Index> halfedge;  ///< in increasing order in each bucket
+};
 
-  std::vector<Index> twin(halfedge_count, kNone);
+std::array<Index, 2> ends_of(const std::vector<Triangle>& faces, Index h) {
+  const Triangle& face = faces[h / 3];
+  return {face[h % 3], face[next_corner(h % 3)]};
+}
+
+Buckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces) {
+  Buckets buckets;
+  const Index halfedge_count = 3 * size_of(faces);
+  const auto smaller_end = [&](Index h) {
+    const auto [from, to] = ends_of(faces, h);
+    return std::min(from, to);
+  };
+  buckets.start.assign(vertex_count + 1, 0);
+  for (Index h = 0; h < halfedge_count; ++h) ++buckets.start[smaller_end(h) + 1];
+  for (Index v = 0; v < vertex_count; ++v) buckets.start[v + 1] += buckets.start[v];
+  buckets.halfedge.resize(halfedge_count);
+  std::vector<Index> cursor(buckets.start.begin(), buckets.start.end() - 1);
+  for (Index h = 0; h < halfedge_count; ++h) buckets.halfedge[cursor[smaller_end(h)]++] = h;
+  return buckets;
+}
+
+/// A half-edge seen from its smaller end.
+struct Spoke {
+  Index far, halfedge;
+  bool outwards;
+
+  bool operator<(const Spoke& other) const { return far < other.far; }
+};
+
+/// False if more than two half-edges run along an edge, or two in the same direction.
+bool pair_spokes(std::vector<Spoke>& spokes, std::vector<Index>& twin) {
+  std::sort(spokes.begin(), spokes.end());
+  for (std::size_t i = 0; i + 1 < spokes.size(); ++i) {
+    const Spoke &one = spokes[i], &other = spokes[i + 1];
+    if (one.far != other.far) continue;
+    if (one.outwards == other.outwards || twin[one.halfedge] != kNone) return false;
+    twin[one.halfedge] = other.halfedge;
+    twin[other.halfedge] = one.halfedge;
+  }
+  return true;
+}
+
+/// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned, at the first edge that
+/// pair_spokes refuses.
+[[noreturn]] void throw_edge_defect(const std::vector<Triangle>& faces, const Buckets& buckets) {
   // For the larger end vertex: the half-edges seen in the current bucket, in each direction.
   struct Seen {
     Index bucket = kNone, up = kNone, down = kNone;
   };
+  const Index vertex_count = size_of(buckets.start) - 1;
   std::vector<Seen> seen(vertex_count);
   for (Index v = 0; v < vertex_count; ++v) {
-    for (Index i = start[v]; i < start[v + 1]; ++i) {
-      const Index h = bucket[i];
-      const auto [from, to] = ends(h);
+    for (Index i = buckets.start[v]; i < buckets.start[v + 1]; ++i) {
+      const Index h = buckets.halfedge[i];
+      const auto [from, to] = ends_of(faces, h);
       Seen& other = seen[std::max(from, to)];
       if (other.bucket != v) other = {v, kNone, kNone};
       Index& same = from < to ? other.up : other.down;
-      Index& opposite = from < to ? other.down : other.up;
-      if (same != kNone) {
-        const std::string edge = "the edge " + quoted(from) + "-" + quoted(to);
-        if (opposite != kNone) {
-          throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
-                      "face " + quoted(h / 3) + " is at least the third on " + edge +
-                          ": split the surface there, so that no edge has more than two faces",
-                      Element::face(h / 3));
-        }
-        // A third face on the edge makes it non-manifold, whichever way it runs.
-        const bool third = std::any_of(bucket.begin() + i + 1, bucket.begin() + start[v + 1],
-                                       [&, larger = std::max(from, to)](Index g) {
-                                         const auto [a, b] = ends(g);
-                                         return std::max(a, b) == larger;
-                                       });
-        if (third) {
-          throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
-                      "more than two faces, " + quoted(h / 3) + " among them, share " + edge +
-                          ": split the surface there",
-                      Element::face(h / 3));
-        }
-        throw Error(BELTRAMI_E_ORIENTATION,
-                    "faces " + quoted(same / 3) + " and " + quoted(h / 3) + " run along " + edge +
-                        " in the same direction: orient all faces alike (or remove a duplicate)",
+      const Index opposite = from < to ? other.down : other.up;
+      if (same == kNone) {
+        same = h;
+        continue;
+      }
+      const std::string edge = "the edge " + quoted(from) + "-" + quoted(to);
+      if (opposite != kNone) {
+        throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
+                    "face " + quoted(h / 3) + " is at least the third on " + edge +
+                        ": split the surface there, so that no edge has more than two faces",
                     Element::face(h / 3));
       }
-      same = h;
-      if (opposite != kNone) {
-        twin[h] = opposite;
-        twin[opposite] = h;
+      // A third face on the edge makes it non-manifold, whichever way it runs.
+      const auto rest = buckets.halfedge.begin() + i + 1;
+      const auto end = buckets.halfedge.begin() + buckets.start[v + 1];
+      if (std::any_of(rest, end, [&, larger = std::max(from, to)](Index g) {
+            const auto [a, b] = ends_of(faces, g);
+            return std::max(a, b) == larger;
+          })) {
+        throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
+                    "more than two faces, " + quoted(h / 3) + " among them, share " + edge +
+                        ": split the surface there",
+                    Element::face(h / 3));
       }
+      throw Error(BELTRAMI_E_ORIENTATION,
+                  "faces " + quoted(same / 3) + " and " + quoted(h / 3) + " run along " + edge +
+                      " in the same direction: orient all faces alike (or remove a duplicate)",
+                  Element::face(h / 3));
     }
   }
+  throw Error(BELTRAMI_E_INTERNAL, "half-edges could not be paired, please report it");
+}
+
+/// Pairs half-edges: no hash map, no sort over the whole.
+std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
+                                  int threads) {
+  const Buckets buckets = sort_halfedges(vertex_count, faces);
+  std::vector<Index> twin(buckets.halfedge.size(), kNone);
+  std::atomic<bool> sound{true};
+  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Spoke> spokes;
+    for (std::int64_t v = begin; v < end; ++v) {
+      spokes.clear();
+      for (Index i = buckets.start[v]; i < buckets.start[v + 1]; ++i) {
+        const Index h = buckets.halfedge[i];
+        const auto [from, to] = ends_of(faces, h);
+        spokes.push_back({std::max(from, to), h, from < to});
+      }
+      if (!pair_spokes(spokes, twin)) sound = false;
+    }
+  });
+  if (!sound) throw_edge_defect(faces, buckets);
   return twin;
 }
 
 /// Fills `outgoing`; throws NON_MANIFOLD_VERTEX where the faces of a vertex form several fans.
-void link_vertices(DiskMesh& mesh) {
+void link_vertices(DiskMesh& mesh, int threads) {
   const Index vertex_count = mesh.vertex_count();
   mesh.outgoing.assign(vertex_count, kNone);
   std::vector<Index> valence(vertex_count, 0);
@@ -95,16 +146,24 @@ void link_vertices(DiskMesh& mesh) {
     ++valence[v];
     if (mesh.outgoing[v] == kNone || mesh.twin[h] == kNone) mesh.outgoing[v] = h;
   }
-  for (Index v = 0; v < vertex_count; ++v) {
-    if (mesh.outgoing[v] == kNone) continue;
-    Index fan = 0;
-    mesh.for_each_outgoing(v, [&](Index) { ++fan; });
-    if (fan != valence[v]) {
-      throw Error(BELTRAMI_E_NON_MANIFOLD_VERTEX,
-                  "the faces around vertex " + quoted(v) +
-                      " form more than one fan: duplicate the vertex, one copy for each fan",
-                  Element::vertex(v));
+  std::atomic<Index> first_defect{vertex_count};
+  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      if (mesh.outgoing[v] == kNone) continue;
+      Index fan = 0;
+      mesh.for_each_outgoing(v, [&](Index) { ++fan; });
+      if (fan == valence[v]) continue;
+      Index known = first_defect;
+      while (v < known && !first_defect.compare_exchange_weak(known, v)) {
+      }
+      return;
     }
+  });
+  if (const Index v = first_defect; v < vertex_count) {
+    throw Error(BELTRAMI_E_NON_MANIFOLD_VERTEX,
+                "the faces around vertex " + quoted(v) +
+                    " form more than one fan: duplicate the vertex, one copy for each fan",
+                Element::vertex(v));
   }
 }
 
@@ -223,14 +282,14 @@ ReferencedVertices drop_unreferenced(Index vertex_count, std::vector<Triangle>& 
   return vertices;
 }
 
-DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces) {
+DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, int threads) {
   validate_indices(size_of(positions), faces);
   validate_positions(positions);
   DiskMesh mesh;
   mesh.positions = std::move(positions);
   mesh.faces = std::move(faces);
-  mesh.twin = pair_halfedges(mesh.vertex_count(), mesh.faces);
-  link_vertices(mesh);
+  mesh.twin = pair_halfedges(mesh.vertex_count(), mesh.faces, threads);
+  link_vertices(mesh, threads);
   require_one_component(mesh);
   trace_boundary(mesh);
   return mesh;

@@ -47,7 +47,7 @@ struct DiskMesh {
 /// Builds the adjacency of a triangle list and proves that it is a disk.
 /// Throws Error with a mesh status (EMPTY ... GENUS) and the offending element, as an index into
 /// the arrays given. Every vertex must be used: see drop_unreferenced.
-DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces);
+DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, int threads = 1);
 
 /// The vertices that faces use, renumbered in order.
 struct ReferencedVertices {

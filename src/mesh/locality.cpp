@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/parallel.h"
+
 namespace beltrami {
 namespace {
 
 constexpr int kBits = 11;  // per axis: vertices that share a cell stay in the order of the input
 constexpr int kDigit = 11;
+constexpr std::int64_t kGrain = 16384;
 
 using Cell = std::array<std::uint32_t, 3>;
 
@@ -52,7 +55,7 @@ void counting_sort(const std::vector<Item>& from, std::vector<Item>& to, std::si
 
 }  // namespace
 
-std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points) {
+std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int threads) {
   if (points.empty()) return {};
   Vec3 low = points.front(), high = points.front();
   for (const Vec3& p : points) {
@@ -64,14 +67,16 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points) {
   constexpr double kCells = (1 << kBits) - 1;
   using Keyed = std::pair<std::uint64_t, Index>;
   std::vector<Keyed> keyed(points.size()), sorted(points.size());
-  for (Index v = 0; v < size_of(points); ++v) {
-    Cell cell{};
-    for (int i = 0; i < 3 && side > 0; ++i) {
-      cell[i] = static_cast<std::uint32_t>(
-          std::clamp((0.5 * points[v][i] - 0.5 * low[i]) / side, 0.0, 1.0) * kCells);
+  parallel_for(threads, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      Cell cell{};
+      for (int i = 0; i < 3 && side > 0; ++i) {
+        cell[i] = static_cast<std::uint32_t>(
+            std::clamp((0.5 * points[v][i] - 0.5 * low[i]) / side, 0.0, 1.0) * kCells);
+      }
+      keyed[v] = {hilbert_key(cell), v};
     }
-    keyed[v] = {hilbert_key(cell), v};
-  }
+  });
   for (int shift = 0; shift < 3 * kBits; shift += kDigit) {
     counting_sort(keyed, sorted, std::size_t{1} << kDigit, [=](const Keyed& item) {
       return static_cast<std::size_t>(item.first >> shift & ((1u << kDigit) - 1));

@@ -7,19 +7,22 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "mesh/face_chunks.h"
 
 namespace beltrami {
 
-/// Adds up in parallel, with the same bits at any number of threads: the faces are taken in fixed
-/// chunks, a chunk adds to the vertices that no other one touches, and puts what it has for others
-/// aside. Fast where faces that are close in the list are close on the surface. Keeps a reference
+/// Adds up in parallel, chunk by chunk: the same bits at any number of threads. Keeps a reference
 /// to `faces`.
 class VertexSums {
  public:
   /// What a face gives to its three corners.
   using Terms = std::array<Vec2, 3>;
 
-  VertexSums(Index vertex_count, const std::vector<Triangle>& faces);
+  VertexSums(Index vertex_count, const std::vector<Triangle>& faces)
+      : faces_(faces),
+        vertex_count_(vertex_count),
+        chunks_(vertex_count, faces),
+        aside_(chunks_.count()) {}
 
   /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
   /// terms. Returns the sum over the faces of what `give` returns.
@@ -27,26 +30,27 @@ class VertexSums {
   double add_up(int threads, const Give& give, std::vector<Vec2>& sums);
 
  private:
-  static constexpr std::int64_t kGrain = 16384;
+  static constexpr std::int64_t kGrain = FaceChunks::kGrain;
   struct Aside {
     Index vertex;
     Vec2 term;
   };
 
   const std::vector<Triangle>& faces_;
-  std::vector<std::uint8_t> shared_;  // per vertex: touched by several chunks
+  Index vertex_count_;
+  FaceChunks chunks_;
   std::vector<std::vector<Aside>> aside_;
 };
 
 template <class Give>
 double VertexSums::add_up(int threads, const Give& give, std::vector<Vec2>& sums) {
-  sums.resize(shared_.size());
+  sums.resize(vertex_count_);
   parallel_for(threads, static_cast<std::int64_t>(sums.size()), kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
                });
   const auto chunk = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Aside>& aside = aside_[begin / kGrain];
+    std::vector<Aside>& aside = aside_[FaceChunks::of(begin)];
     aside.clear();
     double total = 0;
     Terms terms;
@@ -54,7 +58,7 @@ double VertexSums::add_up(int threads, const Give& give, std::vector<Vec2>& sums
       total += give(static_cast<Index>(f), terms);
       for (int k = 0; k < 3; ++k) {
         const Index v = faces_[f][k];
-        if (shared_[v]) {
+        if (chunks_.shared(v)) {
           aside.push_back({v, terms[k]});
         } else {
           sums[v] += terms[k];

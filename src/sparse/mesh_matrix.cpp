@@ -3,41 +3,56 @@
 #include <algorithm>
 
 namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+
+}  // namespace
 
 MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
-                       const std::vector<bool>& fixed, int block_size)
-    : block_size_(block_size), row_(vertex_count, kNone) {
+                       const std::vector<bool>& fixed, int block_size, int threads)
+    : block_size_(block_size), chunks_(vertex_count, faces), row_(vertex_count, kNone) {
   for (Index v = 0; v < vertex_count; ++v) {
     if (!fixed[v]) row_[v] = free_count_++;
   }
   // Rows below the diagonal of each block column, with repeats: an interior edge occurs twice.
   std::vector<Index> start(free_count_ + 1, 0);
-  const auto for_each_edge = [&](auto&& visit) {
-    for (Index f = 0; f < size_of(faces); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        const Index a = row_[faces[f][k]], b = row_[faces[f][next_corner(k)]];
-        if (a != kNone && b != kNone) visit(f, k, std::min(a, b), std::max(a, b));
-      }
+  const auto for_each_edge = [&](Index f, auto&& visit) {
+    for (int k = 0; k < 3; ++k) {
+      const Index a = row_[faces[f][k]], b = row_[faces[f][next_corner(k)]];
+      if (a != kNone && b != kNone) visit(k, std::min(a, b), std::max(a, b));
     }
   };
-  for_each_edge([&](Index, int, Index column, Index) { ++start[column + 1]; });
+  const Index face_count = size_of(faces);
+  for (Index f = 0; f < face_count; ++f) {
+    for_each_edge(f, [&](int, Index column, Index) { ++start[column + 1]; });
+  }
   for (Index c = 0; c < free_count_; ++c) start[c + 1] += start[c];
   std::vector<Index> rows(start.back());
   {
     std::vector<Index> cursor(start.begin(), start.end() - 1);
-    for_each_edge([&](Index, int, Index column, Index row) { rows[cursor[column]++] = row; });
+    for (Index f = 0; f < face_count; ++f) {
+      for_each_edge(f, [&](int, Index column, Index row) { rows[cursor[column]++] = row; });
+    }
   }
   std::vector<Index> unique_count(free_count_);
-  for (Index c = 0; c < free_count_; ++c) {
-    const auto first = rows.begin() + start[c], last = rows.begin() + start[c + 1];
-    std::sort(first, last);
-    unique_count[c] = static_cast<Index>(std::unique(first, last) - first);
-  }
-  slot_.assign(faces.size(), {kNone, kNone, kNone});
-  for_each_edge([&](Index f, int k, Index column, Index row) {
-    const auto first = rows.begin() + start[column];
-    slot_[f][k] =
-        static_cast<Index>(std::lower_bound(first, first + unique_count[column], row) - first);
+  parallel_for(threads, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) {
+      const auto first = rows.begin() + start[c], last = rows.begin() + start[c + 1];
+      std::sort(first, last);
+      unique_count[c] = static_cast<Index>(std::unique(first, last) - first);
+    }
+  });
+  slot_.resize(faces.size());
+  parallel_for(threads, face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      slot_[f] = {kNone, kNone, kNone};
+      for_each_edge(static_cast<Index>(f), [&](int k, Index column, Index row) {
+        const auto first = rows.begin() + start[column];
+        const auto found = std::lower_bound(first, first + unique_count[column], row);
+        slot_[f][k] = static_cast<Index>(found - first);
+      });
+    }
   });
 
   const Index b = block_size_;
@@ -50,15 +65,17 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
     }
   }
   matrix_.resizeNonZeros(outer[b * free_count_]);
-  int* inner = matrix_.innerIndexPtr();
-  for (Index c = 0; c < free_count_; ++c) {
-    for (Index i = 0; i < b; ++i) {
-      for (Index r = i; r < b; ++r) *inner++ = b * c + r;
-      for (Index s = start[c]; s < start[c] + unique_count[c]; ++s) {
-        for (Index r = 0; r < b; ++r) *inner++ = b * rows[s] + r;
+  parallel_for(threads, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    int* inner = matrix_.innerIndexPtr() + outer[b * begin];
+    for (auto c = static_cast<Index>(begin); c < end; ++c) {
+      for (Index i = 0; i < b; ++i) {
+        for (Index r = i; r < b; ++r) *inner++ = b * c + r;
+        for (Index s = start[c]; s < start[c] + unique_count[c]; ++s) {
+          for (Index r = 0; r < b; ++r) *inner++ = b * rows[s] + r;
+        }
       }
     }
-  }
+  });
   set_zero();
 }
 

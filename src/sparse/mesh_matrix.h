@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/types.h"
+#include "mesh/face_chunks.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
@@ -14,7 +16,7 @@ class MeshMatrix {
  public:
   /// `fixed`: per vertex, whether it is left out of the system.
   MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces, const std::vector<bool>& fixed,
-             int block_size);
+             int block_size, int threads = 1);
 
   /// Block row of a vertex, or kNone if it is fixed.
   Index row(Index vertex) const { return row_[vertex]; }
@@ -30,13 +32,30 @@ class MeshMatrix {
   /// called once for every unordered pair of corners, the diagonal ones included. Fixed corners are
   /// skipped.
   template <class Block>
-  void add(Index face, const Triangle& corners, int i, int j, const Block& block);
+  void add(Index face, const Triangle& corners, int i, int j, const Block& block) {
+    for_each_entry(face, corners, i, j, block,
+                   [](Index, double& entry, double term) { entry += term; });
+  }
+  /// For every face calls `give(face, add)`, which adds blocks of that face by add(i, j, block), in
+  /// parallel; the same bits at any number of threads. `faces` are those of the constructor.
+  template <class Give>
+  void add_up(const std::vector<Triangle>& faces, int threads, const Give& give);
 
   const SparseMatrix& matrix() const { return matrix_; }
   SparseMatrix& matrix() { return matrix_; }
 
+  /// The chunks of faces of add_up.
+  const FaceChunks& chunks() const { return chunks_; }
+
  private:
+  /// Calls visit(vertex, entry, term) for the entries of a block, `vertex` being that of the
+  /// column.
+  template <class Block, class Visit>
+  void for_each_entry(Index face, const Triangle& corners, int i, int j, const Block& block,
+                      const Visit& visit);
+
   int block_size_;
+  FaceChunks chunks_;
   Index free_count_ = 0;
   std::vector<Index> row_;  // per vertex
   std::vector<std::array<Index, 3>>
@@ -55,8 +74,9 @@ std::vector<Place> MeshMatrix::places(const std::vector<Point>& points) const {
   return places;
 }
 
-template <class Block>
-void MeshMatrix::add(Index face, const Triangle& corners, int i, int j, const Block& block) {
+template <class Block, class Visit>
+void MeshMatrix::for_each_entry(Index face, const Triangle& corners, int i, int j,
+                                const Block& block, const Visit& visit) {
   const Index ri = row_[corners[i]], rj = row_[corners[j]];
   if (ri == kNone || rj == kNone) return;
   double* values = matrix_.valuePtr();
@@ -64,17 +84,49 @@ void MeshMatrix::add(Index face, const Triangle& corners, int i, int j, const Bl
   if (i == j) {
     for (int c = 0; c < block_size_; ++c) {
       double* column = values + starts[block_size_ * ri + c];
-      for (int r = c; r < block_size_; ++r) column[r - c] += block(r, c);
+      for (int r = c; r < block_size_; ++r) visit(corners[i], column[r - c], block(r, c));
     }
     return;
   }
   const Index rank = slot_[face][next_corner(i) == j ? i : j];
   const bool swap = ri < rj;  // the block below the diagonal has the larger row
   const Index column_block = swap ? ri : rj;
+  const Index vertex = corners[swap ? i : j];
   for (int c = 0; c < block_size_; ++c) {
     double* column =
         values + starts[block_size_ * column_block + c] + (block_size_ - c) + rank * block_size_;
-    for (int r = 0; r < block_size_; ++r) column[r] += swap ? block(c, r) : block(r, c);
+    for (int r = 0; r < block_size_; ++r) {
+      visit(vertex, column[r], swap ? block(c, r) : block(r, c));
+    }
+  }
+}
+
+template <class Give>
+void MeshMatrix::add_up(const std::vector<Triangle>& faces, int threads, const Give& give) {
+  struct Aside {
+    double* entry;
+    double term;
+  };
+  std::vector<std::vector<Aside>> aside(chunks_.count());
+  parallel_for(threads, static_cast<std::int64_t>(faces.size()), FaceChunks::kGrain,
+               [&](std::int64_t begin, std::int64_t end) {
+                 std::vector<Aside>& later = aside[FaceChunks::of(begin)];
+                 const auto put = [&](Index vertex, double& entry, double term) {
+                   if (chunks_.shared(vertex)) {
+                     later.push_back({&entry, term});
+                   } else {
+                     entry += term;
+                   }
+                 };
+                 for (std::int64_t f = begin; f < end; ++f) {
+                   const auto face = static_cast<Index>(f);
+                   give(face, [&](int i, int j, const auto& block) {
+                     for_each_entry(face, faces[face], i, j, block, put);
+                   });
+                 }
+               });
+  for (const std::vector<Aside>& later : aside) {
+    for (const Aside& a : later) *a.entry += a.term;
   }
 }
 

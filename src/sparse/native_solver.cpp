@@ -181,10 +181,12 @@ class NativeSolver final : public SpdSolver {
     std::vector<T> x(static_cast<std::size_t>(rhs.size()));
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
       T* column = x.data() + c * n;
-      for (int i = 0; i < n; ++i) {
-        const int at = column_of(i);
-        column[at] = static_cast<T>(rhs(i, c) * factor * scaling(at));
-      }
+      parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (auto i = static_cast<int>(begin); i < end; ++i) {
+          const int at = column_of(i);
+          column[at] = static_cast<T>(rhs(i, c) * factor * scaling(at));
+        }
+      });
     }
     return x;
   }
@@ -195,10 +197,12 @@ class NativeSolver final : public SpdSolver {
     DenseMatrix result(n, columns);
     for (int c = 0; c < columns; ++c) {
       const T* column = x.data() + static_cast<std::size_t>(c) * n;
-      for (int i = 0; i < n; ++i) {
-        const int at = column_of(i);
-        result(i, c) = static_cast<double>(column[at]) * scaling(at) * factor;
-      }
+      parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (auto i = static_cast<int>(begin); i < end; ++i) {
+          const int at = column_of(i);
+          result(i, c) = static_cast<double>(column[at]) * scaling(at) * factor;
+        }
+      });
     }
     return result;
   }

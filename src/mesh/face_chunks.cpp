@@ -1,14 +1,13 @@
-#include "mesh/vertex_sums.h"
+#include "mesh/face_chunks.h"
 
 namespace beltrami {
 
-VertexSums::VertexSums(Index vertex_count, const std::vector<Triangle>& faces)
-    : faces_(faces),
-      shared_(static_cast<std::size_t>(vertex_count), 0),
-      aside_(faces.size() / kGrain + 1) {
+FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces)
+    : count_(of(size_of(faces)) + 1), shared_(static_cast<std::size_t>(vertex_count), 0) {
+  if (count_ == 1) return;
   std::vector<Index> chunk_of(shared_.size(), kNone);
   for (Index f = 0; f < size_of(faces); ++f) {
-    const auto chunk = static_cast<Index>(f / kGrain);
+    const auto chunk = static_cast<Index>(of(f));
     for (const Index v : faces[f]) {
       if (chunk_of[v] != chunk && chunk_of[v] != kNone) shared_[v] = 1;
       chunk_of[v] = chunk;
