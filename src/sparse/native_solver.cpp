@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -151,15 +152,18 @@ class NativeSolver final : public SpdSolver {
     const double* given = lower.valuePtr();
     values_.resize(pattern_.source.size());
     scaling_.assign(n, 0);
-    for (int c = 0; c < n; ++c) {
-      for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
-        if (pattern_.row[e] != c) continue;
-        const double diagonal = given[pattern_.source[e]];
-        if (!(diagonal > 0) || !std::isfinite(diagonal)) return false;
-        scaling_[c] = std::ldexp(1.0, -(std::ilogb(diagonal) >> 1));
+    std::atomic<bool> positive{true};
+    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t c = begin; c < end; ++c) {
+        for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
+          const double diagonal = given[pattern_.source[e]];
+          if (pattern_.row[e] != c || !(diagonal > 0) || !std::isfinite(diagonal)) continue;
+          scaling_[c] = std::ldexp(1.0, -(std::ilogb(diagonal) >> 1));
+        }
+        if (scaling_[c] == 0) positive = false;
       }
-      if (scaling_[c] == 0) return false;
-    }
+    });
+    if (!positive) return false;
     unscaling_.resize(n);
     parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t c = begin; c < end; ++c) {
@@ -233,6 +237,13 @@ class NativeSolver final : public SpdSolver {
     }
   }
 
+  template <class Body>
+  void for_rows(std::int64_t n, const Body& body) const {
+    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) body(i);
+    });
+  }
+
   /// Sums over the rows in fixed chunks: the same bits at any number of threads.
   template <class Term>
   double sum_rows(std::int64_t n, const Term& term) const {
@@ -275,9 +286,9 @@ class NativeSolver final : public SpdSolver {
         }
         unit[k] = unit_of(largest);
         const double inverse = 1 / unit[k];
-        for (std::int64_t i = k * n; i < (k + 1) * n; ++i) {
-          correction[i] = static_cast<float>(residual[i] * inverse);
-        }
+        for_rows(n, [&](std::int64_t i) {
+          correction[k * n + i] = static_cast<float>(residual[k * n + i] * inverse);
+        });
       }
       single_.solve(symbolic_, correction.data(), kColumns, options_.threads);
       for (int k = 0; k < kColumns; ++k) {
@@ -288,7 +299,7 @@ class NativeSolver final : public SpdSolver {
         const double next = sum_rows(n, [&](std::int64_t i) { return r[i] * (z[i] * unit[k]); });
         const double beta = rho[k] == 0 ? 0 : next / rho[k];
         rho[k] = next;
-        for (std::int64_t i = 0; i < n; ++i) p[i] = z[i] * unit[k] + beta * p[i];
+        for_rows(n, [&](std::int64_t i) { p[i] = z[i] * unit[k] + beta * p[i]; });
       }
       multiply<kColumns>(direction.data(), product.data());
       for (int k = 0; k < kColumns; ++k) {
