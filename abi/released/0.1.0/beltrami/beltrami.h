@@ -306,10 +306,9 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
  * with the mesh and the options as they are set: the stored mesh and the results of the last run
  * included, arrays of the caller and other contexts not. It is told from counts of the mesh, at
  * least 40 MiB, and meant to be enough for all but what few large meshes need: the global fix of
- * the repair, GIF with many bridges. Valid for solver:native. Most runs of the default mode take a
- * quarter of it, since they do without the Newton steps that end a blocked polish; with a
- * memory-limit that is too low for these it counts, and the run takes, none. Errors: INVALID_STATE
- * (no mesh), INVALID_ARGUMENT. */
+ * the repair, GIF with many bridges. Valid for solver:native. It is the least memory-limit that the
+ * run can do with; without a limit the default mode may take four times as much on hard meshes,
+ * where Newton steps end a blocked polish. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.

@@ -79,9 +79,9 @@ class Flattener:
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
     memory_limit : int, default 0
-        Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
-        left out if they would exceed it, and a run that would do so without them ends before it
-        starts; 0 sets no limit. A number from 0 to 1e+14.
+        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
+        before it starts, and steps that only hard meshes need are left out where they would exceed
+        it; 0 sets no limit. A number from 0 to 1e+14.
 
     Raises
     ------
@@ -403,9 +403,9 @@ def parameterize(
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
     memory_limit : int, default 0
-        Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
-        left out if they would exceed it, and a run that would do so without them ends before it
-        starts; 0 sets no limit. A number from 0 to 1e+14.
+        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
+        before it starts, and steps that only hard meshes need are left out where they would exceed
+        it; 0 sets no limit. A number from 0 to 1e+14.
 
     Returns
     -------

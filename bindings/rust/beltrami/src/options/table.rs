@@ -208,14 +208,14 @@ options! {
         "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the fine mesh is flattened: what is injective then are its own triangles on the same vertices."
         Choice(Delaunay::NAMES), 0..=1, default 0;
 
-    /// Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are
-    /// left out if they would exceed it, and a run that would do so without them ends before it
-    /// starts; 0 sets no limit.
+    /// Bytes of memory that a run is to stay within by its estimate: one that needs more ends
+    /// before it starts, and steps that only hard meshes need are left out where they would exceed
+    /// it; 0 sets no limit.
     ///
     /// From 0 to 100000000000000.
     ///
     /// Default: 0.
     memory_limit(u64) = 14 "memory-limit"
-        "Bytes of memory that a run is to stay within by its estimate: steps that few meshes need are left out if they would exceed it, and a run that would do so without them ends before it starts; 0 sets no limit."
+        "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it; 0 sets no limit."
         Int(&[]), 0..=100000000000000.0, default 0;
 }
