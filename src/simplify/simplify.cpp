@@ -275,7 +275,7 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
 /// Returns whether another one like it is worth its time.
 bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& limits,
               int threads) {
-  begin_pass(surface);
+  begin_pass(surface, threads);
   const std::vector<Candidate> candidates = find_candidates(surface, threads);
   if (candidates.empty()) return false;
   const Index count = size_of(candidates);
@@ -304,7 +304,7 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, int threads,
       if (!run_pass(surface, target_faces, limits, threads)) break;
     }
   }
-  compact(surface);
+  compact(surface, threads);
 }
 
 }  // namespace
@@ -312,7 +312,7 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, int threads,
 CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, int threads,
                               const Checkpoint& checkpoint) {
   if (target_faces >= fine.face_count()) return whole_disk(fine);
-  ShrinkingSurface surface = make_surface(fine);
+  ShrinkingSurface surface = make_surface(fine, threads);
   run_passes(surface, target_faces, threads, checkpoint);
   return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
                      std::move(surface.collapsed_into));

@@ -2,8 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
 
 #include "base/interrupt.h"
+#include "base/parallel.h"
+#include "mesh/face_chunks.h"
 
 namespace beltrami {
 namespace {
@@ -72,16 +77,46 @@ double longest_edge_sq(const DiskMesh& mesh, const Triangle& face) {
 
 /// Holds a boundary edge in place: through the plane across its face or, where `face_normal` is
 /// zero because the face is degenerate, through two planes along the edge.
-void add_boundary_quadric(const Vec3& edge, const Vec3& face_normal, Quadric& from, Quadric& to) {
+void add_boundary_quadric(const Vec3& edge, const Vec3& face_normal, Quadric& end) {
   const double length = edge.norm();
   if (!(length > 0)) return;
   const double weight = kBoundaryWeight * length * length;
   const Vec3 along = edge / length;
   const bool degenerate = face_normal.isZero(0);
   const Vec3 across = degenerate ? along.unitOrthogonal() : face_normal.cross(along).eval();
-  for (Quadric* quadric : {&from, &to}) {
-    quadric->add_plane(across, weight);
-    if (degenerate) quadric->add_plane(along.cross(across), weight);
+  end.add_plane(across, weight);
+  if (degenerate) end.add_plane(along.cross(across), weight);
+}
+
+/// Adds what a face and its boundary edges give to the quadrics `of` its vertices; where that is
+/// null, the vertex gets nothing.
+template <class Of>
+void add_face_quadrics(const DiskMesh& mesh, Index f, FacePlanes planes, const Of& of) {
+  const Triangle& face = mesh.faces[f];
+  const std::array<Quadric*, 3> quadrics = {of(face[0]), of(face[1]), of(face[2])};
+  const Vec3& p = mesh.positions[face[0]];
+  Vec3 normal = (mesh.positions[face[1]] - p).cross(mesh.positions[face[2]] - p);
+  const double twice_area = normal.norm();
+  if (twice_area > 0) {
+    normal /= twice_area;
+  } else {
+    normal.setZero();
+  }
+  for (Quadric* quadric : quadrics) {
+    if (quadric == nullptr) continue;
+    if (!(twice_area > 0)) {
+      // No plane: its vertices go first, but to near places before far ones.
+      quadric->add_point(longest_edge_sq(mesh, face) * kDegenerateWidth);
+    } else if (planes == FacePlanes::kIncluded) {
+      quadric->add_plane(normal, 0.5 * twice_area);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (mesh.twin[3 * f + k] != kNone) continue;
+    const Vec3 edge = mesh.positions[face[next_corner(k)]] - mesh.positions[face[k]];
+    for (Quadric* quadric : {quadrics[k], quadrics[next_corner(k)]}) {
+      if (quadric != nullptr) add_boundary_quadric(edge, normal, *quadric);
+    }
   }
 }
 
@@ -97,35 +132,32 @@ Index least_boundary(const DiskMesh& mesh) {
   return std::min(size_of(mesh.boundary), kMinBoundary);
 }
 
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes) {
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, int threads) {
   std::vector<Quadric> quadrics(mesh.vertex_count());
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triangle& face = mesh.faces[f];
-    const Vec3& p = mesh.positions[face[0]];
-    Vec3 normal = (mesh.positions[face[1]] - p).cross(mesh.positions[face[2]] - p);
-    const double twice_area = normal.norm();
-    if (twice_area > 0) {
-      normal /= twice_area;
-      if (planes == FacePlanes::kIncluded) {
-        for (const Index v : face) quadrics[v].add_plane(normal, 0.5 * twice_area);
-      }
-    } else {
-      normal.setZero();
-      // No plane: its vertices go first, but to near places before far ones.
-      const double weight = longest_edge_sq(mesh, face) * kDegenerateWidth;
-      for (const Index v : face) quadrics[v].add_point(weight);
-    }
-    for (int k = 0; k < 3; ++k) {
-      if (mesh.twin[3 * f + k] != kNone) continue;
-      const Index from = face[k], to = face[next_corner(k)];
-      add_boundary_quadric(mesh.positions[to] - mesh.positions[from], normal, quadrics[from],
-                           quadrics[to]);
+  const FaceChunks chunks(mesh.vertex_count(), mesh.faces);
+  std::vector<std::vector<Index>> faces_of_shared(chunks.count());
+  parallel_for(threads, mesh.face_count(), FaceChunks::kGrain,
+               [&](std::int64_t begin, std::int64_t end) {
+                 for (auto f = static_cast<Index>(begin); f < end; ++f) {
+                   bool all = true;
+                   add_face_quadrics(mesh, f, planes, [&](Index v) {
+                     const bool own = !chunks.shared(v);
+                     all &= own;
+                     return own ? &quadrics[v] : nullptr;
+                   });
+                   if (!all) faces_of_shared[FaceChunks::of(f)].push_back(f);
+                 }
+               });
+  for (const std::vector<Index>& faces : faces_of_shared) {
+    for (const Index f : faces) {
+      add_face_quadrics(mesh, f, planes,
+                        [&](Index v) { return chunks.shared(v) ? &quadrics[v] : nullptr; });
     }
   }
   return quadrics;
 }
 
-ShrinkingSurface make_surface(const DiskMesh& mesh) {
+ShrinkingSurface make_surface(const DiskMesh& mesh, int threads) {
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
   surface.site.reserve(vertex_count);
@@ -147,43 +179,46 @@ ShrinkingSurface make_surface(const DiskMesh& mesh) {
   }
   surface.role = vertex_roles(mesh);
   poll_interrupt();
-  surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded);
+  surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded, threads);
   return surface;
 }
 
-void compact(ShrinkingSurface& surface) {
+void compact(ShrinkingSurface& surface, int threads) {
   std::vector<Index> renumbered(surface.vertex_count(), kNone);
   Index kept = 0;
   for (Index v = 0; v < surface.vertex_count(); ++v) {
-    if (surface.role[v] == Role::kRemoved) continue;
-    renumbered[v] = kept;
-    surface.site[kept] = surface.site[v];
-    surface.quadric[kept] = surface.quadric[v];
-    surface.role[kept] = surface.role[v];
-    surface.loop_next[kept] = surface.loop_next[v];
-    surface.loop_previous[kept] = surface.loop_previous[v];
-    surface.fine_vertex[kept] = surface.fine_vertex[v];
-    ++kept;
+    if (surface.role[v] != Role::kRemoved) renumbered[v] = kept++;
   }
-  surface.site.resize(kept);
-  surface.quadric.resize(kept);
-  surface.role.resize(kept);
-  surface.loop_next.resize(kept);
-  surface.loop_previous.resize(kept);
-  surface.fine_vertex.resize(kept);
-  for (Index v = 0; v < kept; ++v) {
-    if (!surface.on_boundary(v)) continue;
-    surface.loop_next[v] = renumbered[surface.loop_next[v]];
-    surface.loop_previous[v] = renumbered[surface.loop_previous[v]];
-  }
-  std::erase_if(surface.faces, [](const Triangle& face) { return face[0] == kNone; });
-  for (Triangle& face : surface.faces) {
-    for (Index& v : face) v = renumbered[v];
-  }
+  const auto move_down = [&](auto& items) {
+    for (std::size_t v = 0; v < renumbered.size(); ++v) {
+      if (renumbered[v] != kNone) items[renumbered[v]] = items[v];
+    }
+    items.resize(kept);
+  };
+  const auto renumber = [&](Index& v) { v = v == kNone ? kNone : renumbered[v]; };
+  // Arrays that have nothing to do with each other.
+  const std::function<void()> tasks[] = {
+      [&] {
+        std::erase_if(surface.faces, [](const Triangle& face) { return face[0] == kNone; });
+        for (Triangle& face : surface.faces) std::for_each(face.begin(), face.end(), renumber);
+      },
+      [&] { move_down(surface.quadric); },
+      [&] { move_down(surface.site); },
+      [&] {
+        move_down(surface.role);
+        move_down(surface.fine_vertex);
+        for (std::vector<Index>* loop : {&surface.loop_next, &surface.loop_previous}) {
+          move_down(*loop);
+          std::for_each(loop->begin(), loop->end(), renumber);
+        }
+      },
+  };
+  parallel_for(threads, std::ssize(tasks), 1,
+               [&](std::int64_t task, std::int64_t) { tasks[task](); });
 }
 
-void begin_pass(ShrinkingSurface& surface) {
-  compact(surface);
+void begin_pass(ShrinkingSurface& surface, int threads) {
+  compact(surface, threads);
   poll_interrupt();
   // Counting sort of the half-edges by origin.
   const Index vertex_count = surface.vertex_count();

@@ -76,15 +76,15 @@ enum class FacePlanes { kIncluded, kLeftOut };
 
 /// The quadric of each vertex at the start: the planes of its faces, weighted by area, and what
 /// holds the boundary and faces without area in place.
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes);
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, int threads = 1);
 
 /// The surface at the start: no pass begun yet.
-ShrinkingSurface make_surface(const DiskMesh& mesh);
+ShrinkingSurface make_surface(const DiskMesh& mesh, int threads);
 
 /// Drops removed faces and vertices, keeping the order of the others.
-void compact(ShrinkingSurface& surface);
+void compact(ShrinkingSurface& surface, int threads);
 
 /// Compacts, lists the half-edges of each vertex and clears the state of the last pass.
-void begin_pass(ShrinkingSurface& surface);
+void begin_pass(ShrinkingSurface& surface, int threads);
 
 }  // namespace beltrami

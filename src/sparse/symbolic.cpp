@@ -310,8 +310,21 @@ Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int 
 
   symbolic.rows.resize(symbolic.row_start[count]);
   poll();
+  // Subtrees side by side, in as many parts as there are threads, each with marks of its own.
+  const auto tasks = static_cast<std::int64_t>(symbolic.tasks.size());
+  const std::int64_t part = std::max<std::int64_t>(1, (tasks + threads - 1) / threads);
+  parallel_for(threads, tasks, part, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<int> seen(n, kRoot);
+    for (std::int64_t t = begin; t < end; ++t) {
+      for (int s = symbolic.tasks[t].begin; s < symbolic.tasks[t].end; ++s) {
+        find_rows(graph, vertex, column, symbolic, s, seen);
+      }
+    }
+  });
   std::vector<int> seen(n, kRoot);
-  for (int s = 0; s < count; ++s) find_rows(graph, vertex, column, symbolic, s, seen);
+  for (int s = symbolic.top_begin(); s < count; ++s) {
+    find_rows(graph, vertex, column, symbolic, s, seen);
+  }
   return symbolic;
 }
 
