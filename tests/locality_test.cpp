@@ -111,6 +111,20 @@ TEST(SingularSteps, AreThoseThatTheFirstOneComesFrom) {
   EXPECT_EQ(least, first);
   EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end(),
                              [](const auto& a, const auto& b) { return a.face < b.face; }));
+
+  // Among some vertices: the steps of the faces that have one of them, and no others.
+  std::vector<std::uint8_t> among(uvs.size());
+  for (auto& chosen : among) chosen = random.below(3) == 0;
+  auto expected = steps;
+  std::erase_if(expected, [&](const SingularStep& s) {
+    const Triangle& t = mesh.faces[s.face];
+    return !among[t[0]] && !among[t[1]] && !among[t[2]];
+  });
+  const auto found = singular_steps(mesh.faces, uvs, direction, 3 * first, 2, &among);
+  ASSERT_LT(found.size(), steps.size());
+  EXPECT_TRUE(std::equal(
+      found.begin(), found.end(), expected.begin(), expected.end(),
+      [](const auto& a, const auto& b) { return a.face == b.face && a.length == b.length; }));
 }
 
 }  // namespace

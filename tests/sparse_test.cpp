@@ -178,6 +178,34 @@ TEST(MeshMatrix, IsTheSumOfItsBlocksWithRandomVerticesFixed) {
   }
 }
 
+TEST(MeshMatrix, AddsUpManyChunksToTheSameBitsAtAnyNumberOfThreads) {
+  const DiskMesh mesh = disks::disk(meshes::grid(120, 110));
+  ASSERT_GT(mesh.face_count(), 3 * FaceChunks::kGrain);
+  for (const int size : {1, 2}) {
+    const auto block = [](Index f, int i, int j) {
+      return [=](int r, int c) { return std::sin(1.0 + f + 7 * i * j + 3 * (r + c)); };
+    };
+    MeshMatrix one_by_one(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size);
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      for (int i = 0; i < 3; ++i) {
+        for (int j = i; j < 3; ++j) one_by_one.add(f, mesh.faces[f], i, j, block(f, i, j));
+      }
+    }
+    SparseMatrix first;
+    for (const int threads : {1, 2, 5}) {
+      MeshMatrix assembled(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size, threads);
+      assembled.add_up(mesh.faces, threads, [&](Index f, const auto& add) {
+        for (int i = 0; i < 3; ++i) {
+          for (int j = i; j < 3; ++j) add(i, j, block(f, i, j));
+        }
+      });
+      if (threads == 1) first = assembled.matrix();
+      EXPECT_EQ((assembled.matrix() - first).norm(), 0) << threads;
+      EXPECT_LE((assembled.matrix() - one_by_one.matrix()).norm(), 1e-12 * first.norm());
+    }
+  }
+}
+
 TEST(MeshMatrix, StoresSortedColumnsOfTheLowerTriangleThatStartOnTheDiagonal) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   const MeshMatrix assembled(mesh.vertex_count(), mesh.faces,

@@ -207,7 +207,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   Objective<Density> objective(size_of(uvs), faces, rest, threads);
   PolishResult result;
   Fields fields;
-  auto& [gradient, next_gradient, direction, trial, spare] = fields;
+  // Not structured bindings, which clang does not let lambdas capture.
+  Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
+  Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
   result.energies.push_back(objective.evaluate(uvs, gradient));
   if (!std::isfinite(result.energies.front())) return result;
   History history(threads);
