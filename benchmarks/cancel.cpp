@@ -25,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "library.h"
 #include "mesh_file.h"
 #include "refine.h"
 
@@ -231,12 +232,7 @@ int main(int argc, char** argv) {
     if (beltrami_create(&raw) != BELTRAMI_OK) throw std::bad_alloc();
     const Context context(raw, beltrami_destroy);
     for (const std::string& option : options) set(raw, option);
-    beltrami_mesh mesh{};
-    mesh.struct_size = sizeof mesh;
-    mesh.vertex_count = file.vertex_count();
-    mesh.face_count = file.face_count();
-    mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-    mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+    const beltrami_mesh mesh = beltrami::benchmarks::view_of(file);
     const Clock::time_point begin = Clock::now();
     if (beltrami_set_mesh(raw, &mesh) != BELTRAMI_OK) {
       throw std::runtime_error(beltrami_error_message(raw));

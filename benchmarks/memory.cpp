@@ -14,32 +14,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "library.h"
 #include "mesh_file.h"
+#include "process_memory.h"
 #include "refine.h"
 
 namespace beltrami::benchmarks {
 namespace {
 
 constexpr double kMebibyte = 1 << 20;
-
-/// A line of /proc/self/status, in bytes.
-double memory_of_process(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with(key + ":")) return 1024 * std::stod(line.substr(key.size() + 1));
-  }
-  return 0;
-}
-
-/// From here on a new peak counts.
-void reset_peak() {
-  std::ofstream("/proc/self/clear_refs") << 5;
-}
 
 /// The peak of every stage, noted when the next one begins.
 struct StagePeaks {
@@ -92,12 +79,7 @@ Measured run(const cli::MeshFile& file, const std::vector<std::string>& options)
   beltrami_context* context = nullptr;
   beltrami_create(&context);
   for (const std::string& option : options) set_option(context, option);
-  beltrami_mesh mesh{};
-  mesh.struct_size = sizeof mesh;
-  mesh.vertex_count = file.vertex_count();
-  mesh.face_count = file.face_count();
-  mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  const beltrami_mesh mesh = view_of(file);
   std::uint64_t estimate = 0;
   if (beltrami_set_mesh(context, &mesh) < 0 || beltrami_estimate_memory(context, &estimate) < 0) {
     throw std::runtime_error(beltrami_error_message(context));

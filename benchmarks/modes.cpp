@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "library.h"
 #include "mesh_file.h"
 #include "refine.h"
 
@@ -60,12 +61,7 @@ Figures run(const beltrami::cli::MeshFile& file, const Mode& mode, std::int32_t 
   beltrami_create(&raw);
   const std::unique_ptr<beltrami_context, void (*)(beltrami_context*)> context(raw,
                                                                                beltrami_destroy);
-  beltrami_mesh mesh{};
-  mesh.struct_size = sizeof mesh;
-  mesh.vertex_count = file.vertex_count();
-  mesh.face_count = file.face_count();
-  mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  const beltrami_mesh mesh = beltrami::benchmarks::view_of(file);
   Figures figures{};
   figures.status = beltrami_set_mesh(raw, &mesh);
   if (figures.status < 0) return figures;

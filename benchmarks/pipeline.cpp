@@ -14,15 +14,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "library.h"
 #include "mesh_file.h"
+#include "process_memory.h"
 #include "refine.h"
 #include "yardstick.h"
 
@@ -31,19 +31,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A line of /proc/self/status, in bytes.
-double memory_of_process(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with(key + ":")) return 1024 * std::stod(line.substr(key.size() + 1));
-  }
-  return 0;
-}
-
 /// What memory is in use, and from where on a new peak counts.
 double start_of_peak() {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << 5;
+  reset_peak();
   return memory_of_process("VmRSS");
 }
 
@@ -67,12 +58,7 @@ Run run_pipeline(const cli::MeshFile& file, std::int32_t method, int threads) {
                                                                                beltrami_destroy);
   beltrami_set_int(raw, BELTRAMI_OPTION_THREADS, threads);
   beltrami_set_int(raw, BELTRAMI_OPTION_METHOD, method);
-  beltrami_mesh mesh{};
-  mesh.struct_size = sizeof mesh;
-  mesh.vertex_count = file.vertex_count();
-  mesh.face_count = file.face_count();
-  mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  const beltrami_mesh mesh = view_of(file);
   Run run;
   const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID), wall = seconds(CLOCK_MONOTONIC);
   require(beltrami_set_mesh(raw, &mesh), raw);

@@ -1,10 +1,9 @@
 // The native solver beside others on the same matrices, in one process, round by round: the
 // interior cotan Laplacian of refined meshes, analyze + factorize + two solves.
 //
-// Costs are CPU seconds, the best of some rounds. They are also given in the
-// units Um and Ua: what stock CHOLMOD takes for the same, supernodal, ordered by METIS or by AMD.
-// Only ratios carry from machine to machine. Run CHOLMOD's BLAS on one thread
-// (OPENBLAS_NUM_THREADS=1).
+// Costs are CPU seconds, the best of some rounds, and, where CHOLMOD is built in, the units Um and
+// Ua: what it takes for the same in stock form, supernodal, ordered by METIS or by AMD. Only ratios
+// carry from machine to machine. Run CHOLMOD's BLAS on one thread (OPENBLAS_NUM_THREADS=1).
 #include <CLI/CLI.hpp>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
