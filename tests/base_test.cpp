@@ -1,4 +1,4 @@
-// Parallel loops, and the floating-point mode that exactness needs.
+// Parallel loops and sorts, and the floating-point mode that exactness needs.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/bucket_sort.h"
 #include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"
@@ -124,6 +125,69 @@ TEST(ParallelSum, HasTheSameBitsAtOneTwoAndThreeThreads) {
 
 TEST(ParallelSum, OfNothingIsZero) {
   EXPECT_EQ(parallel_sum(2, 0, 64, [](std::int64_t, std::int64_t) { return 1.0; }), 0);
+}
+
+TEST(ParallelFind, FindsTheFirstAtAnyThreadCount) {
+  for (const int threads : {1, 2, 5}) {
+    const auto from = [&](std::int64_t first) {
+      return parallel_find(threads, 1000, 7,
+                           [=](std::int64_t i) { return i >= first && i % 3 == 0; });
+    };
+    EXPECT_EQ(from(0), 0);
+    EXPECT_EQ(from(500), 501);
+    EXPECT_EQ(from(1000), 1000);  // none
+  }
+  EXPECT_EQ(parallel_find(2, 0, 7, [](std::int64_t) { return true; }), 0);
+}
+
+TEST(ParallelFilter, KeepsTheOrderAtAnyThreadCount) {
+  for (const int threads : {1, 2, 5}) {
+    const std::vector<Index> found =
+        parallel_filter(threads, 100, 7, [](Index i) { return i % 40 == 39 || i == 40; });
+    EXPECT_EQ(found, (std::vector<Index>{39, 40, 79}));
+  }
+}
+
+TEST(ParallelAssign, GivesWhatAssignGives) {
+  std::vector<std::int64_t> items;
+  for (const std::size_t count : {std::size_t{3}, std::size_t{700'000}, std::size_t{500'000}}) {
+    parallel_assign(2, items, count, std::int64_t{7});
+    EXPECT_EQ(items, std::vector<std::int64_t>(count, 7));
+  }
+  parallel_assign(2, items, 0);
+  EXPECT_TRUE(items.empty());
+}
+
+TEST(BucketSort, IsStableAtAnyThreadCount) {
+  constexpr std::int64_t kItems = 300'000, kBuckets = 40'000;
+  // None to three entries an item; the last bucket stays empty.
+  const auto for_each_bucket = [](std::int64_t item, const auto& visit) {
+    for (std::int64_t k = 0; k < item % 4; ++k) visit((item * 7919 + k * 104'729) % (kBuckets - 1));
+  };
+  std::vector<std::vector<std::int64_t>> expected(kBuckets);
+  for (std::int64_t i = 0; i < kItems; ++i) {
+    for_each_bucket(i, [&](std::int64_t bucket) { expected[bucket].push_back(i); });
+  }
+  for (const int threads : {1, 2, 3, 64}) {
+    std::vector<Index> start;
+    BucketSort<Index> sort(threads, kItems, kBuckets, start, for_each_bucket);
+    std::vector<std::int64_t> sorted(start.back());
+    sort.place([&](std::int64_t item, const auto& place) {
+      for_each_bucket(item, [&](std::int64_t bucket) { sorted[place(bucket)] = item; });
+    });
+    ASSERT_EQ(start.size(), expected.size() + 1);
+    for (std::size_t b = 0; b < expected.size(); ++b) {
+      const std::vector<std::int64_t> bucket(sorted.begin() + start[b],
+                                             sorted.begin() + start[b + 1]);
+      ASSERT_EQ(bucket, expected[b]) << threads << " threads, bucket " << b;
+    }
+  }
+}
+
+TEST(BucketSort, OfNothingHasEmptyBuckets) {
+  std::vector<Index> start = {1};
+  const BucketSort<Index> sort(2, 0, 3, start, [](std::int64_t, const auto&) {});
+  EXPECT_EQ(start, (std::vector<Index>{0, 0, 0, 0}));
 }
 
 bool keeps_subnormals() {

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
 #include "base/floating_point.h"
 #include "base/interrupt.h"
@@ -48,6 +54,23 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
     work();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+void touch_memory([[maybe_unused]] int threads, [[maybe_unused]] void* memory,
+                  [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_POPULATE_WRITE
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  void* first = memory;
+  std::size_t left = bytes;
+  if (bytes < 2 * kChunk || std::align(page, page, first, left) == nullptr) return;
+  parallel_for(threads, static_cast<std::int64_t>(left / page * page), kChunk,
+               [&](std::int64_t begin, std::int64_t end) {
+                 // A hint: what it does not do is done at the first touch.
+                 madvise(static_cast<char*>(first) + begin, static_cast<std::size_t>(end - begin),
+                         MADV_POPULATE_WRITE);
+               });
+#endif
 }
 
 double parallel_sum(int threads, std::int64_t count, std::int64_t grain,

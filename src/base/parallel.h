@@ -1,8 +1,12 @@
 // Data-parallel loops whose results do not depend on the number of threads.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <vector>
+
+#include "base/types.h"
 
 namespace beltrami {
 
@@ -13,6 +17,51 @@ namespace beltrami {
 /// one by which a run ends that is cancelled (poll_interrupt).
 void parallel_for(int threads, std::int64_t count, std::int64_t grain,
                   const std::function<void(std::int64_t begin, std::int64_t end)>& body);
+
+/// Lets several threads be the first to touch memory, which costs more than to fill it.
+void touch_memory(int threads, void* memory, std::size_t bytes);
+
+/// items.assign(count, value) for large arrays, with memory that several threads have touched.
+template <class T>
+void parallel_assign(int threads, std::vector<T>& items, std::size_t count, const T& value = T()) {
+  if (items.capacity() < count) {
+    std::vector<T>().swap(items);
+    items.reserve(count);
+    touch_memory(threads, items.data(), count * sizeof(T));
+  }
+  items.assign(count, value);
+}
+
+/// The first of the items [0, count) for which `test` holds, or `count`.
+template <class Test>
+std::int64_t parallel_find(int threads, std::int64_t count, std::int64_t grain, const Test& test) {
+  std::atomic<std::int64_t> first{count};
+  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+    if (begin > first) return;
+    std::int64_t i = begin;
+    while (i < end && !test(i)) ++i;
+    if (i == end) return;
+    std::int64_t known = first;
+    while (i < known && !first.compare_exchange_weak(known, i)) {
+    }
+  });
+  return first;
+}
+
+/// The items [0, count) for which `test` holds, in order.
+template <class Test>
+std::vector<Index> parallel_filter(int threads, Index count, std::int64_t grain, const Test& test) {
+  std::vector<std::vector<Index>> of_chunk(static_cast<std::size_t>((count + grain - 1) / grain));
+  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Index>& found = of_chunk[static_cast<std::size_t>(begin / grain)];
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      if (test(i)) found.push_back(i);
+    }
+  });
+  std::vector<Index> all;
+  for (const auto& found : of_chunk) all.insert(all.end(), found.begin(), found.end());
+  return all;
+}
 
 /// Sum of `term(begin, end)` over fixed chunks, added in order: the same bits at any thread count.
 double parallel_sum(int threads, std::int64_t count, std::int64_t grain,
