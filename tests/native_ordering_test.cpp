@@ -119,8 +119,8 @@ TEST(Ordering, SeesBlocksOfTwoOnlyWhereAllIsInBlocks) {
   }
   lower.makeCompressed();
   EXPECT_EQ(block_size_of(lower), 2);
-  EXPECT_EQ(graph_of(lower, 2).count(), 2);
-  EXPECT_EQ(graph_of(lower, 2).neighbour.size(), 2U);
+  EXPECT_EQ(graph_of(lower, 2, 1).count(), 2);
+  EXPECT_EQ(graph_of(lower, 2, 1).neighbour.size(), 2U);
   lower.prune([](int r, int c, double) { return r != 3 || c != 0; });
   EXPECT_EQ(block_size_of(lower), 1);
 }

@@ -5,14 +5,17 @@
 #include <atomic>
 #include <mutex>
 
+#include "base/bucket_sort.h"
 #include "base/parallel.h"
 #include "sparse/front.h"
 
 namespace beltrami {
 namespace {
 
-/// Fronts above the tasks that take so many multiplications are worth several threads.
-constexpr double kParallelFront = 2e7;
+/// Fronts of one depth above the tasks that take so many multiplications are worth several threads.
+constexpr double kParallelWave = 2e7;
+/// Times a thread's share of the fronts at one depth: larger ones get all threads.
+constexpr double kDominant = 1.5;
 
 /// Things that threads take and give back, so that there are no more than threads.
 template <class T>
@@ -97,30 +100,12 @@ class Numeric {
         kept_of_task_(symbolic.tasks.size()) {}
 
   bool run(const Poll& poll) {
-    std::atomic<bool> positive{true};
-    Pool<Workspace> pool;
-    const auto make = [&] {
-      auto work = std::make_unique<Workspace>();
-      work->place.resize(symbolic_.column_count());
-      for (int d = 0; d < 2; ++d) work->stack[d] = allocate_large<T>(plan_.peak[d]);
-      work->buffer = allocate_large<T>(plan_.buffer);
-      return work;
-    };
     poll();
-    parallel_for(threads_, static_cast<std::int64_t>(symbolic_.tasks.size()), 1,
-                 [&](std::int64_t t, std::int64_t) {
-                   if (!positive) return;
-                   auto work = pool.take(make);
-                   if (!run_task(static_cast<int>(t), *work)) positive = false;
-                   pool.give_back(std::move(work));
-                 });
-    if (!positive) return false;
-    if (symbolic_.top_begin() == symbolic_.supernode_count()) return true;
-    auto work = pool.take(make);
-    for (int d = 0; d < 2; ++d) work->stack[d].reset();
-    for (int s = symbolic_.top_begin(); s < symbolic_.supernode_count(); ++s) {
+    if (!run_tasks()) return false;
+    Pool<Workspace> pool;
+    for (const Wave& wave : plan_waves()) {
       poll();
-      if (!run_top(s, *work)) return false;
+      if (!run_wave(wave, pool)) return false;
     }
     return true;
   }
@@ -131,11 +116,80 @@ class Numeric {
     std::vector<int> relative;
     std::array<LargeArray<T>, 2> stack;
     LargeArray<T> buffer;
+    std::int64_t buffer_size = 0;
   };
 
-  T* update_of(int s, Workspace& work) {
-    if (s >= symbolic_.top_begin()) return kept_[s - symbolic_.top_begin()].get();
-    return work.stack[plan_.depth[s]].get() + plan_.offset[s];
+  /// Supernodes of the top at one depth, which share nothing.
+  struct Wave {
+    int threads = 1;
+    std::vector<int> side_by_side, alone;  // alone: with all threads at work on one front
+  };
+
+  double work_of(int s) const {
+    const double height = symbolic_.height(s), width = symbolic_.width(s);
+    return height * height * width;
+  }
+
+  /// From the tasks up to the roots.
+  std::vector<Wave> plan_waves() const {
+    const int top = symbolic_.top_begin(), count = symbolic_.supernode_count();
+    std::vector<int> depth(count - top, 0);
+    int deepest = -1;
+    for (int s = count - 1; s >= top; --s) {
+      if (symbolic_.parent[s] >= 0) depth[s - top] = depth[symbolic_.parent[s] - top] + 1;
+      deepest = std::max(deepest, depth[s - top]);
+    }
+    std::vector<double> work(deepest + 1, 0);
+    for (int s = top; s < count; ++s) work[depth[s - top]] += work_of(s);
+    std::vector<Wave> waves(deepest + 1);
+    for (int s = top; s < count; ++s) {
+      const int d = depth[s - top];
+      Wave& wave = waves[deepest - d];
+      wave.threads = work[d] > kParallelWave ? threads_ : 1;
+      // What is much more than a thread's share of its wave would keep the others waiting.
+      const bool dominates = work_of(s) * wave.threads > kDominant * work[d];
+      (dominates ? wave.alone : wave.side_by_side).push_back(s);
+    }
+    return waves;
+  }
+
+  std::unique_ptr<Workspace> make_workspace() const {
+    auto work = std::make_unique<Workspace>();
+    work->place.resize(symbolic_.column_count());
+    return work;
+  }
+
+  bool run_tasks() {
+    std::atomic<bool> positive{true};
+    Pool<Workspace> pool;
+    const auto make = [&] {
+      auto work = make_workspace();
+      for (int d = 0; d < 2; ++d) work->stack[d] = allocate_large<T>(plan_.peak[d]);
+      work->buffer = allocate_large<T>(plan_.buffer);
+      return work;
+    };
+    parallel_for(threads_, static_cast<std::int64_t>(symbolic_.tasks.size()), 1,
+                 [&](std::int64_t t, std::int64_t) {
+                   if (!positive) return;
+                   auto work = pool.take(make);
+                   if (!run_task(static_cast<int>(t), *work)) positive = false;
+                   pool.give_back(std::move(work));
+                 });
+    return positive;
+  }
+
+  bool run_wave(const Wave& wave, Pool<Workspace>& pool) {
+    std::atomic<bool> positive{true};
+    const auto run = [&](int s, int threads) {
+      if (!positive) return;
+      auto work = pool.take([&] { return make_workspace(); });
+      if (!run_top(s, threads, *work)) positive = false;
+      pool.give_back(std::move(work));
+    };
+    parallel_for(wave.threads, static_cast<std::int64_t>(wave.side_by_side.size()), 1,
+                 [&](std::int64_t i, std::int64_t) { run(wave.side_by_side[i], 1); });
+    for (const int s : wave.alone) run(s, wave.threads);
+    return positive;
   }
 
   bool run_task(int t, Workspace& work) {
@@ -160,7 +214,7 @@ class Numeric {
     return true;
   }
 
-  bool run_top(int s, Workspace& work) {
+  bool run_top(int s, int threads, Workspace& work) {
     const int top = symbolic_.top_begin();
     const auto kept = [&](int c) -> LargeArray<T>& {
       return c >= top ? kept_[c - top] : kept_of_task_[task_of(c)];
@@ -170,14 +224,14 @@ class Numeric {
     for (const int c : symbolic_.children(s)) kept(c).reset();
     const int height = symbolic_.height(s), width = symbolic_.width(s);
     const std::int64_t size = front::buffer_size(height, width);
-    if (size > plan_.buffer) {
+    if (size > work.buffer_size) {
       work.buffer = allocate_large<T>(size);
-      plan_.buffer = size;
+      work.buffer_size = size;
     }
     front::ForChunks for_chunks;
-    if (threads_ > 1 && static_cast<double>(height) * height * width > kParallelFront) {
-      for_chunks = [this](int count, const std::function<void(int, int)>& body) {
-        parallel_for(threads_, count, 1, [&](std::int64_t begin, std::int64_t end) {
+    if (threads > 1) {
+      for_chunks = [threads](int count, const std::function<void(int, int)>& body) {
+        parallel_for(threads, count, 1, [&](std::int64_t begin, std::int64_t end) {
           body(static_cast<int>(begin), static_cast<int>(end));
         });
       };
@@ -558,28 +612,23 @@ PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbo
   const int n = static_cast<int>(lower.cols()), block = symbolic.block_size, shift = block - 1;
   const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
   const auto place = [&](int r) { return block * symbolic.place[r >> shift] + (r & shift); };
-  (void)threads;
   PermutedPattern pattern;
-  pattern.start.assign(static_cast<std::size_t>(n) + 1, 0);
-  for (int c = 0; c < n; ++c) {
-    const int column = place(c);
-    for (int e = start[c]; e < start[c + 1]; ++e) {
-      ++pattern.start[std::min(column, place(row[e])) + 1];
-    }
-  }
-  for (int c = 0; c < n; ++c) pattern.start[c + 1] += pattern.start[c];
-  pattern.row.resize(lower.nonZeros());
-  pattern.source.resize(lower.nonZeros());
-  std::vector<int> cursor(pattern.start.begin(), pattern.start.end() - 1);
-  for (int c = 0; c < n; ++c) {
-    const int column = place(c);
+  BucketSort<int> sort(threads, n, n, pattern.start, [&](std::int64_t c, const auto& count) {
+    const int column = place(static_cast<int>(c));
+    for (int e = start[c]; e < start[c + 1]; ++e) count(std::min(column, place(row[e])));
+  });
+  const auto entries = static_cast<std::size_t>(lower.nonZeros());
+  parallel_assign(threads, pattern.row, entries);
+  parallel_assign(threads, pattern.source, entries);
+  sort.place([&](std::int64_t c, const auto& place_in) {
+    const int column = place(static_cast<int>(c));
     for (int e = start[c]; e < start[c + 1]; ++e) {
       const int other = place(row[e]);
-      const int at = cursor[std::min(column, other)]++;
+      const int at = place_in(std::min(column, other));
       pattern.row[at] = std::max(column, other);
       pattern.source[at] = e;
     }
-  }
+  });
   return pattern;
 }
 

@@ -37,7 +37,7 @@ class NativeSolver final : public SpdSolver {
     double_.clear();
     scaling_.clear();
     const int block = block_size_of(lower);
-    const Graph graph = graph_of(lower, block);
+    const Graph graph = graph_of(lower, block, options_.threads);
     options_.poll();
     std::vector<int> order;
     bool doubtful = false;
@@ -98,7 +98,7 @@ class NativeSolver final : public SpdSolver {
   DenseMatrix precondition(const DenseMatrix& rhs) const override {
     if (single_.empty() || rhs.size() == 0) return solve(rhs);
     // A power of two keeps the numbers in the range of single precision, and costs no bits.
-    const double unit = unit_of(rhs.cwiseAbs().maxCoeff());
+    const double unit = unit_of(largest_of(rhs.data(), rhs.size()));
     std::vector<float> x = permuted<float>(rhs, 1 / unit);
     single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), options_.threads);
     return restored(x, static_cast<int>(rhs.cols()), unit);
@@ -136,7 +136,8 @@ class NativeSolver final : public SpdSolver {
   }
 
   bool factorize_double(const double* values) {
-    std::vector<double> gathered(pattern_.source.size());
+    std::vector<double> gathered;
+    parallel_assign(options_.threads, gathered, pattern_.source.size());
     parallel_for(options_.threads, static_cast<std::int64_t>(gathered.size()), 4 * kGrain,
                  [&](std::int64_t begin, std::int64_t end) {
                    for (std::int64_t e = begin; e < end; ++e) {
@@ -150,7 +151,7 @@ class NativeSolver final : public SpdSolver {
   bool scale(const SparseMatrix& lower) {
     const int n = static_cast<int>(lower.cols());
     const double* given = lower.valuePtr();
-    values_.resize(pattern_.source.size());
+    parallel_assign(options_.threads, values_, pattern_.source.size());
     scaling_.assign(n, 0);
     std::atomic<bool> positive{true};
     parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -182,7 +183,8 @@ class NativeSolver final : public SpdSolver {
   template <class T>
   std::vector<T> permuted(const DenseMatrix& rhs, double factor = 1) const {
     const auto n = static_cast<int>(rhs.rows());
-    std::vector<T> x(static_cast<std::size_t>(rhs.size()));
+    std::vector<T> x;
+    parallel_assign(options_.threads, x, static_cast<std::size_t>(rhs.size()));
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
       T* column = x.data() + c * n;
       parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -211,30 +213,64 @@ class NativeSolver final : public SpdSolver {
     return result;
   }
 
-  /// Y = A X for kColumns columns, with A scaled and in the order of L.
+  /// Y = A X for kColumns columns, with A scaled and in the order of L. The columns of a task have
+  /// entries in its own rows and in those of the top; what they give to the latter is added after
+  /// all of them, in the order of the columns.
   template <int kColumns>
   void multiply(const double* x, double* y) const {
-    const int n = pattern_.count();
-    std::fill(y, y + static_cast<std::ptrdiff_t>(n) * kColumns, 0.0);
-    const auto at = [n](int row, int column) {
-      return static_cast<std::ptrdiff_t>(column) * n + row;
+    struct Aside {
+      int row;
+      std::array<double, kColumns> terms;
     };
-    for (int c = 0; c < n; ++c) {
-      double own[kColumns], sum[kColumns];
-      for (int k = 0; k < kColumns; ++k) {
-        own[k] = x[at(c, k)];
-        sum[k] = y[at(c, k)];
-      }
-      for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
-        const int r = pattern_.row[e];
-        const double value = values_[e];
+    const std::int64_t n = pattern_.count();
+    const auto first_of = [&](int s) {
+      return std::int64_t{symbolic_.block_size} * symbolic_.first_column[s];
+    };
+    const std::int64_t top = first_of(symbolic_.top_begin());
+    const auto add = [&](std::int64_t row, const std::array<double, kColumns>& terms) {
+      for (int k = 0; k < kColumns; ++k) y[k * n + row] += terms[k];
+    };
+    const auto run = [&](std::int64_t begin, std::int64_t end, const auto& put) {
+      for (std::int64_t c = begin; c < end; ++c) {
+        std::array<double, kColumns> own, sum, terms;
         for (int k = 0; k < kColumns; ++k) {
-          sum[k] += value * x[at(r, k)];
-          if (r != c) y[at(r, k)] += value * own[k];
+          own[k] = x[k * n + c];
+          sum[k] = y[k * n + c];
         }
+        for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
+          const int r = pattern_.row[e];
+          const double value = values_[e];
+          for (int k = 0; k < kColumns; ++k) {
+            sum[k] += value * x[k * n + r];
+            terms[k] = value * own[k];
+          }
+          if (r != c) put(r, terms);
+        }
+        for (int k = 0; k < kColumns; ++k) y[k * n + c] = sum[k];
       }
-      for (int k = 0; k < kColumns; ++k) y[at(c, k)] = sum[k];
+    };
+    const auto clear = [&](std::int64_t begin, std::int64_t end) {
+      for (int k = 0; k < kColumns; ++k) std::fill(y + k * n + begin, y + k * n + end, 0.0);
+    };
+    std::vector<std::vector<Aside>> asides(symbolic_.tasks.size());
+    parallel_for(options_.threads, static_cast<std::int64_t>(asides.size()), 1,
+                 [&](std::int64_t t, std::int64_t) {
+                   const std::int64_t begin = first_of(symbolic_.tasks[t].begin);
+                   const std::int64_t end = first_of(symbolic_.tasks[t].end);
+                   clear(begin, end);
+                   run(begin, end, [&](int row, const std::array<double, kColumns>& terms) {
+                     if (row < top) {
+                       add(row, terms);
+                     } else {
+                       asides[t].push_back({row, terms});
+                     }
+                   });
+                 });
+    clear(top, n);
+    for (const std::vector<Aside>& aside : asides) {
+      for (const Aside& a : aside) add(a.row, a.terms);
     }
+    run(top, n, add);
   }
 
   template <class Body>
@@ -254,6 +290,17 @@ class NativeSolver final : public SpdSolver {
     });
   }
 
+  /// The largest magnitude.
+  double largest_of(const double* values, std::int64_t n) const {
+    std::vector<double> of_chunk(static_cast<std::size_t>((n + kGrain - 1) / kGrain), 0.0);
+    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      double largest = 0;
+      for (std::int64_t i = begin; i < end; ++i) largest = std::max(largest, std::abs(values[i]));
+      of_chunk[static_cast<std::size_t>(begin / kGrain)] = largest;
+    });
+    return of_chunk.empty() ? 0 : *std::max_element(of_chunk.begin(), of_chunk.end());
+  }
+
   /// Conjugate gradients with the factor in single precision as preconditioner: one step per four
   /// digits or more, and where rounding spoils the factor still convergence. False: none.
   /// For one right-hand side or two; all of a step is done for both, which have nothing else in
@@ -261,8 +308,13 @@ class NativeSolver final : public SpdSolver {
   template <int kColumns>
   bool iterate(const double* b, double* x) const {
     const std::int64_t n = pattern_.count(), size = n * kColumns;
-    std::vector<double> residual(b, b + size), direction(size, 0.0), product(size);
-    std::vector<float> correction(size);
+    std::vector<double> residual, direction, product;
+    std::vector<float> correction;
+    for (std::vector<double>* vector : {&residual, &direction, &product}) {
+      parallel_assign(options_.threads, *vector, static_cast<std::size_t>(size));
+    }
+    parallel_assign(options_.threads, correction, static_cast<std::size_t>(size));
+    std::copy(b, b + size, residual.begin());
     std::array<double, kColumns> rho{}, goal{};
     std::array<bool, kColumns> done{};
     std::fill(x, x + size, 0.0);
@@ -280,11 +332,7 @@ class NativeSolver final : public SpdSolver {
       if (std::all_of(done.begin(), done.end(), [](bool d) { return d; })) return true;
       std::array<double, kColumns> unit{};
       for (int k = 0; k < kColumns; ++k) {
-        double largest = 0;
-        for (std::int64_t i = k * n; i < (k + 1) * n; ++i) {
-          largest = std::max(largest, std::abs(residual[i]));
-        }
-        unit[k] = unit_of(largest);
+        unit[k] = unit_of(largest_of(residual.data() + k * n, n));
         const double inverse = 1 / unit[k];
         for_rows(n, [&](std::int64_t i) {
           correction[k * n + i] = static_cast<float>(residual[k * n + i] * inverse);

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/bucket_sort.h"
 #include "base/parallel.h"
 #include "base/processor.h"
 #include "sparse/vertex_separator.h"
@@ -160,94 +161,78 @@ class LeafOrder {
   std::vector<std::int16_t> degree_;
 };
 
-/// The vertices along a curve through all places, neighbours close together: everything that
-/// follows walks memory in that order.
-std::vector<int> order_along_curve(std::span<const Place> places) {
-  Place low, high;
-  low.fill(std::numeric_limits<float>::max());
-  high.fill(std::numeric_limits<float>::lowest());
-  for (const Place& p : places) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  }
-  float size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, high[k] - low[k]);
-  const float scale = size > 0 && std::isfinite(size) ? 2047 / size : 0;
-  // Bits of the three coordinates interleaved (Morton 1966), 11 each.
-  const auto spread = [](std::uint64_t x) {
-    x = (x | x << 16) & 0x00ff0000ff;
-    x = (x | x << 8) & 0x0f00f00f00f;
-    x = (x | x << 4) & 0x0c30c30c30c3;
-    return (x | x << 2) & 0x249249249249;
-  };
-  struct Item {
-    std::uint64_t code;
-    int vertex;
-  };
-  std::vector<Item> items(places.size()), sorted(places.size());
-  for (std::size_t v = 0; v < places.size(); ++v) {
-    std::uint64_t code = 0;
-    for (int k = 0; k < 3; ++k) {
-      code |= spread(static_cast<std::uint64_t>((places[v][k] - low[k]) * scale)) << k;
-    }
-    items[v] = {code, static_cast<int>(v)};
-  }
-  for (int shift = 0; shift < 33;
-       shift += 11) {  // least digit first, so equal codes keep their order
-    std::array<std::size_t, 2049> first{};
-    for (const Item& item : items) ++first[(item.code >> shift & 2047) + 1];
-    for (int d = 0; d < 2048; ++d) first[d + 1] += first[d];
-    for (const Item& item : items) sorted[first[item.code >> shift & 2047]++] = item;
-    items.swap(sorted);
-  }
-  std::vector<int> order(places.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = items[i].vertex;
-  return order;
-}
-
 /// A graph of connected clusters of vertices.
 struct Coarse {
   Graph graph;
   std::vector<int> cluster;  // per vertex of the finest graph
 };
 
-/// Puts each vertex that is left together with its neighbours that are left: about five each.
-Coarse coarsen(const Graph& graph) {
+/// Puts each vertex that is left together with its neighbours that are left: about five each. No
+/// cluster reaches from one chunk of vertices into another, so that chunks go side by side.
+Coarse coarsen(const Graph& graph, int threads) {
+  constexpr int kChunk = 1 << 15;
+  struct Chunk {
+    std::vector<int> start, member;  // by cluster of the chunk
+    std::vector<int> degree, neighbour;
+    int first = 0;  // its clusters
+  };
   Coarse coarse;
   std::vector<int>& cluster = coarse.cluster;
-  cluster.assign(graph.count(), -1);
-  std::vector<int> member;  // by cluster
-  std::vector<std::uint32_t> start;
-  member.reserve(graph.count());
-  for (int v = 0; v < graph.count(); ++v) {
-    if (cluster[v] >= 0) continue;
-    const int c = static_cast<int>(start.size());
-    start.push_back(static_cast<std::uint32_t>(member.size()));
-    cluster[v] = c;
-    member.push_back(v);
-    for (const int w : graph.neighbours(v)) {
-      if (cluster[w] >= 0) continue;
-      cluster[w] = c;
-      member.push_back(w);
-    }
-  }
-  start.push_back(static_cast<std::uint32_t>(member.size()));
-  const int count = static_cast<int>(start.size()) - 1;
-  std::vector<int> seen(count, -1);
-  coarse.graph.start.reserve(start.size());
-  coarse.graph.start.push_back(0);
-  for (int c = 0; c < count; ++c) {
-    seen[c] = c;
-    for (std::uint32_t i = start[c]; i < start[c + 1]; ++i) {
-      for (const int w : graph.neighbours(member[i])) {
-        if (seen[cluster[w]] == c) continue;
-        seen[cluster[w]] = c;
-        coarse.graph.neighbour.push_back(cluster[w]);
+  cluster.resize(graph.count());
+  std::vector<Chunk> chunks((graph.count() + kChunk - 1) / kChunk);
+  const auto for_each_chunk = [&](const auto& body) {
+    parallel_for(threads, graph.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
+      body(chunks[begin / kChunk], static_cast<int>(begin), static_cast<int>(end));
+    });
+  };
+  for_each_chunk([&](Chunk& chunk, int begin, int end) {
+    std::fill(cluster.begin() + begin, cluster.begin() + end, -1);
+    chunk.member.reserve(end - begin);
+    const auto put = [&](int v) {
+      cluster[v] = static_cast<int>(chunk.start.size()) - 1;
+      chunk.member.push_back(v);
+    };
+    for (int v = begin; v < end; ++v) {
+      if (cluster[v] >= 0) continue;
+      chunk.start.push_back(static_cast<int>(chunk.member.size()));
+      put(v);
+      for (const int w : graph.neighbours(v)) {
+        if (w >= begin && w < end && cluster[w] < 0) put(w);
       }
     }
-    coarse.graph.start.push_back(static_cast<std::uint32_t>(coarse.graph.neighbour.size()));
+    chunk.start.push_back(static_cast<int>(chunk.member.size()));
+  });
+  int count = 0;
+  for (Chunk& chunk : chunks) {
+    chunk.first = count;
+    count += static_cast<int>(chunk.start.size()) - 1;
+  }
+  for_each_chunk([&](Chunk& chunk, int begin, int end) {
+    for (int v = begin; v < end; ++v) cluster[v] += chunk.first;
+  });
+  for_each_chunk([&](Chunk& chunk, int, int) {
+    for (std::size_t c = 0; c + 1 < chunk.start.size(); ++c) {
+      const int own = chunk.first + static_cast<int>(c);
+      const std::size_t first = chunk.neighbour.size();
+      for (int i = chunk.start[c]; i < chunk.start[c + 1]; ++i) {
+        for (const int w : graph.neighbours(chunk.member[i])) {
+          const int other = cluster[w];
+          // Few: a look along the list is cheaper than marks.
+          const auto known = chunk.neighbour.begin() + static_cast<std::ptrdiff_t>(first);
+          if (other != own &&
+              std::find(known, chunk.neighbour.end(), other) == chunk.neighbour.end())
+            chunk.neighbour.push_back(other);
+        }
+      }
+      chunk.degree.push_back(static_cast<int>(chunk.neighbour.size() - first));
+    }
+  });
+  coarse.graph.start.reserve(static_cast<std::size_t>(count) + 1);
+  coarse.graph.start.push_back(0);
+  for (const Chunk& chunk : chunks) {
+    for (const int d : chunk.degree) coarse.graph.start.push_back(coarse.graph.start.back() + d);
+    coarse.graph.neighbour.insert(coarse.graph.neighbour.end(), chunk.neighbour.begin(),
+                                  chunk.neighbour.end());
   }
   return coarse;
 }
@@ -261,17 +246,20 @@ struct Part {
 /// of the part, and then among the vertices near the best of them.
 class Dissection {
  public:
-  Dissection(const Graph& graph, const std::vector<Place>& places)
-      : graph_(graph), label_(graph.count(), kOutside), members_(graph.count()) {
-    for (int v = 0; v < graph.count(); ++v) members_[v] = {places[v], v};
+  Dissection(const Graph& graph, std::span<const Place> places, int threads)
+      : graph_(graph), label_(graph.count()), members_(graph.count()) {
     for (int level = 0; level < kLevels; ++level) {
-      coarse_.push_back(coarsen(level == 0 ? graph : coarse_.back().graph));
-      if (level == 0) continue;
-      std::vector<int>& cluster = coarse_.back().cluster;
-      std::vector<int> finest(graph.count());
-      for (int v = 0; v < graph.count(); ++v) finest[v] = cluster[coarse_[level - 1].cluster[v]];
-      cluster.swap(finest);
+      coarse_.push_back(coarsen(level == 0 ? graph : coarse_.back().graph, threads));
     }
+    std::vector<int> finest(graph.count());
+    parallel_for(threads, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
+      for (auto v = static_cast<int>(begin); v < end; ++v) {
+        members_[v] = {places[v], v};
+        label_[v] = kOutside;
+        finest[v] = coarse_[1].cluster[coarse_[0].cluster[v]];
+      }
+    });
+    coarse_[1].cluster.swap(finest);
   }
 
   struct Member {
@@ -636,30 +624,30 @@ int block_size_of(const SparseMatrix& lower) {
   return 2;
 }
 
-Graph graph_of(const SparseMatrix& lower, int block_size) {
+Graph graph_of(const SparseMatrix& lower, int block_size, int threads) {
   const int n = static_cast<int>(lower.cols()) / block_size;
   const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
-  const auto for_each_edge = [&](auto&& visit) {
-    for (int c = 0; c < n; ++c) {
-      const int column = c * block_size;
-      for (int i = start[column]; i < start[column + 1]; i += block_size) {
-        const int r = row[i] / block_size;
-        if (r > c) visit(r, c);
-      }
+  const auto for_each_row_below = [&](std::int64_t c, auto&& visit) {
+    const std::int64_t column = c * block_size;
+    for (int i = start[column]; i < start[column + 1]; i += block_size) {
+      const int r = row[i] / block_size;
+      if (r > c) visit(r);
     }
   };
   Graph graph;
-  graph.start.assign(static_cast<std::size_t>(n) + 1, 0);
-  for_each_edge([&](int r, int c) {
-    ++graph.start[r + 1];
-    ++graph.start[c + 1];
-  });
-  for (int v = 0; v < n; ++v) graph.start[v + 1] += graph.start[v];
-  graph.neighbour.resize(graph.start[n]);
-  std::vector<std::uint32_t> cursor(graph.start.begin(), graph.start.end() - 1);
-  for_each_edge([&](int r, int c) {
-    graph.neighbour[cursor[r]++] = c;
-    graph.neighbour[cursor[c]++] = r;
+  BucketSort<std::uint32_t> sort(threads, n, n, graph.start,
+                                 [&](std::int64_t c, const auto& count) {
+                                   for_each_row_below(c, [&](int r) {
+                                     count(r);
+                                     count(c);
+                                   });
+                                 });
+  parallel_assign(threads, graph.neighbour, graph.start[n]);
+  sort.place([&](std::int64_t c, const auto& place) {
+    for_each_row_below(c, [&](int r) {
+      graph.neighbour[place(r)] = static_cast<int>(c);
+      graph.neighbour[place(c)] = r;
+    });
   });
   return graph;
 }
@@ -673,7 +661,7 @@ Graph renumber(const Graph& graph, const std::vector<int>& order, int threads) {
   for (int i = 0; i < graph.count(); ++i) {
     result.start[i + 1] = result.start[i] + (graph.start[order[i] + 1] - graph.start[order[i]]);
   }
-  result.neighbour.resize(graph.neighbour.size());
+  parallel_assign(threads, result.neighbour, graph.neighbour.size());
   parallel_for(threads, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       int* target = result.neighbour.data() + result.start[i];
@@ -702,11 +690,7 @@ std::vector<int> minimum_degree_order(const Graph& graph) {
 
 std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
                                          int threads, const Poll& poll) {
-  const std::vector<int> curve = order_along_curve(places);
-  const Graph local = renumber(graph, curve, threads);
-  std::vector<Place> local_places(places.size());
-  for (std::size_t i = 0; i < curve.size(); ++i) local_places[i] = places[curve[i]];
-  Dissection dissection(local, local_places);
+  Dissection dissection(graph, places, threads);
 
   // Level by level while parts are few, then part by part.
   std::vector<Part> parts = {{0, graph.count()}};
@@ -737,8 +721,8 @@ std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Pla
                  dissection.finish(parts[i], own);
                });
   std::vector<int> order;
-  order.reserve(curve.size());
-  for (const auto& member : dissection.members()) order.push_back(curve[member.vertex]);
+  order.reserve(places.size());
+  for (const auto& member : dissection.members()) order.push_back(member.vertex);
   return order;
 }
 

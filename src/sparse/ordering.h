@@ -25,7 +25,7 @@ struct Graph {
 int block_size_of(const SparseMatrix& lower);
 
 /// The graph of a lower triangle; with blocks of two, one vertex per block.
-Graph graph_of(const SparseMatrix& lower, int block_size);
+Graph graph_of(const SparseMatrix& lower, int block_size, int threads);
 
 /// The same graph with vertex order[i] as vertex i.
 Graph renumber(const Graph& graph, const std::vector<int>& order, int threads);
