@@ -31,9 +31,8 @@ DiskMesh disk_of(const cli::MeshFile& file) {
     Triangle& face = faces.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) face[k] = static_cast<Index>(file.faces[i + k]);
   }
-  const ReferencedVertices used = drop_unreferenced(size_of(positions), faces);
   std::vector<Vec3> kept;
-  for (const Index v : used.original) kept.push_back(positions[v]);
+  for (const Index v : drop_unreferenced(size_of(positions), faces)) kept.push_back(positions[v]);
   DiskMesh mesh = build_disk(std::move(kept), std::move(faces));
   normalise(mesh.positions, mesh.faces);
   return mesh;

@@ -76,14 +76,15 @@ TEST(VertexSums, AreThoseOfALoopWhateverTheOrderAndTheThreads) {
     for (std::size_t f = 0; f < terms.size(); ++f) {
       for (int k = 0; k < 3; ++k) expected[mesh.faces[f][k]] += terms[f][k];
     }
-    VertexSums sums(mesh.vertex_count(), mesh.faces);
     const auto give = [&](Index f, VertexSums::Terms& corners) {
       corners = terms[f];
       return 0.5;
     };
     std::vector<Vec2> one, two(3, Vec2(7, 7));
-    EXPECT_EQ(sums.add_up(1, give, one), 0.5 * mesh.face_count());
-    EXPECT_EQ(sums.add_up(2, give, two), 0.5 * mesh.face_count());
+    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, 1).add_up(give, one),
+              0.5 * mesh.face_count());
+    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, 2).add_up(give, two),
+              0.5 * mesh.face_count());
     EXPECT_EQ(one, two);
     for (std::size_t v = 0; v < one.size(); ++v) EXPECT_LT((one[v] - expected[v]).norm(), 1e-12);
     for (std::size_t i = list.faces.size(); i-- > 1;) {

@@ -21,9 +21,10 @@ DiskMesh built(const TriangleList& mesh) {
 }
 
 /// Builds the mesh and expects this status and element.
-void expect_refused(const TriangleList& mesh, beltrami_status status, Element element) {
+void expect_refused(const TriangleList& mesh, beltrami_status status, Element element,
+                    int threads = 1) {
   try {
-    built(mesh);
+    build_disk(mesh.positions, mesh.faces, threads);
     FAIL() << "was accepted, expected status " << status;
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), status) << error.what();
@@ -97,6 +98,52 @@ TEST(BuildDisk, RefusesADuplicateFace) {
 
 TEST(BuildDisk, RefusesASecondComponent) {
   expect_refused(meshes::two_components(), BELTRAMI_E_COMPONENTS, Element::face(1));
+}
+
+/// A grid of 60,000 faces, which several threads share, with one face more.
+TriangleList large_with_face(const Triangle& face) {
+  TriangleList mesh = meshes::grid(200, 150);
+  mesh.faces.push_back(face);
+  for (const Index v : face) {
+    while (v >= size_of(mesh.positions)) mesh.positions.push_back({9, 9, double(v)});
+  }
+  return mesh;
+}
+
+TEST(BuildDisk, NamesTheFirstDefectOfALargeMeshAtAnyThreadCount) {
+  const Index vertices = size_of(meshes::grid(200, 150).positions), faces = 60'000;
+  for (const int threads : {1, 2, 5}) {
+    expect_refused(large_with_face({vertices, vertices + 1, vertices + 2}), BELTRAMI_E_COMPONENTS,
+                   Element::face(faces), threads);
+    // Only a corner in common: two fans there.
+    expect_refused(large_with_face({0, vertices, vertices + 1}), BELTRAMI_E_NON_MANIFOLD_VERTEX,
+                   Element::vertex(0), threads);
+    TriangleList mesh = large_with_face({7, 7, 8});
+    mesh.faces[40'000] = {3, -1, 4};
+    expect_refused(mesh, BELTRAMI_E_INDEX_OUT_OF_RANGE, Element::face(40'000), threads);
+    mesh.faces[30'000] = {5, 6, 5};
+    expect_refused(mesh, BELTRAMI_E_REPEATED_VERTEX, Element::face(30'000), threads);
+    mesh = meshes::grid(200, 150);
+    mesh.positions[30'000].y() = mesh.positions[20'000].x() =
+        std::numeric_limits<double>::quiet_NaN();
+    expect_refused(mesh, BELTRAMI_E_NON_FINITE, Element::vertex(20'000), threads);
+  }
+}
+
+TEST(BuildDisk, IsTheSameAtAnyThreadCount) {
+  TriangleList mesh = meshes::grid(200, 150);
+  // In an order that says nothing about the surface.
+  for (std::size_t f = mesh.faces.size(); f-- > 1;) {
+    std::swap(mesh.faces[f], mesh.faces[f * 7919 % (f + 1)]);
+  }
+  const DiskMesh one = build_disk(mesh.positions, mesh.faces, 1);
+  for (const int threads : {2, 5}) {
+    const DiskMesh other = build_disk(mesh.positions, mesh.faces, threads);
+    EXPECT_EQ(one.twin, other.twin);
+    EXPECT_EQ(one.outgoing, other.outgoing);
+    EXPECT_EQ(one.boundary, other.boundary);
+    EXPECT_EQ(one.on_boundary, other.on_boundary);
+  }
 }
 
 TEST(BuildDisk, RefusesClosedSurfaces) {
@@ -183,9 +230,7 @@ TEST(BuildDisk, VisitsTheFacesOfAVertexCounterClockwise) {
 
 TEST(DropUnreferenced, KeepsTheOrderOfTheRest) {
   std::vector<Triangle> faces = {{5, 2, 7}, {7, 2, 3}};
-  const ReferencedVertices kept = drop_unreferenced(9, faces);
-  EXPECT_EQ(kept.original, (std::vector<Index>{2, 3, 5, 7}));
-  EXPECT_EQ(kept.renumbered, (std::vector<Index>{kNone, kNone, 0, 1, kNone, 2, kNone, 3, kNone}));
+  EXPECT_EQ(drop_unreferenced(9, faces), (std::vector<Index>{2, 3, 5, 7}));
   EXPECT_EQ(faces, (std::vector<Triangle>{{2, 0, 3}, {3, 0, 1}}));
 }
 

@@ -49,9 +49,8 @@ DiskMesh grid(int width, int height, const Lift& lift = flat, const KeepsCell& k
       faces.push_back({v, v + width + 2, v + width + 1});
     }
   }
-  const ReferencedVertices used = drop_unreferenced(size_of(positions), faces);
   std::vector<Vec3> kept;
-  for (const Index v : used.original) kept.push_back(positions[v]);
+  for (const Index v : drop_unreferenced(size_of(positions), faces)) kept.push_back(positions[v]);
   return build_disk(std::move(kept), std::move(faces));
 }
 

@@ -142,7 +142,7 @@ void expect_sum_of_blocks(const DiskMesh& mesh, const std::vector<bool>& fixed, 
   const int n = size * assembled.free_count();
   for (int pass = 0; pass < 2; ++pass) {  // the second starts from zero again
     DenseMatrix expected = DenseMatrix::Zero(n, n);
-    assembled.set_zero();
+    assembled.set_zero(1);
     for (Index f = 0; f < mesh.face_count(); ++f) {
       for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) {

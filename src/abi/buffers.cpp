@@ -4,11 +4,14 @@
 #include <limits>
 #include <string>
 
+#include "base/parallel.h"
+
 namespace beltrami {
 namespace {
 
 constexpr std::uint64_t kMaxVertices = std::numeric_limits<Index>::max();
 constexpr std::uint64_t kMaxFaces = 700'000'000;  // 3 half-edges each fit an Index
+constexpr std::int64_t kGrain = 16384;
 
 [[noreturn]] void refuse(const std::string& message) {
   throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
@@ -70,32 +73,41 @@ void require_type(std::int32_t type, std::int32_t narrow, std::int32_t wide, con
 
 template <class Integer>
 std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
-                                    std::uint64_t vertex_count) {
-  std::vector<Triangle> faces(count);
-  for (std::size_t f = 0; f < count; ++f) {
+                                    std::uint64_t vertex_count, int threads) {
+  std::vector<Triangle> faces;
+  parallel_assign(threads, faces, count);
+  const auto items = static_cast<std::int64_t>(count);
+  const auto outside = parallel_find(threads, items, kGrain, [&](std::int64_t f) {
+    bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      const auto index = reader.read<Integer>(f, k);
-      if (index >= vertex_count) {
-        throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                    "face " + std::to_string(f) + " names vertex " + std::to_string(index) +
-                        ", but there are " + std::to_string(vertex_count) +
-                        " vertices: indices count from 0",
-                    Element::face(f));
-      }
-      faces[f][static_cast<std::size_t>(k)] = static_cast<Index>(index);
+      const auto index = reader.read<Integer>(static_cast<std::size_t>(f), k);
+      inside &= index < vertex_count;
+      faces[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)] = static_cast<Index>(index);
     }
-  }
-  return faces;
+    return !inside;
+  });
+  if (outside == items) return faces;
+  const auto f = static_cast<std::size_t>(outside);
+  int k = 0;
+  while (reader.read<Integer>(f, k) < vertex_count) ++k;
+  throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+              "face " + std::to_string(f) + " names vertex " +
+                  std::to_string(reader.read<Integer>(f, k)) + ", but there are " +
+                  std::to_string(vertex_count) + " vertices: indices count from 0",
+              Element::face(f));
 }
 
 template <class Scalar, class Vector>
-std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& original) {
+std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& original,
+                                int threads) {
   std::vector<Vector> points(original.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (int k = 0; k < Vector::RowsAtCompileTime; ++k) {
-      points[i][k] = reader.read<Scalar>(static_cast<std::size_t>(original[i]), k);
+  parallel_for(threads, size_of(original), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      for (int k = 0; k < Vector::RowsAtCompileTime; ++k) {
+        points[i][k] = reader.read<Scalar>(static_cast<std::size_t>(original[i]), k);
+      }
     }
-  }
+  });
   return points;
 }
 
@@ -115,19 +127,20 @@ beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
   return mesh;
 }
 
-std::vector<Triangle> read_faces(const beltrami_mesh& mesh) {
+std::vector<Triangle> read_faces(const beltrami_mesh& mesh, int threads) {
   require_type(mesh.indices.type, BELTRAMI_U32, BELTRAMI_U64, "indices");
   const Reader reader(mesh.indices, mesh.face_count, 3, "indices");
   return mesh.indices.type == BELTRAMI_U32
-             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count)
-             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count);
+             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count, threads)
+             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count, threads);
 }
 
-std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original) {
+std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
+                                 int threads) {
   require_type(mesh.positions.type, BELTRAMI_F32, BELTRAMI_F64, "positions");
   const Reader reader(mesh.positions, mesh.vertex_count, 3, "positions");
-  return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original)
-                                             : read_points<double, Vec3>(reader, original);
+  return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original, threads)
+                                             : read_points<double, Vec3>(reader, original, threads);
 }
 
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
@@ -136,8 +149,8 @@ std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_coun
   require_type(uvs->type, BELTRAMI_F32, BELTRAMI_F64, "UVs");
   const Reader reader(*uvs, vertex_count, 2, "UVs");
   std::vector<Vec2> points = uvs->type == BELTRAMI_F32
-                                 ? read_points<float, Vec2>(reader, original)
-                                 : read_points<double, Vec2>(reader, original);
+                                 ? read_points<float, Vec2>(reader, original, 1)
+                                 : read_points<double, Vec2>(reader, original, 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) {
       const auto vertex = static_cast<std::uint64_t>(original[i]);

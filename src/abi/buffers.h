@@ -70,10 +70,11 @@ void write_sized(Struct* theirs, Struct ours) {
 beltrami_mesh read_mesh_header(const beltrami_mesh* mesh);
 
 /// Reads the faces. Throws Error INVALID_ARGUMENT, or INDEX_OUT_OF_RANGE with the face.
-std::vector<Triangle> read_faces(const beltrami_mesh& mesh);
+std::vector<Triangle> read_faces(const beltrami_mesh& mesh, int threads = 1);
 
 /// Reads positions: item `original[i]` for each i. Throws Error INVALID_ARGUMENT.
-std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original);
+std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
+                                 int threads = 1);
 
 /// Reads UVs: item `original[i]` for each i, of `vertex_count` in the buffer.
 /// Throws Error INVALID_ARGUMENT, or NON_FINITE with the vertex.

@@ -84,11 +84,9 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads) {
   loaded.vertex_count = mesh.vertex_count;
   loaded.input = read_disk(mesh, threads);
   DiskMesh& disk = loaded.input.disk;
-  loaded.frame = normalise(disk.positions, disk.faces);
-  loaded.area = surface_area(disk) / loaded.frame.scale / loaded.frame.scale;
-  for (Index f = 0; f < disk.face_count(); ++f) {
-    const Triangle& t = disk.faces[f];
-    if (!is_degenerate(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]])) continue;
+  loaded.frame = normalise(disk.positions, disk.faces, threads);
+  loaded.area = surface_area(disk, threads) / loaded.frame.scale / loaded.frame.scale;
+  for (const Index f : degenerate_faces(disk.positions, disk.faces, threads)) {
     ++loaded.degenerate_faces;
     const Index original = loaded.input.original_face[f];
     Index& first = loaded.first_degenerate_face;

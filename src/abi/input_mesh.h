@@ -17,7 +17,7 @@ struct InputTriangles {
 
 /// Reads the faces; needs no topology. Throws Error INVALID_ARGUMENT, or INDEX_OUT_OF_RANGE with
 /// the face. `mesh` has passed read_mesh_header.
-InputTriangles read_triangles(const beltrami_mesh& mesh);
+InputTriangles read_triangles(const beltrami_mesh& mesh, int threads = 1);
 
 /// A disk over the vertices that the input's faces use.
 struct InputDisk {

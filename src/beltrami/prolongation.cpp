@@ -130,7 +130,8 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
     return coarse.outgoing[home] / 3;
   };
 
-  std::vector<FaceMetric> result(fine.face_count());
+  std::vector<FaceMetric> result;
+  parallel_assign(threads, result, fine.faces.size());
   for (std::int64_t first = 0; first < fine.face_count(); first += kBatch) {
     checkpoint(static_cast<double>(first) / fine.face_count());
     const std::int64_t count = std::min(kBatch, fine.face_count() - first);

@@ -110,17 +110,8 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 std::vector<Index> non_positive_faces(const std::vector<Triangle>& faces,
                                       const std::vector<Vec2>& uvs, int threads) {
-  std::vector<std::vector<Index>> found(faces.size() / kGrain + 1);
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      if (face_orientation(faces[f], uvs) <= 0) {
-        found[begin / kGrain].push_back(static_cast<Index>(f));
-      }
-    }
-  });
-  std::vector<Index> all;
-  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
+  return parallel_filter(threads, size_of(faces), kGrain,
+                         [&](Index f) { return face_orientation(faces[f], uvs) <= 0; });
 }
 
 Orientations count_orientations(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,

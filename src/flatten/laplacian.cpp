@@ -25,7 +25,8 @@ Cotangents modified_cotangents(const RestTriangle& rest, Complex mu) {
 
 std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& rest,
                                             const std::vector<FaceMetric>& metric, int threads) {
-  std::vector<Cotangents> cotangents(rest.size());
+  std::vector<Cotangents> cotangents;
+  parallel_assign(threads, cotangents, rest.size());
   parallel_for(threads, size_of(rest), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       cotangents[f] = modified_cotangents(rest[f], metric[f].mu);

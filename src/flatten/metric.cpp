@@ -34,7 +34,8 @@ EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex d
 template <class Stiffness>
 std::vector<EdgeWeights> stiffness_of_faces(Energy energy, std::size_t count, int threads,
                                             const Stiffness& stiffness) {
-  std::vector<EdgeWeights> weights(count);
+  std::vector<EdgeWeights> weights;
+  parallel_assign(threads, weights, count);
   with_density(energy, [&]<class Density>(Density density) {
     parallel_for(threads, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t f = begin; f < end; ++f) weights[f] = stiffness(density, f);
@@ -117,7 +118,7 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWei
 
 void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
   if (matrix_.free_count() == 0) return;
-  matrix_.set_zero();
+  matrix_.set_zero(threads_);
   assemble(mesh, stiffness);
   refactorize_laplacian(*solver_, matrix_);
 }
@@ -185,7 +186,7 @@ void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     return 0.0;
   };
   std::vector<Vec2> residual, change;
-  VertexSums(mesh.vertex_count(), mesh.faces).add_up(threads, give, residual);
+  VertexSums(mesh.vertex_count(), mesh.faces, threads).add_up(give, residual);
   laplacian.solve(residual, change);
   parallel_for(threads, mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) uvs[v] += change[v];

@@ -55,7 +55,7 @@ class Objective {
  public:
   Objective(Index vertex_count, const std::vector<Triangle>& faces,
             const std::vector<RestTriangle>& rest, int threads)
-      : faces_(faces), rest_(rest), threads_(threads), sums_(vertex_count, faces) {
+      : faces_(faces), rest_(rest), sums_(vertex_count, faces, threads) {
     const auto area = [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
       for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
@@ -85,13 +85,12 @@ class Objective {
       const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
       return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
     };
-    return sums_.add_up(threads_, give, gradient);
+    return sums_.add_up(give, gradient);
   }
 
  private:
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
-  const int threads_;
   double inverse_area_;
   VertexSums sums_;
 };

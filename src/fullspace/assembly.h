@@ -71,7 +71,7 @@ void assemble(const std::vector<Triangle>& faces, const std::vector<RestTriangle
     Index row;
     Vec2 term;
   };
-  hessian.set_zero();
+  hessian.set_zero(threads);
   gradient.setZero(2 * hessian.free_count());
   const FaceChunks& chunks = hessian.chunks();
   std::vector<std::vector<Aside>> aside(chunks.count());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/bucket_sort.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -28,19 +29,19 @@ std::array<Index, 2> ends_of(const std::vector<Triangle>& faces, Index h) {
   return {face[h % 3], face[next_corner(h % 3)]};
 }
 
-Buckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces) {
+Buckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces, int threads) {
   Buckets buckets;
-  const Index halfedge_count = 3 * size_of(faces);
-  const auto smaller_end = [&](Index h) {
-    const auto [from, to] = ends_of(faces, h);
-    return std::min(from, to);
+  const auto smaller_ends = [&](std::int64_t f, const auto& visit) {
+    for (int k = 0; k < 3; ++k) visit(k, std::min(faces[f][k], faces[f][next_corner(k)]));
   };
-  buckets.start.assign(vertex_count + 1, 0);
-  for (Index h = 0; h < halfedge_count; ++h) ++buckets.start[smaller_end(h) + 1];
-  for (Index v = 0; v < vertex_count; ++v) buckets.start[v + 1] += buckets.start[v];
-  buckets.halfedge.resize(halfedge_count);
-  std::vector<Index> cursor(buckets.start.begin(), buckets.start.end() - 1);
-  for (Index h = 0; h < halfedge_count; ++h) buckets.halfedge[cursor[smaller_end(h)]++] = h;
+  BucketSort<Index> sort(
+      threads, size_of(faces), vertex_count, buckets.start,
+      [&](std::int64_t f, const auto& count) { smaller_ends(f, [&](int, Index v) { count(v); }); });
+  parallel_assign(threads, buckets.halfedge, 3 * faces.size());
+  sort.place([&](std::int64_t f, const auto& place) {
+    smaller_ends(
+        f, [&](int k, Index v) { buckets.halfedge[place(v)] = static_cast<Index>(3 * f + k); });
+  });
   return buckets;
 }
 
@@ -117,8 +118,9 @@ bool pair_spokes(std::vector<Spoke>& spokes, std::vector<Index>& twin) {
 /// Pairs half-edges: no hash map, no sort over the whole.
 std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
                                   int threads) {
-  const Buckets buckets = sort_halfedges(vertex_count, faces);
-  std::vector<Index> twin(buckets.halfedge.size(), kNone);
+  const Buckets buckets = sort_halfedges(vertex_count, faces, threads);
+  std::vector<Index> twin;
+  parallel_assign(threads, twin, buckets.halfedge.size(), kNone);
   std::atomic<bool> sound{true};
   parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Spoke> spokes;
@@ -136,78 +138,107 @@ std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle
   return twin;
 }
 
-/// Fills `outgoing`; throws NON_MANIFOLD_VERTEX where the faces of a vertex form several fans.
-void link_vertices(DiskMesh& mesh, int threads) {
+/// Fills `outgoing`, given the half-edges without a twin; throws NON_MANIFOLD_VERTEX where the
+/// faces of a vertex form several fans.
+void link_vertices(DiskMesh& mesh, const std::vector<Index>& boundary, int threads) {
   const Index vertex_count = mesh.vertex_count();
   mesh.outgoing.assign(vertex_count, kNone);
-  std::vector<Index> valence(vertex_count, 0);
-  for (Index h = 0; h < size_of(mesh.twin); ++h) {
-    const Index v = mesh.origin(h);
-    ++valence[v];
-    if (mesh.outgoing[v] == kNone || mesh.twin[h] == kNone) mesh.outgoing[v] = h;
-  }
-  std::atomic<Index> first_defect{vertex_count};
-  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      if (mesh.outgoing[v] == kNone) continue;
-      Index fan = 0;
-      mesh.for_each_outgoing(v, [&](Index) { ++fan; });
-      if (fan == valence[v]) continue;
-      Index known = first_defect;
-      while (v < known && !first_defect.compare_exchange_weak(known, v)) {
+  // The first one, whichever thread comes first.
+  parallel_for(threads, size_of(mesh.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto h = static_cast<Index>(begin); h < end; ++h) {
+      const std::atomic_ref<Index> outgoing(mesh.outgoing[mesh.origin(h)]);
+      Index known = outgoing.load(std::memory_order_relaxed);
+      while ((known == kNone || h < known) &&
+             !outgoing.compare_exchange_weak(known, h, std::memory_order_relaxed)) {
       }
-      return;
     }
   });
-  if (const Index v = first_defect; v < vertex_count) {
-    throw Error(BELTRAMI_E_NON_MANIFOLD_VERTEX,
-                "the faces around vertex " + quoted(v) +
-                    " form more than one fan: duplicate the vertex, one copy for each fan",
-                Element::vertex(v));
-  }
+  for (const Index h : boundary) mesh.outgoing[mesh.origin(h)] = h;
+
+  const auto fan = [&](Index v) {
+    Index faces = 0;
+    if (mesh.outgoing[v] != kNone) mesh.for_each_outgoing(v, [&](Index) { ++faces; });
+    return faces;
+  };
+  std::atomic<Index> in_fans{0};
+  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Index faces = 0;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) faces += fan(v);
+    in_fans += faces;
+  });
+  if (in_fans == size_of(mesh.twin)) return;
+  std::vector<Index> valence(vertex_count, 0);
+  for (Index h = 0; h < size_of(mesh.twin); ++h) ++valence[mesh.origin(h)];
+  Index v = 0;
+  while (fan(v) == valence[v]) ++v;
+  throw Error(BELTRAMI_E_NON_MANIFOLD_VERTEX,
+              "the faces around vertex " + quoted(v) +
+                  " form more than one fan: duplicate the vertex, one copy for each fan",
+              Element::vertex(v));
 }
 
-void require_one_component(const DiskMesh& mesh) {
-  std::vector<bool> reached(mesh.face_count(), false);
-  std::vector<Index> stack{0};
-  reached[0] = true;
-  while (!stack.empty()) {
-    const Index face = stack.back();
-    stack.pop_back();
-    for (int k = 0; k < 3; ++k) {
-      const Index twin = mesh.twin[3 * face + k];
-      if (twin != kNone && !reached[twin / 3]) {
-        reached[twin / 3] = true;
-        stack.push_back(twin / 3);
+/// Sets of connected faces as trees (Tarjan 1975); the least face of each is its root.
+class Components {
+ public:
+  explicit Components(Index count) : parent_(count) {}
+
+  void make(Index face) { parent_[face] = face; }
+  Index root(Index face) {
+    while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
+    return face;
+  }
+  void unite(Index one, Index other) {
+    one = root(one);
+    other = root(other);
+    parent_[std::max(one, other)] = std::min(one, other);
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// Chunks of faces side by side, then what connects them.
+void require_one_component(const DiskMesh& mesh, int threads) {
+  Components components(mesh.face_count());
+  std::vector<std::vector<std::array<Index, 2>>> across((mesh.face_count() + kGrain - 1) / kGrain);
+  parallel_for(threads, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      components.make(f);
+      for (int k = 0; k < 3; ++k) {
+        const Index twin = mesh.twin[3 * f + k];
+        if (twin == kNone || twin / 3 > f) continue;
+        if (twin / 3 >= begin) {
+          components.unite(f, twin / 3);
+        } else {
+          across[begin / kGrain].push_back({f, twin / 3});
+        }
       }
     }
+  });
+  for (const auto& pairs : across) {
+    for (const auto& [one, other] : pairs) components.unite(one, other);
   }
-  const auto outside = std::find(reached.begin(), reached.end(), false);
-  if (outside == reached.end()) return;
-  const auto face = static_cast<Index>(outside - reached.begin());
+  // Each other component shows at its least face, its root.
+  Index outside = 1;
+  while (outside < mesh.face_count() && components.root(outside) == 0) ++outside;
+  if (outside == mesh.face_count()) return;
   throw Error(
       BELTRAMI_E_COMPONENTS,
-      "face " + quoted(face) + " is not connected to face 0: flatten each component on its own",
-      Element::face(face));
+      "face " + quoted(outside) + " is not connected to face 0: flatten each component on its own",
+      Element::face(outside));
 }
 
 /// Walks the boundary; throws CLOSED, BOUNDARIES or GENUS.
-void trace_boundary(DiskMesh& mesh) {
+void trace_boundary(DiskMesh& mesh, const std::vector<Index>& halfedges) {
   mesh.on_boundary.assign(mesh.vertex_count(), false);
-  Index boundary_edges = 0;
-  Index first = kNone;
-  for (Index h = 0; h < size_of(mesh.twin); ++h) {
-    if (mesh.twin[h] != kNone) continue;
-    ++boundary_edges;
-    if (first == kNone) first = h;
-    mesh.on_boundary[mesh.origin(h)] = true;
-  }
-  if (first == kNone) {
+  for (const Index h : halfedges) mesh.on_boundary[mesh.origin(h)] = true;
+  const Index boundary_edges = size_of(halfedges);
+  if (halfedges.empty()) {
     throw Error(BELTRAMI_E_CLOSED,
                 "the surface is closed, it has no boundary: cut it open along a seam first");
   }
   std::vector<bool> visited(mesh.vertex_count(), false);
-  Index v = mesh.origin(first);
+  Index v = mesh.origin(halfedges.front());
   do {
     mesh.boundary.push_back(v);
     visited[v] = true;
@@ -231,67 +262,89 @@ void trace_boundary(DiskMesh& mesh) {
   }
 }
 
+double total_area(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                  int threads) {
+  return parallel_sum(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double area = 0;
+    for (std::int64_t f = begin; f < end; ++f) {
+      area += triangle_area(positions[faces[f][0]], positions[faces[f][1]], positions[faces[f][2]]);
+    }
+    return area;
+  });
+}
+
 }  // namespace
 
-void validate_indices(Index vertex_count, const std::vector<Triangle>& faces) {
+void validate_indices(Index vertex_count, const std::vector<Triangle>& faces, int threads) {
   if (vertex_count == 0 || faces.empty()) {
     throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");
   }
-  for (Index f = 0; f < size_of(faces); ++f) {
-    const Triangle& face = faces[f];
-    for (const Index v : face) {
-      if (v < 0 || v >= vertex_count) {
-        throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                    "face " + quoted(f) + " names vertex " + quoted(v) + " of " +
-                        quoted(vertex_count) + ": indices count from 0",
-                    Element::face(f));
+  const auto in_range = [&](Index v) { return v >= 0 && v < vertex_count; };
+  const auto defect = parallel_find(threads, size_of(faces), kGrain, [&](std::int64_t f) {
+    const auto [a, b, c] = faces[f];
+    return !in_range(a) || !in_range(b) || !in_range(c) || a == b || b == c || c == a;
+  });
+  if (defect == size_of(faces)) return;
+  const auto f = static_cast<Index>(defect);
+  for (const Index v : faces[f]) {
+    if (in_range(v)) continue;
+    throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                "face " + quoted(f) + " names vertex " + quoted(v) + " of " + quoted(vertex_count) +
+                    ": indices count from 0",
+                Element::face(f));
+  }
+  throw Error(BELTRAMI_E_REPEATED_VERTEX,
+              "face " + quoted(f) + " names one vertex twice: remove the face", Element::face(f));
+}
+
+void validate_positions(const std::vector<Vec3>& positions, int threads) {
+  const auto defect = parallel_find(threads, size_of(positions), kGrain,
+                                    [&](std::int64_t v) { return !positions[v].allFinite(); });
+  if (defect == size_of(positions)) return;
+  const auto v = static_cast<Index>(defect);
+  throw Error(BELTRAMI_E_NON_FINITE,
+              "vertex " + quoted(v) + " has a coordinate that is infinite or not a number",
+              Element::vertex(v));
+}
+
+std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces,
+                                     int threads) {
+  std::vector<Index> renumbered(vertex_count, kNone);
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (const Index v : faces[f]) {
+        std::atomic_ref<Index>(renumbered[v]).store(0, std::memory_order_relaxed);
       }
     }
-    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
-      throw Error(BELTRAMI_E_REPEATED_VERTEX,
-                  "face " + quoted(f) + " names one vertex twice: remove the face",
-                  Element::face(f));
-    }
-  }
-}
-
-void validate_positions(const std::vector<Vec3>& positions) {
-  for (Index v = 0; v < size_of(positions); ++v) {
-    if (!positions[v].allFinite()) {
-      throw Error(BELTRAMI_E_NON_FINITE,
-                  "vertex " + quoted(v) + " has a coordinate that is infinite or not a number",
-                  Element::vertex(v));
-    }
-  }
-}
-
-ReferencedVertices drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces) {
-  ReferencedVertices vertices;
-  vertices.renumbered.assign(vertex_count, kNone);
-  for (const Triangle& face : faces) {
-    for (const Index v : face) vertices.renumbered[v] = 0;
-  }
+  });
+  std::vector<Index> original;
+  original.reserve(vertex_count);
   for (Index v = 0; v < vertex_count; ++v) {
-    if (vertices.renumbered[v] == kNone) continue;
-    vertices.renumbered[v] = size_of(vertices.original);
-    vertices.original.push_back(v);
+    if (renumbered[v] == kNone) continue;
+    renumbered[v] = size_of(original);
+    original.push_back(v);
   }
-  for (Triangle& face : faces) {
-    for (Index& v : face) v = vertices.renumbered[v];
-  }
-  return vertices;
+  if (size_of(original) == vertex_count) return original;
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (Index& v : faces[f]) v = renumbered[v];
+    }
+  });
+  return original;
 }
 
 DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, int threads) {
-  validate_indices(size_of(positions), faces);
-  validate_positions(positions);
+  validate_indices(size_of(positions), faces, threads);
+  validate_positions(positions, threads);
   DiskMesh mesh;
   mesh.positions = std::move(positions);
   mesh.faces = std::move(faces);
   mesh.twin = pair_halfedges(mesh.vertex_count(), mesh.faces, threads);
-  link_vertices(mesh, threads);
-  require_one_component(mesh);
-  trace_boundary(mesh);
+  const std::vector<Index> boundary = parallel_filter(
+      threads, size_of(mesh.twin), kGrain, [&](Index h) { return mesh.twin[h] == kNone; });
+  link_vertices(mesh, boundary, threads);
+  require_one_component(mesh, threads);
+  trace_boundary(mesh, boundary);
   return mesh;
 }
 
@@ -299,16 +352,12 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * (b - a).cross(c - a).norm();
 }
 
-double surface_area(const DiskMesh& mesh) {
-  double area = 0;
-  for (const Triangle& face : mesh.faces) {
-    area +=
-        triangle_area(mesh.positions[face[0]], mesh.positions[face[1]], mesh.positions[face[2]]);
-  }
-  return area;
+double surface_area(const DiskMesh& mesh, int threads) {
+  return total_area(mesh.positions, mesh.faces, threads);
 }
 
-Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces) {
+Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                        int threads) {
   Vec3 low = positions.front(), high = positions.front();
   for (const Vec3& p : positions) {
     low = low.cwiseMin(p);
@@ -321,18 +370,21 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
   if (!(extent > 0)) {
     throw Error(BELTRAMI_E_ZERO_AREA, "all vertices coincide: the surface has no area");
   }
+  const auto for_each_position = [&](const auto& change) {
+    parallel_for(threads, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t v = begin; v < end; ++v) change(positions[v]);
+    });
+  };
   const auto rescale = [&](int exponent) {
     frame.scale = std::ldexp(frame.scale, exponent);
-    for (Vec3& p : positions) {
-      p = p.unaryExpr([exponent](double x) { return std::ldexp(x, exponent); });
-    }
+    // Two factors, since one alone could leave the range of numbers that their product stays in.
+    const double half = std::ldexp(1.0, exponent / 2),
+                 rest = std::ldexp(1.0, exponent - exponent / 2);
+    for_each_position([=](Vec3& p) { p = p * half * rest; });
   };
-  for (Vec3& p : positions) p -= frame.centre;
+  for_each_position([&](Vec3& p) { p -= frame.centre; });
   rescale(-std::ilogb(extent));
-  double area = 0;
-  for (const Triangle& face : faces) {
-    area += triangle_area(positions[face[0]], positions[face[1]], positions[face[2]]);
-  }
+  const double area = total_area(positions, faces, threads);
   if (!(area > 0)) {
     throw Error(BELTRAMI_E_ZERO_AREA,
                 "the surface has no area: every face is degenerate (check the vertex positions)");

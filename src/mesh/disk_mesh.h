@@ -49,27 +49,22 @@ struct DiskMesh {
 /// the arrays given. Every vertex must be used: see drop_unreferenced.
 DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, int threads = 1);
 
-/// The vertices that faces use, renumbered in order.
-struct ReferencedVertices {
-  std::vector<Index> original;    ///< per kept vertex: its index before
-  std::vector<Index> renumbered;  ///< per old vertex: its index now, or kNone
-};
+/// Renumbers `faces` in place over the vertices that they use, and returns these: per vertex that
+/// is kept its index before, increasing. Precondition: indices in [0, vertex_count).
+std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces,
+                                     int threads = 1);
 
-/// Finds the vertices that `faces` use and renumbers `faces` in place.
-/// Precondition: indices in [0, vertex_count).
-ReferencedVertices drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces);
+/// Throws Error INDEX_OUT_OF_RANGE, REPEATED_VERTEX (the first such face) or EMPTY.
+void validate_indices(Index vertex_count, const std::vector<Triangle>& faces, int threads = 1);
 
-/// Throws Error INDEX_OUT_OF_RANGE, REPEATED_VERTEX (face) or EMPTY.
-void validate_indices(Index vertex_count, const std::vector<Triangle>& faces);
-
-/// Throws Error NON_FINITE with the vertex.
-void validate_positions(const std::vector<Vec3>& positions);
+/// Throws Error NON_FINITE with the first such vertex.
+void validate_positions(const std::vector<Vec3>& positions, int threads = 1);
 
 /// Area of a triangle in space.
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Sum of the 3D areas of all faces.
-double surface_area(const DiskMesh& mesh);
+double surface_area(const DiskMesh& mesh, int threads = 1);
 
 /// Where a mesh was before normalisation: original = normalised / scale + centre.
 struct Normalisation {
@@ -80,6 +75,7 @@ struct Normalisation {
 /// Recentres the bounding box to the origin and scales by the power of two that brings the area
 /// into [1/2, 2): scaling the input by a power of two then gives the same bits.
 /// Throws Error ZERO_AREA if the area is zero or not finite.
-Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces);
+Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                        int threads = 1);
 
 }  // namespace beltrami

@@ -1,18 +1,27 @@
 #include "mesh/face_chunks.h"
 
+#include <atomic>
+
+#include "base/parallel.h"
+
 namespace beltrami {
 
-FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces)
+FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, int threads)
     : count_(of(size_of(faces)) + 1), shared_(static_cast<std::size_t>(vertex_count), 0) {
   if (count_ == 1) return;
-  std::vector<Index> chunk_of(shared_.size(), kNone);
-  for (Index f = 0; f < size_of(faces); ++f) {
-    const auto chunk = static_cast<Index>(of(f));
-    for (const Index v : faces[f]) {
-      if (chunk_of[v] != chunk && chunk_of[v] != kNone) shared_[v] = 1;
-      chunk_of[v] = chunk;
+  // Whichever chunks come first at a vertex: one of them finds the mark of another.
+  std::vector<Index> last_chunk(shared_.size(), kNone);
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    const auto chunk = static_cast<Index>(of(begin));
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (const Index v : faces[f]) {
+        const std::atomic_ref<Index> last(last_chunk[v]);
+        if (last.load(std::memory_order_relaxed) == chunk) continue;
+        if (last.exchange(chunk, std::memory_order_relaxed) == kNone) continue;
+        std::atomic_ref<std::uint8_t>(shared_[v]).store(1, std::memory_order_relaxed);
+      }
     }
-  }
+  });
 }
 
 }  // namespace beltrami

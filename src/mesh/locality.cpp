@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/bucket_sort.h"
 #include "base/parallel.h"
 
 namespace beltrami {
@@ -43,16 +44,6 @@ std::uint64_t hilbert_key(Cell x) {
   return key;
 }
 
-/// Writes to `to` what `from` has, stably by `bucket`, which is below `buckets`.
-template <class Item, class Bucket>
-void counting_sort(const std::vector<Item>& from, std::vector<Item>& to, std::size_t buckets,
-                   Bucket&& bucket) {
-  std::vector<Index> start(buckets + 1, 0);
-  for (const Item& item : from) ++start[bucket(item) + 1];
-  for (std::size_t b = 0; b < buckets; ++b) start[b + 1] += start[b];
-  for (const Item& item : from) to[start[bucket(item)]++] = item;
-}
-
 }  // namespace
 
 std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int threads) {
@@ -66,7 +57,9 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int thre
   const double side = (0.5 * high - 0.5 * low).maxCoeff();
   constexpr double kCells = (1 << kBits) - 1;
   using Keyed = std::pair<std::uint64_t, Index>;
-  std::vector<Keyed> keyed(points.size()), sorted(points.size());
+  std::vector<Keyed> keyed, sorted;
+  parallel_assign(threads, keyed, points.size());
+  parallel_assign(threads, sorted, points.size());
   parallel_for(threads, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       Cell cell{};
@@ -77,24 +70,34 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int thre
       keyed[v] = {hilbert_key(cell), v};
     }
   });
+  std::vector<Index> start;
   for (int shift = 0; shift < 3 * kBits; shift += kDigit) {
-    counting_sort(keyed, sorted, std::size_t{1} << kDigit, [=](const Keyed& item) {
-      return static_cast<std::size_t>(item.first >> shift & ((1u << kDigit) - 1));
-    });
+    const auto digit = [&](std::int64_t i) {
+      return keyed[i].first >> shift & ((1u << kDigit) - 1);
+    };
+    BucketSort<Index> sort(threads, size_of(keyed), 1 << kDigit, start,
+                           [&](std::int64_t i, const auto& count) { count(digit(i)); });
+    sort.place([&](std::int64_t i, const auto& place) { sorted[place(digit(i))] = keyed[i]; });
     keyed.swap(sorted);
   }
-  std::vector<Index> order(points.size());
+  std::vector<Index> order;
+  parallel_assign(threads, order, points.size());
   std::transform(keyed.begin(), keyed.end(), order.begin(),
                  [](const Keyed& k) { return k.second; });
   return order;
 }
 
-std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces) {
-  std::vector<Index> order(faces.size()), sorted(faces.size());
-  for (Index f = 0; f < size_of(faces); ++f) order[f] = f;
-  counting_sort(order, sorted, static_cast<std::size_t>(vertex_count), [&](Index f) {
-    return static_cast<std::size_t>(*std::min_element(faces[f].begin(), faces[f].end()));
-  });
+std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces,
+                                   int threads) {
+  const auto least = [&](std::int64_t f) {
+    return std::min({faces[f][0], faces[f][1], faces[f][2]});
+  };
+  std::vector<Index> start, sorted;
+  parallel_assign(threads, sorted, faces.size());
+  BucketSort<Index> sort(threads, size_of(faces), vertex_count, start,
+                         [&](std::int64_t f, const auto& count) { count(least(f)); });
+  sort.place(
+      [&](std::int64_t f, const auto& place) { sorted[place(least(f))] = static_cast<Index>(f); });
   return sorted;
 }
 

@@ -42,6 +42,10 @@ inline LinearMap linear_map(const RestTriangle& rest, const Vec2& w0, const Vec2
 /// duplicate positions).
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// The faces for which is_degenerate holds, in order.
+std::vector<Index> degenerate_faces(const std::vector<Vec3>& positions,
+                                    const std::vector<Triangle>& faces, int threads);
+
 /// Lays every face flat. A degenerate face is valid topology without geometry: it is given a height
 /// of 1e-3 of its longest edge, or of the mean edge where it has no extent at all, so that every
 /// energy stays finite.

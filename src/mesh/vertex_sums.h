@@ -18,16 +18,17 @@ class VertexSums {
   /// What a face gives to its three corners.
   using Terms = std::array<Vec2, 3>;
 
-  VertexSums(Index vertex_count, const std::vector<Triangle>& faces)
+  VertexSums(Index vertex_count, const std::vector<Triangle>& faces, int threads)
       : faces_(faces),
+        threads_(threads),
         vertex_count_(vertex_count),
-        chunks_(vertex_count, faces),
+        chunks_(vertex_count, faces, threads),
         aside_(chunks_.count()) {}
 
   /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
   /// terms. Returns the sum over the faces of what `give` returns.
   template <class Give>
-  double add_up(int threads, const Give& give, std::vector<Vec2>& sums);
+  double add_up(const Give& give, std::vector<Vec2>& sums);
 
  private:
   static constexpr std::int64_t kGrain = FaceChunks::kGrain;
@@ -37,15 +38,16 @@ class VertexSums {
   };
 
   const std::vector<Triangle>& faces_;
+  int threads_;
   Index vertex_count_;
   FaceChunks chunks_;
   std::vector<std::vector<Aside>> aside_;
 };
 
 template <class Give>
-double VertexSums::add_up(int threads, const Give& give, std::vector<Vec2>& sums) {
+double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
   sums.resize(vertex_count_);
-  parallel_for(threads, static_cast<std::int64_t>(sums.size()), kGrain,
+  parallel_for(threads_, static_cast<std::int64_t>(sums.size()), kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
                });
@@ -67,7 +69,7 @@ double VertexSums::add_up(int threads, const Give& give, std::vector<Vec2>& sums
     }
     return total;
   };
-  const double total = parallel_sum(threads, size_of(faces_), kGrain, chunk);
+  const double total = parallel_sum(threads_, size_of(faces_), kGrain, chunk);
   for (const std::vector<Aside>& aside : aside_) {
     for (const Aside& a : aside) sums[a.vertex] += a.term;
   }

@@ -65,8 +65,10 @@ void Run::measure_fine(FineProblem& fine, const Checkpoint& checkpoint) {
   const auto coarse_metric = face_metrics(coarse.faces, coarse_rest, fine.coarse_uvs);
   const auto measure = [&] {
     fine.rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
-    fine.metric.assign(disk_->faces.size(), FaceMetric{});
-    if (coarse_metric.empty()) return;
+    if (coarse_metric.empty()) {
+      fine.metric.assign(disk_->faces.size(), FaceMetric{});
+      return;
+    }
     fine.metric = prolong_metric(coarse, coarse_metric, *disk_, fine.coarse.nearby,
                                  options_.threads, checkpoint);
   };
@@ -277,7 +279,7 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     // The objective is a mean, the stiffness that of a sum.
-    const double area = surface_area(*disk_);
+    const double area = surface_area(*disk_, options_.threads);
     const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
       laplacian.precondition(in, out);
       for (Vec2& w : out) w *= area;

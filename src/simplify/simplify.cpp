@@ -84,7 +84,8 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
 /// In the order of the vertices.
 std::vector<Candidate> find_candidates(const ShrinkingSurface& surface, int threads) {
   const Candidate no_floor{-1, kNone, kNone};
-  std::vector<Candidate> candidates(surface.vertex_count());
+  std::vector<Candidate> candidates;
+  parallel_assign(threads, candidates, surface.site.size());
   parallel_for(threads, surface.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
       candidates[v] = cheapest_collapse(surface, static_cast<Index>(v), no_floor);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 
+#include "base/bucket_sort.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "mesh/face_chunks.h"
@@ -24,6 +25,8 @@ constexpr double kBoundaryWeight = 10;
 
 /// A face without area weighs as much as one of this width over its length.
 constexpr double kDegenerateWidth = 1e-6;
+
+constexpr std::int64_t kGrain = 16384;
 
 /// One boundary vertex strictly between two positions of the loop, nearest the middle by length.
 Index middle_of_loop(const DiskMesh& mesh, Index begin, Index end) {
@@ -46,10 +49,10 @@ Index middle_of_loop(const DiskMesh& mesh, Index begin, Index end) {
 /// loop, else the patch behind the bridge could lose all its width.
 void fix_boundary(const DiskMesh& mesh, std::vector<Role>& role) {
   std::vector<bool> bridge_end(mesh.vertex_count(), false);
-  for (Index h = 0; h < size_of(mesh.twin); ++h) {
-    const Index from = mesh.origin(h), to = mesh.target(h);
-    if (mesh.twin[h] == kNone || !mesh.on_boundary[from] || !mesh.on_boundary[to]) continue;
-    bridge_end[from] = bridge_end[to] = true;
+  for (const Index v : mesh.boundary) {
+    mesh.for_each_outgoing(v, [&](Index h) {
+      if (mesh.twin[h] != kNone && mesh.on_boundary[mesh.target(h)]) bridge_end[v] = true;
+    });
   }
   std::vector<Index> ends;  // positions on the loop
   for (Index i = 0; i < size_of(mesh.boundary); ++i) {
@@ -133,8 +136,9 @@ Index least_boundary(const DiskMesh& mesh) {
 }
 
 std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, int threads) {
-  std::vector<Quadric> quadrics(mesh.vertex_count());
-  const FaceChunks chunks(mesh.vertex_count(), mesh.faces);
+  std::vector<Quadric> quadrics;
+  parallel_assign(threads, quadrics, mesh.positions.size());
+  const FaceChunks chunks(mesh.vertex_count(), mesh.faces, threads);
   std::vector<std::vector<Index>> faces_of_shared(chunks.count());
   parallel_for(threads, mesh.face_count(), FaceChunks::kGrain,
                [&](std::int64_t begin, std::int64_t end) {
@@ -160,8 +164,8 @@ std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, in
 ShrinkingSurface make_surface(const DiskMesh& mesh, int threads) {
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
-  surface.site.reserve(vertex_count);
-  for (const Vec3& p : mesh.positions) surface.site.push_back({p, 0});
+  parallel_assign(threads, surface.site, mesh.positions.size());
+  for (Index v = 0; v < vertex_count; ++v) surface.site[v] = {mesh.positions[v], 0};
   surface.loop_next.assign(vertex_count, kNone);
   surface.loop_previous.assign(vertex_count, kNone);
   surface.fine_vertex.resize(vertex_count);
@@ -184,24 +188,22 @@ ShrinkingSurface make_surface(const DiskMesh& mesh, int threads) {
 }
 
 void compact(ShrinkingSurface& surface, int threads) {
-  std::vector<Index> renumbered(surface.vertex_count(), kNone);
-  Index kept = 0;
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    if (surface.role[v] != Role::kRemoved) renumbered[v] = kept++;
-  }
+  const std::vector<Index> kept_vertices =
+      parallel_filter(threads, surface.vertex_count(), kGrain,
+                      [&](Index v) { return surface.role[v] != Role::kRemoved; });
+  const Index kept = size_of(kept_vertices);
+  std::vector<Index> renumbered(surface.vertex_count());
+  parallel_for(threads, kept, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) renumbered[kept_vertices[v]] = static_cast<Index>(v);
+  });
   const auto move_down = [&](auto& items) {
-    for (std::size_t v = 0; v < renumbered.size(); ++v) {
-      if (renumbered[v] != kNone) items[renumbered[v]] = items[v];
-    }
+    for (Index v = 0; v < kept; ++v) items[v] = items[kept_vertices[v]];
     items.resize(kept);
   };
   const auto renumber = [&](Index& v) { v = v == kNone ? kNone : renumbered[v]; };
   // Arrays that have nothing to do with each other.
   const std::function<void()> tasks[] = {
-      [&] {
-        std::erase_if(surface.faces, [](const Triangle& face) { return face[0] == kNone; });
-        for (Triangle& face : surface.faces) std::for_each(face.begin(), face.end(), renumber);
-      },
+      [&] { std::erase_if(surface.faces, [](const Triangle& face) { return face[0] == kNone; }); },
       [&] { move_down(surface.quadric); },
       [&] { move_down(surface.site); },
       [&] {
@@ -215,29 +217,31 @@ void compact(ShrinkingSurface& surface, int threads) {
   };
   parallel_for(threads, std::ssize(tasks), 1,
                [&](std::int64_t task, std::int64_t) { tasks[task](); });
+  parallel_for(threads, size_of(surface.faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (Index& v : surface.faces[f]) v = renumbered[v];
+    }
+  });
 }
 
 void begin_pass(ShrinkingSurface& surface, int threads) {
   compact(surface, threads);
   poll_interrupt();
-  // Counting sort of the half-edges by origin.
+  // The half-edges by origin.
   const Index vertex_count = surface.vertex_count();
-  surface.valence.assign(vertex_count, 0);
-  for (const Triangle& face : surface.faces) {
-    for (const Index v : face) ++surface.valence[v];
-  }
-  surface.fan_start.resize(vertex_count + 1);
-  Index total = 0;
+  BucketSort<Index> sort(threads, size_of(surface.faces), vertex_count, surface.fan_start,
+                         [&](std::int64_t f, const auto& count) {
+                           for (const Index v : surface.faces[f]) count(v);
+                         });
+  surface.fan.resize(3 * surface.faces.size());
+  sort.place([&](std::int64_t f, const auto& place) {
+    for (int k = 0; k < 3; ++k) {
+      surface.fan[place(surface.faces[f][k])] = static_cast<Index>(3 * f + k);
+    }
+  });
+  surface.valence.resize(vertex_count);
   for (Index v = 0; v < vertex_count; ++v) {
-    surface.fan_start[v] = total;
-    total += surface.valence[v];
-  }
-  surface.fan_start[vertex_count] = total;
-  surface.fan.resize(total);
-  // `mark` serves as the cursor first.
-  surface.mark.assign(surface.fan_start.begin(), surface.fan_start.end() - 1);
-  for (Index f = 0; f < size_of(surface.faces); ++f) {
-    for (int k = 0; k < 3; ++k) surface.fan[surface.mark[surface.faces[f][k]]++] = 3 * f + k;
+    surface.valence[v] = surface.fan_start[v + 1] - surface.fan_start[v];
   }
   surface.mark.assign(vertex_count, kNone);
   surface.locked.assign(vertex_count, false);

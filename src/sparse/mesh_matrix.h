@@ -27,7 +27,7 @@ class MeshMatrix {
   template <class Point>
   std::vector<Place> places(const std::vector<Point>& points) const;
 
-  void set_zero();
+  void set_zero(int threads);
   /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be
   /// called once for every unordered pair of corners, the diagonal ones included. Fixed corners are
   /// skipped.

@@ -72,8 +72,7 @@ meshes::TriangleList cells(Index nx, Index ny, const Keeps& keeps) {
   for (Index f = 0; f < size_of(all.faces); ++f) {
     if (keeps(f / 2 % nx, f / 2 / nx)) kept.faces.push_back(all.faces[f]);
   }
-  const ReferencedVertices used = drop_unreferenced(size_of(all.positions), kept.faces);
-  for (const Index v : used.original) {
+  for (const Index v : drop_unreferenced(size_of(all.positions), kept.faces)) {
     const Vec3& p = all.positions[v];
     kept.positions.push_back({p.x() * nx, p.y() * ny, 0});
   }
