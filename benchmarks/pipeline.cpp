@@ -118,7 +118,7 @@ Figures measure_mesh(const cli::MeshFile& mesh, int rounds, bool with_cm) {
   for (int round = 0; round < rounds; ++round) {
 #ifdef BELTRAMI_WITH_CHOLMOD
     {
-      const System system = interior_laplacian(mesh);
+      const System system = interior_laplacian(mesh, Numbering::kOfFile);
       const double um = run_cholmod(system, Unit::kUm).total();
       const double ua = run_cholmod(system, Unit::kUa).total();
       figures.um = round == 0 ? um : std::min(figures.um, um);

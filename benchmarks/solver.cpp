@@ -43,7 +43,7 @@ Cost run_eigen(const System& system) {
 void benchmark(const std::string& path, std::uint64_t faces, int rounds, bool with_eigen) {
   auto mesh = cli::read_mesh(path, cli::Content::kSurface);
   if (faces > mesh.face_count()) mesh = refine(mesh, faces);
-  const System system = interior_laplacian(mesh);
+  const System system = interior_laplacian(mesh, Numbering::kAlongCurve);
   std::printf("\n%s, %llu faces, %lld unknowns\n",
               std::filesystem::path(path).stem().string().c_str(),
               static_cast<unsigned long long>(mesh.face_count()),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh/disk_mesh.h"
+#include "mesh/locality.h"
 #include "sparse/mesh_matrix.h"
 #ifdef BELTRAMI_WITH_CHOLMOD
 #include <cholmod.h>
@@ -79,7 +80,26 @@ Cost run_cholmod(const System& system, Unit unit) {
 }
 #endif
 
-System interior_laplacian(const cli::MeshFile& file) {
+namespace {
+
+/// Numbers the vertices as the library does before all else.
+void number_along_curve(std::vector<Vec3>& positions, std::vector<Triangle>& faces) {
+  const std::vector<Index> order = along_hilbert_curve(positions);
+  std::vector<Vec3> arranged;
+  std::vector<Index> place(order.size());
+  for (Index i = 0; i < size_of(order); ++i) {
+    arranged.push_back(positions[order[i]]);
+    place[order[i]] = i;
+  }
+  positions.swap(arranged);
+  for (Triangle& face : faces) {
+    for (Index& v : face) v = place[v];
+  }
+}
+
+}  // namespace
+
+System interior_laplacian(const cli::MeshFile& file, Numbering numbering) {
   std::vector<Vec3> positions;
   for (std::size_t v = 0; v < file.vertex_count(); ++v) {
     positions.emplace_back(file.positions[3 * v], file.positions[3 * v + 1],
@@ -91,6 +111,7 @@ System interior_laplacian(const cli::MeshFile& file) {
                      static_cast<Index>(file.faces[3 * f + 1]),
                      static_cast<Index>(file.faces[3 * f + 2])});
   }
+  if (numbering == Numbering::kAlongCurve) number_along_curve(positions, faces);
   const DiskMesh mesh = build_disk(std::move(positions), std::move(faces));
   MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
   for (Index f = 0; f < mesh.face_count(); ++f) {

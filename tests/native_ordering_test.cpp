@@ -112,6 +112,17 @@ TEST(Ordering, DissectsAnyGraphWithAnyPlaces) {
   }
 }
 
+TEST(Ordering, DissectsAHubWithNeighboursInManyChunks) {
+  constexpr int kCount = 100'000;
+  std::vector<std::pair<int, int>> star;
+  for (int i = 1; i < kCount; ++i) star.emplace_back(0, i);
+  const Graph graph = from_edges(kCount, star);
+  std::vector<Place> line(kCount, Place{});
+  for (int v = 0; v < kCount; ++v) line[v][0] = static_cast<float>(v);
+  const auto order = nested_dissection_order(graph, line, 2, [] {});
+  EXPECT_TRUE(is_permutation_of_all(order, kCount));
+}
+
 TEST(Ordering, SeesBlocksOfTwoOnlyWhereAllIsInBlocks) {
   SparseMatrix lower(4, 4);
   for (int c = 0; c < 4; ++c) {

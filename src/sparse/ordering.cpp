@@ -170,7 +170,7 @@ struct Coarse {
 /// Puts each vertex that is left together with its neighbours that are left: about five each. No
 /// cluster reaches from one chunk of vertices into another, so that chunks go side by side.
 Coarse coarsen(const Graph& graph, int threads) {
-  constexpr int kChunk = 1 << 15;
+  constexpr int kChunk = 1 << 15, kMany = 64;
   struct Chunk {
     std::vector<int> start, member;  // by cluster of the chunk
     std::vector<int> degree, neighbour;
@@ -213,18 +213,23 @@ Coarse coarsen(const Graph& graph, int threads) {
   for_each_chunk([&](Chunk& chunk, int, int) {
     for (std::size_t c = 0; c + 1 < chunk.start.size(); ++c) {
       const int own = chunk.first + static_cast<int>(c);
-      const std::size_t first = chunk.neighbour.size();
+      const std::ptrdiff_t first = std::ssize(chunk.neighbour);
       for (int i = chunk.start[c]; i < chunk.start[c + 1]; ++i) {
         for (const int w : graph.neighbours(chunk.member[i])) {
           const int other = cluster[w];
-          // Few: a look along the list is cheaper than marks.
-          const auto known = chunk.neighbour.begin() + static_cast<std::ptrdiff_t>(first);
-          if (other != own &&
-              std::find(known, chunk.neighbour.end(), other) == chunk.neighbour.end())
-            chunk.neighbour.push_back(other);
+          if (other == own) continue;
+          // As long as they are few, a look along the list is cheaper than sorting it.
+          const auto known = chunk.neighbour.begin() + first, end = chunk.neighbour.end();
+          const bool many = end - known >= kMany;
+          if (many || std::find(known, end, other) == end) chunk.neighbour.push_back(other);
         }
       }
-      chunk.degree.push_back(static_cast<int>(chunk.neighbour.size() - first));
+      if (std::ssize(chunk.neighbour) - first > kMany) {
+        const auto known = chunk.neighbour.begin() + first;
+        std::sort(known, chunk.neighbour.end());
+        chunk.neighbour.erase(std::unique(known, chunk.neighbour.end()), chunk.neighbour.end());
+      }
+      chunk.degree.push_back(static_cast<int>(std::ssize(chunk.neighbour) - first));
     }
   });
   coarse.graph.start.reserve(static_cast<std::size_t>(count) + 1);
