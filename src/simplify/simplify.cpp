@@ -176,7 +176,7 @@ struct Range {
   Index begin, end;
 
   bool has(Index v) const { return v >= begin && v < end; }
-  /// Whether a collapse of v onto the target looks at and changes nothing outside.
+  /// Whether a collapse of v onto the target, both inside, looks at and changes nothing outside.
   bool has_all_of(const ShrinkingSurface& surface, Index v, Index target) const {
     bool inside = true;
     surface.for_each_neighbour(v, [&](Index u) { inside &= has(u); });
@@ -198,6 +198,8 @@ struct Collapses {
 Outcome try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_cost,
                      const ShapeLimits& limits, const Range* range, Collapses& done) {
   const Index v = candidate.vertex;
+  // Not even a look at what another thread may be changing.
+  if (range && !range->has(candidate.target)) return Outcome::kReachesOut;
   if (surface.locked[v] || surface.locked[candidate.target]) return Outcome::kRefused;
   if (surface.on_boundary(v)) {
     if (range) return Outcome::kReachesOut;  // the loop is everybody's
