@@ -20,7 +20,7 @@ struct System {
   DenseMatrix rhs;
 };
 /// The order of the unknowns: as in the file, which is what a user of CHOLMOD has (kAlongCurve
-/// saves it 5 to 10%), or as the library has them, which the native solver counts on.
+/// saves it up to a tenth), or as the library has them, which the native solver counts on.
 enum class Numbering { kOfFile, kAlongCurve };
 System interior_laplacian(const cli::MeshFile& file, Numbering numbering);
 
