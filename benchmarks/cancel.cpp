@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-#include "library.h"
+#include "command.h"
 #include "mesh_file.h"
 #include "refine.h"
 
@@ -232,7 +232,7 @@ int main(int argc, char** argv) {
     if (beltrami_create(&raw) != BELTRAMI_OK) throw std::bad_alloc();
     const Context context(raw, beltrami_destroy);
     for (const std::string& option : options) set(raw, option);
-    const beltrami_mesh mesh = beltrami::benchmarks::view_of(file);
+    const beltrami_mesh mesh = beltrami::cli::view_of(file);
     const Clock::time_point begin = Clock::now();
     if (beltrami_set_mesh(raw, &mesh) != BELTRAMI_OK) {
       throw std::runtime_error(beltrami_error_message(raw));

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "library.h"
+#include "command.h"
 #include "mesh_file.h"
 #include "process_memory.h"
 #include "refine.h"
@@ -79,7 +79,7 @@ Measured run(const cli::MeshFile& file, const std::vector<std::string>& options)
   beltrami_context* context = nullptr;
   beltrami_create(&context);
   for (const std::string& option : options) set_option(context, option);
-  const beltrami_mesh mesh = view_of(file);
+  const beltrami_mesh mesh = cli::view_of(file);
   std::uint64_t estimate = 0;
   if (beltrami_set_mesh(context, &mesh) < 0 || beltrami_estimate_memory(context, &estimate) < 0) {
     throw std::runtime_error(beltrami_error_message(context));

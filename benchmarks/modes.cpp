@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "library.h"
+#include "command.h"
 #include "mesh_file.h"
 #include "refine.h"
 
@@ -61,7 +61,7 @@ Figures run(const beltrami::cli::MeshFile& file, const Mode& mode, std::int32_t 
   beltrami_create(&raw);
   const std::unique_ptr<beltrami_context, void (*)(beltrami_context*)> context(raw,
                                                                                beltrami_destroy);
-  const beltrami_mesh mesh = beltrami::benchmarks::view_of(file);
+  const beltrami_mesh mesh = beltrami::cli::view_of(file);
   Figures figures{};
   figures.status = beltrami_set_mesh(raw, &mesh);
   if (figures.status < 0) return figures;

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "library.h"
+#include "command.h"
 #include "mesh_file.h"
 #include "process_memory.h"
 #include "refine.h"
@@ -58,7 +58,7 @@ Run run_pipeline(const cli::MeshFile& file, std::int32_t method, int threads) {
                                                                                beltrami_destroy);
   beltrami_set_int(raw, BELTRAMI_OPTION_THREADS, threads);
   beltrami_set_int(raw, BELTRAMI_OPTION_METHOD, method);
-  const beltrami_mesh mesh = view_of(file);
+  const beltrami_mesh mesh = cli::view_of(file);
   Run run;
   const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID), wall = seconds(CLOCK_MONOTONIC);
   require(beltrami_set_mesh(raw, &mesh), raw);
