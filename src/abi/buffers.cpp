@@ -77,19 +77,21 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
   std::vector<Triangle> faces;
   parallel_assign(threads, faces, count);
   const auto items = static_cast<std::int64_t>(count);
-  const auto outside = parallel_find(threads, items, kGrain, [&](std::int64_t f) {
-    bool inside = true;
-    for (int k = 0; k < 3; ++k) {
-      const auto index = reader.read<Integer>(static_cast<std::size_t>(f), k);
-      inside &= index < vertex_count;
-      faces[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)] = static_cast<Index>(index);
+  parallel_for(threads, items, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
+      for (int k = 0; k < 3; ++k) faces[f][k] = static_cast<Index>(reader.read<Integer>(f, k));
     }
-    return !inside;
+  });
+  const auto in_range = [&](std::int64_t f, int k) {
+    return reader.read<Integer>(static_cast<std::size_t>(f), k) < vertex_count;
+  };
+  const auto outside = parallel_find(threads, items, kGrain, [&](std::int64_t f) {
+    return !in_range(f, 0) || !in_range(f, 1) || !in_range(f, 2);
   });
   if (outside == items) return faces;
   const auto f = static_cast<std::size_t>(outside);
   int k = 0;
-  while (reader.read<Integer>(f, k) < vertex_count) ++k;
+  while (in_range(outside, k)) ++k;
   throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
               "face " + std::to_string(f) + " names vertex " +
                   std::to_string(reader.read<Integer>(f, k)) + ", but there are " +
