@@ -150,30 +150,6 @@ impl Error {
         };
         Error { kind: ErrorKind::from_status(status), element, message }
     }
-
-    /// The last failure of a context.
-    ///
-    /// # Safety
-    ///
-    /// `context` is a live context that no other thread uses.
-    pub(crate) unsafe fn of_context(
-        status: sys::beltrami_status,
-        context: *const sys::beltrami_context,
-    ) -> Error {
-        // SAFETY: the caller's promise; the message is copied before the next call on the context.
-        let (message, kind, index) = unsafe {
-            (
-                CStr::from_ptr(sys::beltrami_error_message(context)).to_string_lossy(),
-                sys::beltrami_error_element_kind(context),
-                sys::beltrami_error_element(context),
-            )
-        };
-        let mut error = Error::from_status(status, Element::new(kind, index));
-        if !message.is_empty() {
-            error.message = message.into();
-        }
-        error
-    }
 }
 
 impl fmt::Display for Error {

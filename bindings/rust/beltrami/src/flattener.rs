@@ -1,11 +1,12 @@
-//! The context behind a safe face: options, one mesh, the results of its last run.
+//! Flattens: options, one mesh, the results of its last run.
 
 use std::mem::size_of;
 use std::panic::resume_unwind;
-use std::ptr::{self, NonNull};
+use std::ptr;
 
 use beltrami_sys as sys;
 
+use crate::context::Context;
 use crate::control::{Control, Trampoline};
 use crate::error::{Error, ErrorKind};
 use crate::mesh::Mesh;
@@ -51,21 +52,11 @@ use crate::parameterization::Parameterization;
 /// ```
 #[derive(Debug)]
 pub struct Flattener {
-    context: NonNull<sys::beltrami_context>,
+    context: Context,
     options: Options,
     /// A token may have asked the context to cancel when its run was just over; such a request
     /// would end the next run.
     maybe_late_request: bool,
-}
-
-// SAFETY: a context belongs to one thread at a time, whichever, and has no thread-local state.
-unsafe impl Send for Flattener {}
-
-impl Drop for Flattener {
-    fn drop(&mut self) {
-        // SAFETY: the context is alive, and no run is under way: that borrows the flattener.
-        unsafe { sys::beltrami_destroy(self.context.as_ptr()) };
-    }
 }
 
 impl Flattener {
@@ -76,10 +67,7 @@ impl Flattener {
     /// [`AbiMismatch`](ErrorKind::AbiMismatch) where the library at run time is another than this
     /// crate was built for; [`OutOfMemory`](ErrorKind::OutOfMemory).
     pub fn new() -> Result<Flattener, Error> {
-        let mut context = ptr::null_mut();
-        // SAFETY: `context` is valid for a write.
-        let status = unsafe { sys::beltrami_create(&mut context) };
-        let context = NonNull::new(context).ok_or_else(|| Error::from_status(status, None))?;
+        let context = Context::new()?;
         Ok(Flattener { context, options: Options::new(), maybe_late_request: false })
     }
 
@@ -111,10 +99,10 @@ impl Flattener {
     }
 
     fn apply(&self, options: &Options) -> Result<(), Error> {
-        let context = self.context.as_ptr();
+        let context = self.context.raw();
         for (key, value) in options.values() {
             // SAFETY: the context is alive.
-            self.check(unsafe {
+            self.context.check(unsafe {
                 match value {
                     Value::Int(value) => sys::beltrami_set_int(context, key, value),
                     Value::Float(value) => sys::beltrami_set_float(context, key, value),
@@ -135,7 +123,7 @@ impl Flattener {
         let raw = mesh.raw();
         // SAFETY: the context is alive; the views behind the mesh are borrowed as long as it, and
         // all their items are there.
-        self.check(unsafe { sys::beltrami_set_mesh(self.context.as_ptr(), &raw) })?;
+        self.context.check(unsafe { sys::beltrami_set_mesh(self.context.raw(), &raw) })?;
         self.maybe_late_request = false; // setting a mesh drops it
         Ok(())
     }
@@ -152,7 +140,8 @@ impl Flattener {
     pub fn estimate_memory(&self) -> Result<u64, Error> {
         let mut bytes = 0;
         // SAFETY: the context is alive, and `bytes` is valid for a write.
-        self.check(unsafe { sys::beltrami_estimate_memory(self.context.as_ptr(), &mut bytes) })?;
+        let status = unsafe { sys::beltrami_estimate_memory(self.context.raw(), &mut bytes) };
+        self.context.check(status)?;
         Ok(bytes)
     }
 
@@ -171,7 +160,7 @@ impl Flattener {
     pub fn run(&mut self, control: Control<'_>) -> Result<Parameterization<'_>, Error> {
         let mut trampoline = Trampoline::new(control.progress);
         // SAFETY: the guard goes before this function ends, the context later.
-        let Some(watch) = (unsafe { control.token.watch(self.context) }) else {
+        let Some(watch) = (unsafe { control.token.watch(self.context.handle()) }) else {
             return Err(Error::new(ErrorKind::Cancelled, "the run was cancelled before it began"));
         };
         let mut status = self.run_raw(&mut trampoline);
@@ -188,15 +177,15 @@ impl Flattener {
             drop(trampoline); // not while a panic is on its way, or another one would abort
             resume_unwind(payload);
         }
-        self.check(status)?;
-        Ok(Parameterization::new(self))
+        self.context.check(status)?;
+        Ok(Parameterization::new(&self.context))
     }
 
     fn run_raw(&mut self, trampoline: &mut Trampoline<'_>) -> sys::beltrami_status {
         let entry = trampoline.entry();
         let user = ptr::from_mut(trampoline).cast();
         // SAFETY: the context is alive, and the trampoline is what `entry` expects as `user`.
-        unsafe { sys::beltrami_run(self.context.as_ptr(), entry, user) }
+        unsafe { sys::beltrami_run(self.context.raw(), entry, user) }
     }
 
     /// Sets a mesh and flattens it.
@@ -233,20 +222,7 @@ impl Flattener {
             ..Default::default()
         };
         // SAFETY: the context is alive, and `result` has the size that it says.
-        let status = unsafe { sys::beltrami_get_result(self.context.as_ptr(), &mut result) };
-        (status == sys::BELTRAMI_OK).then(|| Parameterization::new(self))
-    }
-
-    pub(crate) fn context(&self) -> *mut sys::beltrami_context {
-        self.context.as_ptr()
-    }
-
-    /// Turns a negative status into the context's failure.
-    pub(crate) fn check(&self, status: sys::beltrami_status) -> Result<(), Error> {
-        if status >= 0 {
-            return Ok(());
-        }
-        // SAFETY: the context is alive, and `self` is not Sync: this thread alone has it.
-        Err(unsafe { Error::of_context(status, self.context.as_ptr()) })
+        let status = unsafe { sys::beltrami_get_result(self.context.raw(), &mut result) };
+        (status == sys::BELTRAMI_OK).then(|| Parameterization::new(&self.context))
     }
 }

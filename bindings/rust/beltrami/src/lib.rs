@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod check;
+mod context;
 mod control;
 mod error;
 mod flattener;
@@ -12,11 +13,11 @@ mod mesh;
 mod ndarray;
 mod options;
 mod parameterization;
+mod verdict;
 mod view;
 
 pub use check::{
-    check_boundary, check_injective, check_triangles, measure, measure_faces, Certificate,
-    Crossings, Distortion, FaceDistortion, Orientations,
+    check_boundary, check_injective, check_triangles, measure, measure_faces, FaceDistortion,
 };
 pub use control::{CancelToken, Control, Progress};
 pub use error::{Element, Error, ErrorKind};
@@ -27,4 +28,5 @@ pub use options::{
     Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, OPTIONS,
 };
 pub use parameterization::{Parameterization, Stage, Status, Summary};
+pub use verdict::{Certificate, Crossings, Distortion, Orientations};
 pub use view::{Index, Real, Scalar, View, ViewMut};

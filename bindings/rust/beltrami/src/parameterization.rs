@@ -4,10 +4,10 @@ use std::mem::size_of;
 
 use beltrami_sys as sys;
 
-use crate::check::{Certificate, Distortion};
+use crate::context::Context;
 use crate::error::{advice, static_text, Error, ErrorKind};
-use crate::flattener::Flattener;
 use crate::mesh::{Uv, UvsMut};
+use crate::verdict::{count, element, Certificate, Distortion};
 use crate::view::Index;
 
 /// What a run with a result says of it.
@@ -165,13 +165,13 @@ pub struct Stage {
 #[derive(Debug, Clone, Copy)]
 #[must_use = "a map may be one that is not injective: see its status, or call ensure_injective"]
 pub struct Parameterization<'a> {
-    flattener: &'a Flattener,
+    context: &'a Context,
 }
 
 impl<'a> Parameterization<'a> {
-    /// The flattener has results.
-    pub(crate) fn new(flattener: &'a Flattener) -> Self {
-        Parameterization { flattener }
+    /// The context has results.
+    pub(crate) fn new(context: &'a Context) -> Self {
+        Parameterization { context }
     }
 
     /// What the run returned.
@@ -310,7 +310,7 @@ impl<'a> Parameterization<'a> {
     /// The costs of every stage, in the order in which they ran.
     pub fn stages(&self) -> Vec<Stage> {
         // SAFETY: the context is alive.
-        let stages = unsafe { sys::beltrami_stage_count(self.flattener.context()) };
+        let stages = unsafe { sys::beltrami_stage_count(self.context.raw()) };
         (0..stages).map(|index| self.stage(index)).collect()
     }
 
@@ -343,17 +343,7 @@ impl<'a> Parameterization<'a> {
     /// Reads from the context, which cannot fail where there are results and the arguments are in
     /// order.
     fn read(&self, call: impl FnOnce(*mut sys::beltrami_context) -> sys::beltrami_status) {
-        let read = self.flattener.check(call(self.flattener.context()));
+        let read = self.context.check(call(self.context.raw()));
         read.expect("the library hands out the results that it has");
     }
-}
-
-/// A count of things in memory.
-pub(crate) fn count(raw: u64) -> usize {
-    usize::try_from(raw).expect("what is in memory can be counted")
-}
-
-/// An index, or `None` for the library's "no element".
-pub(crate) fn element(raw: u64) -> Option<usize> {
-    (raw != sys::BELTRAMI_NO_ELEMENT).then(|| count(raw))
 }

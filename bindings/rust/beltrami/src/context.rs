@@ -1,0 +1,61 @@
+//! The library's context: it goes with its owner, and tells why a call failed.
+
+use std::ffi::CStr;
+use std::ptr::{self, NonNull};
+
+use beltrami_sys as sys;
+
+use crate::error::{Element, Error};
+
+/// A live context, which one thread uses at a time: it is Send, and not Sync.
+#[derive(Debug)]
+pub(crate) struct Context(NonNull<sys::beltrami_context>);
+
+// SAFETY: a context belongs to one thread at a time, whichever, and has no thread-local state.
+unsafe impl Send for Context {}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        // SAFETY: the context is alive, and no run is under way: that borrows its owner.
+        unsafe { sys::beltrami_destroy(self.raw()) };
+    }
+}
+
+impl Context {
+    /// Fails with `AbiMismatch` or `OutOfMemory`.
+    pub(crate) fn new() -> Result<Context, Error> {
+        let mut context = ptr::null_mut();
+        // SAFETY: `context` is valid for a write.
+        let status = unsafe { sys::beltrami_create(&mut context) };
+        NonNull::new(context).map(Context).ok_or_else(|| Error::from_status(status, None))
+    }
+
+    pub(crate) fn handle(&self) -> NonNull<sys::beltrami_context> {
+        self.0
+    }
+
+    pub(crate) fn raw(&self) -> *mut sys::beltrami_context {
+        self.0.as_ptr()
+    }
+
+    /// Turns a negative status of the last call into its failure.
+    pub(crate) fn check(&self, status: sys::beltrami_status) -> Result<(), Error> {
+        if status >= 0 {
+            return Ok(());
+        }
+        // SAFETY: the context is alive, and `self` is not Sync: this thread alone has it. The
+        // message is copied before the next call.
+        let (message, kind, index) = unsafe {
+            (
+                CStr::from_ptr(sys::beltrami_error_message(self.raw())).to_string_lossy(),
+                sys::beltrami_error_element_kind(self.raw()),
+                sys::beltrami_error_element(self.raw()),
+            )
+        };
+        let mut error = Error::from_status(status, Element::new(kind, index));
+        if !message.is_empty() {
+            error.message = message.into();
+        }
+        Err(error)
+    }
+}
