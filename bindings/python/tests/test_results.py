@@ -196,14 +196,6 @@ def test_a_trimesh_comes_back_with_its_uvs(hump):
     assert beltrami.Flattener().parameterize(mesh).mesh is not None
 
 
-def test_what_only_looks_like_a_trimesh_is_refused_before_any_work(hump):
-    class Mesh:
-        vertices, faces = hump
-
-    with pytest.raises(TypeError, match="faces are missing"):
-        beltrami.parameterize(Mesh())
-
-
 def test_a_trimesh_gets_the_delaunay_faces(bust):
     trimesh = pytest.importorskip("trimesh")
     result = beltrami.parameterize(trimesh.Trimesh(*bust, process=False), delaunay=True)

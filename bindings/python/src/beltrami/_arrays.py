@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _hints
+
 Array = npt.NDArray[Any]
 
 
@@ -29,21 +31,38 @@ def indices(faces: npt.ArrayLike) -> Array:
 
     The library reads all of them as unsigned: a negative number is out of range, too.
     """
-    array = np.asarray(faces)
+    array = _as_array("faces", faces)
     if array.size == 0:
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"faces must be whole numbers, not {array.dtype}")
+        hint = _hints.for_type("faces", array)
+        raise TypeError(f"faces must be whole numbers, not {array.dtype}{hint}")
     size = max(array.dtype.itemsize, 4)
     return _rows("faces", array.astype(f"={array.dtype.kind}{size}", copy=False), 3)
 
 
+def _as_array(name: str, values: npt.ArrayLike) -> Array:
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        if "inhomogeneous" not in str(error):
+            raise
+        hint = ": cut polygons into triangles" if name == "faces" else ""
+        raise ValueError(f"{name} has rows of different lengths{hint}") from None
+    if array.dtype.kind in "OSU":
+        instead = _hints.for_thing(values)
+        if instead is not None:
+            raise TypeError(f"{name} is {instead}")
+    return array
+
+
 def _as_floats(name: str, values: npt.ArrayLike) -> Array:
-    array = np.asarray(values)
+    array = _as_array(name, values)
     if array.size == 0:
         array = array.astype(np.float64)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must be real numbers, not {array.dtype}")
+        hint = _hints.for_type(name, array)
+        raise TypeError(f"{name} must be real numbers, not {array.dtype}{hint}")
     single = array.dtype.kind == "f" and array.dtype.itemsize <= 4
     return array.astype(np.float32 if single else np.float64, copy=False)
 
@@ -52,7 +71,8 @@ def _rows(name: str, array: Array, columns: int) -> Array:
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, columns)
     if array.ndim != 2 or array.shape[1] != columns:
-        raise ValueError(f"{name} must have the shape (n, {columns}), not {array.shape}")
+        hint = _hints.for_shape(name, array, columns)
+        raise ValueError(f"{name} must have the shape (n, {columns}), not {array.shape}{hint}")
     return array if _readable(array) else np.ascontiguousarray(array)
 
 

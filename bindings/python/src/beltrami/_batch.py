@@ -229,11 +229,11 @@ def batch(
     }
     options = _library.Context().set_options(given)  # refuses what is out of range
     if isinstance(paths, (str, os.PathLike)):
-        raise TypeError(f"paths is {paths!r}: give a list of paths")
+        raise TypeError(f"paths is {paths!r}: give a list of paths, such as glob.glob('*.ply')")
     if suffix not in (".obj", ".ply"):
         raise ValueError(f"suffix is {suffix!r}: give '.obj' or '.ply'")
     folder = Path(out_dir)
-    work = [_job(Path(path), folder, suffix, root, options) for path in paths]
+    work = [_job(path, folder, suffix, root, options) for path in paths]
     _require_distinct(work)
     folder.mkdir(parents=True, exist_ok=True)
     known = _read_log(folder / LOG)
@@ -265,13 +265,16 @@ def batch(
 
 
 def _job(
-    path: Path,
+    path: str | os.PathLike[str],
     folder: Path,
     suffix: str,
     root: str | os.PathLike[str] | None,
     options: Mapping[str, object],
 ) -> Job:
-    path = path.absolute()
+    if not isinstance(path, (str, os.PathLike)):
+        kind = type(path).__name__
+        raise TypeError(f"paths has a {kind}: give files, and meshes to parameterize")
+    path = Path(path).absolute()
     below = path.relative_to(Path(root).absolute()) if root is not None else Path(path.name)
     name = below.with_suffix(suffix)
     try:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _trimesh
+from . import _arrays, _hints, _trimesh
 from ._arrays import Array
-from ._errors import InvalidStateError, NotInjectiveWarning
+from ._errors import InvalidStateError, NotADiskError, NotInjectiveWarning
 from ._library import Context
 from ._progress import Progress, hook_for
 from ._results import Parameterization
@@ -186,11 +186,18 @@ class Flattener:
         mesh = None
         if faces is None:
             if not _trimesh.is_mesh(vertices):
-                raise TypeError("faces are missing: only a trimesh.Trimesh brings its own")
+                instead = _hints.for_thing(vertices)
+                missing = "faces are missing: only a trimesh.Trimesh brings its own"
+                raise TypeError(missing if instead is None else f"vertices is {instead}")
             mesh, vertices, faces = vertices, vertices.vertices, vertices.faces
         points, triangles = _arrays.positions(vertices), _arrays.indices(faces)
         with self._alone():
-            self._context.set_mesh(points, triangles)
+            try:
+                self._context.set_mesh(points, triangles)
+            except NotADiskError as error:
+                if mesh is not None:
+                    _trimesh.explain(error, mesh)
+                raise
             self._mesh, self._faces = mesh, triangles
             self._vertices_dtype, self._vertex_count = points.dtype, len(points)
 

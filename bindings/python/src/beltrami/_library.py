@@ -69,14 +69,22 @@ def _fail(status: int, message: str, element: int, kind: int) -> NoReturn:
     raise ERRORS.get(name, BeltramiError)(message, status, name, where, _KINDS.get(kind))
 
 
-def _name_negative_index(error: BeltramiError, faces: Array) -> None:
-    """Has the message show the index as it was given: the library saw it without a sign."""
+def _name_index(error: BeltramiError, faces: Array, count: int, what: str) -> None:
+    """Has the message show the index as it was given, and say if all of them count from 1.
+
+    The library sees negative ones without a sign, and its checks name no index.
+    """
     if error.status != "BELTRAMI_E_INDEX_OUT_OF_RANGE" or error.element is None:
         return
-    negative = [int(index) for index in faces[error.element] if index < 0]
-    if negative:
-        face, index = error.element, negative[0]
-        error.args = (f"face {face} names vertex {index}: indices count from 0, not from the end",)
+    index = next(int(index) for index in faces[error.element] if not 0 <= index < count)
+    message = f"face {error.element} names vertex {index}"
+    if index < 0:
+        message += ": indices count from 0, not from the end"
+    else:
+        message += f", but there are {count} {what}: indices count from 0"
+        if (faces.min(), faces.max()) == (1, count):
+            message += ", these from 1: give faces - 1"
+    error.args = (message,)
 
 
 # ---- Structs ------------------------------------------------------------------------------
@@ -277,7 +285,7 @@ class Context:
             mesh = _mesh(vertices, faces, len(vertices))
             self._check(lib.beltrami_set_mesh(self._context, mesh))
         except BeltramiError as error:
-            _name_negative_index(error, faces)
+            _name_index(error, faces, len(vertices), "vertices")
             raise
 
     def estimate_memory(self) -> int:
@@ -386,7 +394,7 @@ def _judge(function: Any, vertices: Array | None, faces: Array, uv: Array, out: 
     try:
         _fail(status, "", out.error_element, out.error_element_kind)
     except BeltramiError as error:
-        _name_negative_index(error, faces)
+        _name_index(error, faces, len(uv), "UVs")
         raise
 
 
