@@ -1,8 +1,11 @@
 """beltrami flattens disk-like triangle meshes to UVs: injective, with low distortion.
 
 >>> import beltrami
->>> result = beltrami.parameterize(vertices, faces)  # (n, 3) floats, (m, 3) integers
->>> result.uv, result.injective, result.energy.symmetric_dirichlet
+>>> vertices = [[0.0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]  # (n, 3) floats
+>>> faces = [[0, 1, 2], [0, 2, 3]]  # (m, 3) integers
+>>> result = beltrami.parameterize(vertices, faces)
+>>> result.uv.shape, result.injective, round(result.energy.symmetric_dirichlet, 3)
+((4, 2), True, 2.0)
 
 Vertices and faces are never duplicated, dropped or reordered: there is one UV per vertex.
 """

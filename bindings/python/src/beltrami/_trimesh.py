@@ -8,7 +8,6 @@ from typing import Any
 from ._arrays import Array
 from ._errors import NotADiskError
 
-
 # What a disk becomes where the vertices on both sides of its seam are made one.
 _SEWN = ["BELTRAMI_E_CLOSED", "BELTRAMI_E_BOUNDARIES", "BELTRAMI_E_GENUS"]
 
