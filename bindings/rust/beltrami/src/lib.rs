@@ -30,3 +30,9 @@ pub use options::{
 pub use parameterization::{Parameterization, Stage, Status, Summary};
 pub use verdict::{Certificate, Crossings, Distortion, Orientations};
 pub use view::{Index, Real, Scalar, View, ViewMut};
+
+/// Guides whose snippets are documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("guides/project.md")]
+#[doc = include_str!("guides/rust.md")]
+mod guides {}
