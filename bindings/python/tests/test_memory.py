@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
-import mmap
+import sys
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +14,20 @@ from conftest import grid
 import beltrami
 
 
-def resident_bytes():
-    return int(Path("/proc/self/statm").read_text().split()[1]) * mmap.PAGESIZE
+class MallocInfo(ctypes.Structure):
+    """``struct mallinfo2`` of the C library."""
+
+    _names = ("arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks")
+    _fields_ = [(name, ctypes.c_size_t) for name in (*_names, "fordblks", "keepcost")]
+
+
+def held():
+    """Return the bytes that malloc has handed out, and the blocks that Python's objects have."""
+    mallinfo2 = ctypes.CDLL(None).mallinfo2
+    mallinfo2.restype = MallocInfo
+    gc.collect()
+    info = mallinfo2()
+    return info.uordblks + info.hblkhd, sys.getallocatedblocks()
 
 
 def everything(vertices, faces):
@@ -33,12 +45,12 @@ def test_memory_does_not_grow_over_a_thousand_runs():
     vertices, faces = grid(6)
     for _ in range(200):
         everything(vertices, faces)
-    gc.collect()
-    before = resident_bytes()
+    bytes_before, blocks_before = held()
     for _ in range(1000):
         everything(vertices, faces)
-    gc.collect()
-    assert resident_bytes() - before < 1 << 20
+    bytes_after, blocks_after = held()
+    assert bytes_after - bytes_before < 1000 * 100
+    assert blocks_after - blocks_before < 1000 * 10
 
 
 @pytest.mark.parametrize("wide", [False, True])
