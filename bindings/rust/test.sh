@@ -41,13 +41,12 @@ memory() {
   say "memory, by valgrind"
   local runner="'valgrind', '--quiet', '--error-exitcode=9', '--leak-check=full'"
   runner+=", '--show-leak-kinds=definite,indirect', '--errors-for-leak-kinds=definite,indirect'"
-  # Not the tests whose point is how long something takes. Nor the one that needs a scaffold, whose
-  # predicates never end: valgrind computes in round-to-nearest whatever mode is set.
+  # Not the test that needs a scaffold, whose predicates never end: valgrind computes in
+  # round-to-nearest whatever mode is set.
   with_library cargo test --locked --quiet -p beltrami \
     --config "target.'cfg(all())'.runner=[$runner]" \
     --test views --test flattening --test control -- \
-    --test-threads=1 --skip another_thread --skip several_runs --skip late_request \
-    --skip a_map_that_is_not_injective
+    --test-threads=1 --skip a_map_that_is_not_injective
 }
 
 # The views, where the pointers of the safe layer are made. Miri cannot call C.
@@ -67,8 +66,9 @@ examples() {
   with_library cargo build --locked --quiet -p beltrami --examples
   with_library "$folder/flatten_obj" "$MESH" "$PLACE/flattened.obj" 2>/dev/null
   "$BUILD/src/cli/beltrami" check "$PLACE/flattened.obj" >/dev/null
+  # On a fast machine its run may be over before its user gives up.
   with_library "$folder/cancel" | tail -n 1 | tee "$PLACE/cancel.txt"
-  grep -q '^cancelled' "$PLACE/cancel.txt"
+  grep -q -e '^cancelled' -e "faster than the user's patience" "$PLACE/cancel.txt"
   with_library "$folder/bake" "$MESH" "$PLACE/distortion.png"
   file "$PLACE/distortion.png" | grep -q 'PNG image data, 1024 x 1024'
 }

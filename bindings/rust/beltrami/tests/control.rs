@@ -3,19 +3,14 @@
 mod support;
 
 use std::cell::Cell;
+use std::hint;
 use std::ops::ControlFlow;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::mpsc;
 use std::thread;
-use std::time::Duration;
 
 use beltrami::{CancelToken, Control, ErrorKind, Flattener, Mesh, Options, Progress};
-use support::{sheet, Surface};
-
-/// One that takes its time, and polls all the while.
-fn large_sheet() -> Surface {
-    sheet(if cfg!(debug_assertions) { 250 } else { 500 })
-}
+use support::sheet;
 
 fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
@@ -53,9 +48,18 @@ fn a_break_cancels_and_the_flattener_goes_on() {
     assert!(flattener.flatten(&mesh).is_ok());
 }
 
+/// Tells another thread that a run is under way, and has the run wait until the token is cancelled.
+fn wait_for(token: &CancelToken, started: &mpsc::Sender<()>) -> ControlFlow<()> {
+    let _ = started.send(());
+    while !token.is_cancelled() {
+        thread::yield_now();
+    }
+    ControlFlow::Continue(())
+}
+
 #[test]
 fn a_token_cancels_from_another_thread() {
-    let (positions, faces) = large_sheet();
+    let (positions, faces) = sheet(6);
     let mesh = Mesh::new(&positions, &faces);
     let token = CancelToken::new();
     let (started, begin) = mpsc::channel();
@@ -65,10 +69,8 @@ fn a_token_cancels_from_another_thread() {
             begin.recv().unwrap();
             token.cancel();
         });
-        let control = Control::new().cancel_token(token).on_progress(|_| {
-            let _ = started.send(());
-            ControlFlow::Continue(())
-        });
+        let progress = |_| wait_for(token, &started);
+        let control = Control::new().cancel_token(token).on_progress(progress);
         Flattener::new().unwrap().flatten_with(&mesh, control).map(drop)
     });
     assert_eq!(cancelled.unwrap_err().kind, ErrorKind::Cancelled);
@@ -95,22 +97,20 @@ fn a_token_that_is_cancelled_before_ends_the_run_before_it_begins() {
 
 #[test]
 fn one_token_ends_several_runs() {
-    let (positions, faces) = large_sheet();
+    let (positions, faces) = sheet(6);
     let token = CancelToken::new();
-    let (started, begun) = mpsc::channel();
     thread::scope(|scope| {
         let runs = [0, 1].map(|_| {
-            let (token, started) = (token.clone(), started.clone());
-            let mesh = Mesh::new(&positions, &faces);
-            scope.spawn(move || {
-                let control = Control::new().cancel_token(&token).on_progress(|progress| {
-                    let _ = started.send(());
-                    go_on(progress)
-                });
+            let (started, begun) = mpsc::channel();
+            let (token, mesh) = (token.clone(), Mesh::new(&positions, &faces));
+            let run = scope.spawn(move || {
+                let progress = |_| wait_for(&token, &started);
+                let control = Control::new().cancel_token(&token).on_progress(progress);
                 Flattener::new().unwrap().flatten_with(&mesh, control).map(drop)
-            })
+            });
+            begun.recv().unwrap();
+            run
         });
-        begun.recv().unwrap();
         token.cancel();
         for run in runs {
             assert_eq!(run.join().unwrap().unwrap_err().kind, ErrorKind::Cancelled);
@@ -142,7 +142,8 @@ fn a_token_outlives_its_flattener() {
     token.cancel();
 }
 
-/// Requests at any moment, many of them just after a run is over, never reach the run after it.
+/// Requests a little later each time, from the last report of a run to after its end, never reach
+/// the run after it.
 #[test]
 fn a_late_request_does_not_end_the_next_run() {
     let (positions, faces) = sheet(6);
@@ -150,12 +151,21 @@ fn a_late_request_does_not_end_the_next_run() {
     flattener.set_mesh(&Mesh::new(&positions, &faces)).unwrap();
     for round in 0..200 {
         let token = CancelToken::new();
+        let (certifies, begin) = mpsc::channel();
         thread::scope(|scope| {
-            scope.spawn(|| {
-                thread::sleep(Duration::from_micros(50 * (round % 40)));
+            let token = &token;
+            scope.spawn(move || {
+                begin.recv().unwrap();
+                (0..50 * round).for_each(|_| hint::spin_loop());
                 token.cancel();
             });
-            let _ = flattener.run(Control::new().cancel_token(&token)).map(drop);
+            let control = Control::new().cancel_token(token).on_progress(|progress| {
+                if progress.stage == "certify" {
+                    let _ = certifies.send(());
+                }
+                go_on(progress)
+            });
+            let _ = flattener.run(control).map(drop);
         });
         let next = flattener.run(Control::new()).map(drop);
         assert!(next.is_ok(), "round {round}: {next:?}");

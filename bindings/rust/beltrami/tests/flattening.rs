@@ -310,7 +310,7 @@ fn stages_come_in_their_order_and_counts_are_those_of_the_mesh() {
     assert!(names.contains(&"flatten") && names.last() == Some(&"certify"), "{names:?}");
     let summary = map.summary();
     assert_eq!((summary.vertices, summary.faces, summary.boundary_edges), (121, 200, 40));
-    assert!(summary.area > 100.0 && summary.seconds > 0.0);
+    assert!(summary.area > 100.0 && summary.seconds >= 0.0);
 }
 
 #[test]
