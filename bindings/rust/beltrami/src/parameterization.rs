@@ -1,5 +1,6 @@
 //! What a run has to show.
 
+use std::fmt;
 use std::mem::size_of;
 
 use beltrami_sys as sys;
@@ -162,10 +163,21 @@ pub struct Stage {
 /// let uvs: Vec<[f32; 2]> = flattener.flatten(&mesh)?.ensure_float32_injective()?.uvs();
 /// # Ok::<(), beltrami::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 #[must_use = "a map may be one that is not injective: see its status, or call ensure_injective"]
 pub struct Parameterization<'a> {
     context: &'a Context,
+}
+
+impl fmt::Debug for Parameterization<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Parameterization")
+            .field("status", &self.status())
+            .field("certificate", &self.certificate())
+            .field("distortion", &self.distortion())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> Parameterization<'a> {

@@ -35,6 +35,7 @@ fn a_sheet_becomes_an_injective_map_of_low_distortion() {
     assert!((2.0..2.2).contains(&map.distortion().symmetric_dirichlet));
     assert_eq!(map.faces::<u32>(), faces);
     assert_eq!(map.faces::<u64>()[5], faces[5].map(u64::from));
+    assert!(format!("{map:?}").starts_with("Parameterization { status: Injective, certificate: "));
 }
 
 #[test]
