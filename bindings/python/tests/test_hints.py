@@ -37,14 +37,26 @@ def after(words, message):
         (VERTICES.ravel(), "vertices.reshape(-1, 3)"),
         (VERTICES[:, :2], "np.column_stack([vertices, np.zeros(len(vertices))])"),
         (np.column_stack([VERTICES, np.zeros(16)]), "vertices[:, :3]"),
+        (VERTICES[None], "vertices[0]"),
+        (
+            np.rec.fromarrays(VERTICES.T, names="x,y,z"),
+            "np.column_stack([vertices['x'], vertices['y'], vertices['z']])",
+        ),
         (VERTICES.astype(object), "np.array(vertices, float)"),
     ],
-    ids=["columns", "flat", "in a plane", "padded", "objects"],
+    ids=["columns", "flat", "in a plane", "padded", "batch of one", "fields", "objects"],
 )
 def test_vertices_of_another_shape_or_type(vertices, meant):
     assert refusal(vertices, FACES).endswith(f"give {meant}")
     corrected = eval(meant, {"vertices": vertices, "np": np})
     assert beltrami.parameterize(corrected, FACES).injective
+
+
+def arrays_in_an_array(rows):
+    """Return an array of objects, each of which is a row."""
+    outer = np.empty(len(rows), object)
+    outer[:] = list(rows)
+    return outer
 
 
 QUADS = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]])
@@ -61,9 +73,13 @@ COUNTED = np.column_stack([np.full(len(FACES), 3), FACES])
         (QUADS, "np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])"),
         (FACES.astype(float), "faces.astype(np.int64)"),
         (FACES.astype(object), "np.array(faces, np.int64)"),
+        (arrays_in_an_array(FACES), "np.stack(faces)"),
         (FACES + 1, "faces - 1"),
     ],
-    ids=["columns", "flat", "counted", "counted and flat", "quads", "floats", "objects", "from 1"],
+    ids=[
+        *("columns", "flat", "counted", "counted and flat", "quads", "floats", "objects"),
+        *("an array of arrays", "from 1"),
+    ],
 )
 def test_faces_of_another_shape_or_type(faces, meant):
     assert meant in refusal(VERTICES, faces)

@@ -63,19 +63,23 @@ def _for_sequence(things: list[object] | tuple[object, ...]) -> str | None:
     return None
 
 
+def _has_counts(faces: npt.NDArray[Any]) -> bool:
+    """Whether every triangle comes after its count, as VTK has them: 3, a, b, c, 3, ..."""
+    fits = faces.size > 0 and faces.size % 4 == 0 and faces.shape[1:] in [(), (4,)]
+    return fits and bool((faces.ravel()[::4] == 3).all())
+
+
 def for_shape(name: str, array: npt.NDArray[Any], columns: int) -> str:
     """Return what to do to an array of another shape than (n, columns), or "" if nothing is known.
 
     It begins with ": ".
     """
-    counted = name == "faces" and array.size > 0 and array.size % 4 == 0
-    counted = counted and bool(
-        (array.ravel()[::4] == 3).all()
-    )  # as VTK has them: 3, a, b, c, 3, ...
-    if counted and (array.ndim == 1 or array.shape[1:] == (4,)):
+    if name == "faces" and _has_counts(array):
         return ": give faces.reshape(-1, 4)[:, 1:], without the counts"
     if array.ndim == 1 and array.size % columns == 0:
         return f": give {name}.reshape(-1, {columns})"
+    if array.ndim == 3 and len(array) == 1:
+        return f": give {name}[0]"
     if array.ndim != 2:
         return ""
     if name == "faces" and array.shape[1] == 4:
@@ -94,6 +98,10 @@ def for_shape(name: str, array: npt.NDArray[Any], columns: int) -> str:
 
 def for_type(name: str, array: npt.NDArray[Any]) -> str:
     """Return what to do to an array of another type, as `for_shape` does."""
+    if {"x", "y", "z"} <= set(array.dtype.names or ()):  # as plyfile has them
+        return f": give np.column_stack([{name}['x'], {name}['y'], {name}['z']])"
+    if array.dtype.kind == "O" and array.ndim == 1 and all(map(np.ndim, array)):
+        return f": give np.stack({name})"
     if array.dtype.kind == "O":
         return f": give np.array({name}, {'np.int64' if name == 'faces' else 'float'})"
     if name == "faces" and array.dtype.kind == "f":
