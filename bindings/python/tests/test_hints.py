@@ -138,6 +138,7 @@ MESHES = {
     "meshio": SimpleNamespace(points=VERTICES, cells_dict={"triangle": FACES}, cells=[]),
     "vedo": SimpleNamespace(vertices=VERTICES, cells=FACES.tolist()),
     "PyMeshLab": pymeshlab_mesh(),
+    "a dict": {"vertices": VERTICES, "faces": FACES},
     "like a trimesh": SimpleNamespace(vertices=VERTICES, faces=FACES),
 }
 
@@ -146,7 +147,8 @@ MESHES = {
 def test_meshes_of_other_packages_are_named_with_their_arrays(name):
     mesh = MESHES[name]
     message = refusal(mesh)
-    assert message.startswith("vertices is a types.SimpleNamespace: give its arrays, ")
+    kind = "dict" if isinstance(mesh, dict) else "types.SimpleNamespace"
+    assert message.startswith(f"vertices is a {kind}: give its arrays, ")
     vertices, _, faces = after("arrays, ", message).partition(" and ")
     found = beltrami.parameterize(eval(vertices, {"mesh": mesh}), eval(faces, {"mesh": mesh}))
     assert found.uv.tobytes() == beltrami.parameterize(VERTICES, FACES).uv.tobytes()

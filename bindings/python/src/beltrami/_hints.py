@@ -30,6 +30,8 @@ def for_thing(thing: object) -> str | None:
         return _for_path(os.fsdecode(thing))
     if isinstance(thing, (list, tuple)):
         return _for_sequence(thing)
+    if isinstance(thing, dict) and thing.keys() >= {"vertices", "faces"}:
+        return "a dict: give its arrays, mesh['vertices'] and mesh['faces']"
     names = set(dir(thing))  # nothing is evaluated, as hasattr would
     kind = f"{type(thing).__module__.partition('.')[0]}.{type(thing).__name__}"
     if names.issuperset(("geometry", "graph", "dump")):  # trimesh.Scene
@@ -102,7 +104,7 @@ def for_type(name: str, array: npt.NDArray[Any]) -> str:
         return f": give np.column_stack([{name}['x'], {name}['y'], {name}['z']])"
     if array.dtype.kind == "O" and array.ndim == 1 and all(map(np.ndim, array)):
         return f": give np.stack({name})"
-    if array.dtype.kind == "O":
+    if array.dtype.kind == "O" and array.ndim > 0:
         return f": give np.array({name}, {'np.int64' if name == 'faces' else 'float'})"
     if name == "faces" and array.dtype.kind == "f":
         if bool((array == np.floor(array)).all()):
