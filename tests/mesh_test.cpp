@@ -247,25 +247,23 @@ TEST(Normalise, GivesTheSameBitsAtEveryPowerOfTwo) {
   TriangleList unit = meshes::bumps(6, 5);
   const TriangleList original = unit;
   const Normalisation frame = normalise(unit.positions, unit.faces);
-  for (const int exponent : {-900, -500, -60, -1, 1, 60, 500, 900}) {
+  for (const int exponent : {-1000, -900, -500, -60, -1, 1, 60, 500, 900, 1020}) {
     TriangleList scaled = original;
     for (Vec3& p : scaled.positions) p *= std::ldexp(1.0, exponent);
     const Normalisation scaled_frame = normalise(scaled.positions, scaled.faces);
     EXPECT_EQ(scaled.positions, unit.positions) << "scaled by 2^" << exponent;
-    EXPECT_EQ(scaled_frame.scale, std::ldexp(frame.scale, -exponent));
+    EXPECT_EQ(scaled_frame.exponent, frame.exponent - exponent);
   }
 }
 
 TEST(Normalise, BringsTheAreaNearOne) {
-  for (const double size : {1e-200, 3e-7, 1.0, 1.9, 77.0, 1e150}) {
+  for (const double size : {1e-310, 1e-200, 3e-7, 1.0, 1.9, 77.0, 1e150, 1e300}) {
     TriangleList mesh = meshes::bumps(6, 5);
     for (Vec3& p : mesh.positions) p *= size;
-    const Normalisation frame = normalise(mesh.positions, mesh.faces);
+    normalise(mesh.positions, mesh.faces);
     const double area = area_of(mesh);
     EXPECT_GE(area, 0.5) << size;
     EXPECT_LE(area, 2.0) << size;
-    int exponent = 0;
-    EXPECT_EQ(std::frexp(frame.scale, &exponent), 0.5) << "a power of two";
   }
 }
 
@@ -284,7 +282,7 @@ TEST(Normalise, RecoversTheInput) {
   TriangleList mesh = original;
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const Vec3 back = mesh.positions[i] / frame.scale + frame.centre;
+    const Vec3 back = mesh.positions[i] * std::ldexp(1.0, -frame.exponent) + frame.centre;
     EXPECT_LT((back - original.positions[i]).norm(), 1e-15);
   }
 }

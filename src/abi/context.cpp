@@ -1,6 +1,7 @@
 #include "abi/context.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -85,7 +86,7 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads) {
   loaded.input = read_disk(mesh, threads);
   DiskMesh& disk = loaded.input.disk;
   loaded.frame = normalise(disk.positions, disk.faces, threads);
-  loaded.area = surface_area(disk, threads) / loaded.frame.scale / loaded.frame.scale;
+  loaded.area = std::ldexp(surface_area(disk, threads), -2 * loaded.frame.exponent);
   for (const Index f : degenerate_faces(disk.positions, disk.faces, threads)) {
     ++loaded.degenerate_faces;
     const Index original = loaded.input.original_face[f];

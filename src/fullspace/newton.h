@@ -41,7 +41,7 @@ struct NewtonResult {
 /// singular face, then halved until the energy falls sufficiently (Armijo).
 /// Preconditions: every face is positively oriented in `uvs`; at least one vertex is fixed if the
 /// faces are connected (a free map drifts otherwise).
-/// Throws Error SOLVER if no shift makes a system definite.
+/// Ends, not converged, where no shift makes a system definite.
 NewtonResult minimise_energy(const std::vector<Triangle>& faces,
                              const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
                              std::vector<Vec2>& uvs, const NewtonOptions& options,

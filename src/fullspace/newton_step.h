@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "fullspace/assembly.h"
 #include "fullspace/line_search.h"
@@ -74,7 +73,7 @@ class NewtonStepper {
 
   /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
   /// A step that is not accepted is halved further, like one that does not lower the energy.
-  /// Throws Error SOLVER if no shift makes the system definite.
+  /// Where no shift makes the system definite there is no step, and no telling what it would gain.
   NewtonStep step(std::vector<Vec2>& uvs, double energy) {
     return step_with(density_, uvs, energy);
   }
@@ -97,7 +96,7 @@ class NewtonStepper {
     for (std::size_t f = 0; f < rest.size(); ++f) weights[f] = rest[f].area();
     return weights;
   }
-  void factorize();
+  bool factorize();
 
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
@@ -128,19 +127,19 @@ double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
 }
 
 /// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
-/// motions; a shift relative to the diagonal covers the roundoff at any scale.
+/// motions; a shift relative to the diagonal covers the roundoff at any scale. False where none
+/// does.
 template <class Density>
-void NewtonStepper<Density>::factorize() {
+bool NewtonStepper<Density>::factorize() {
   SparseMatrix& matrix = hessian_.matrix();
   const Eigen::VectorXd diagonal = matrix.diagonal();
   for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
     for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
       matrix.valuePtr()[matrix.outerIndexPtr()[c]] = diagonal[c] * (1 + shift);
     }
-    if (solver_->factorize(matrix)) return;
+    if (solver_->factorize(matrix)) return true;
   }
-  throw Error(BELTRAMI_E_SOLVER,
-              "a Newton system could not be made definite: the mesh is numerically extreme");
+  return false;
 }
 
 template <class Density>
@@ -152,10 +151,13 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
       gradient_);
   if (!analyzed_) solver_->analyze(hessian_.matrix(), hessian_.places(uvs));
   analyzed_ = true;
-  factorize();
-  const Eigen::VectorXd flat = solver_->solve(-gradient_);
   NewtonStep result;
   result.energy = energy;
+  if (!factorize()) {
+    result.predicted = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  const Eigen::VectorXd flat = solver_->solve(-gradient_);
   result.predicted = -gradient_.dot(flat);
   if (!(result.predicted > kNoGain * std::max(energy, kLeastEnergy))) return result;
 

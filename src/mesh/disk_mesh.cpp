@@ -376,7 +376,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
     });
   };
   const auto rescale = [&](int exponent) {
-    frame.scale = std::ldexp(frame.scale, exponent);
+    frame.exponent += exponent;
     // Two factors, since one alone could leave the range of numbers that their product stays in.
     const double half = std::ldexp(1.0, exponent / 2),
                  rest = std::ldexp(1.0, exponent - exponent / 2);

@@ -66,15 +66,17 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c);
 /// Sum of the 3D areas of all faces.
 double surface_area(const DiskMesh& mesh, int threads = 1);
 
-/// Where a mesh was before normalisation: original = normalised / scale + centre.
+/// Where a mesh was before normalisation: normalised = (original - centre) * 2^exponent. The power
+/// itself need not be a double: where coordinates are the least of numbers, it is beyond the
+/// greatest.
 struct Normalisation {
   Vec3 centre = Vec3::Zero();
-  double scale = 1;  ///< a power of two, so that undoing it is exact
+  int exponent = 0;
 };
 
 /// Recentres the bounding box to the origin and scales by the power of two that brings the area
 /// into [1/2, 2): scaling the input by a power of two then gives the same bits.
-/// Throws Error ZERO_AREA if the area is zero or not finite.
+/// Throws Error ZERO_AREA if the area is zero. Precondition: finite.
 Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         int threads = 1);
 

@@ -46,13 +46,16 @@ Index coarse_faces(Index faces, const Options& options) {
 }
 
 Index Run::coarse_target() const {
-  return std::min(coarse_limit_, coarse_faces(input_.face_count(), options_));
+  return coarse_target_ == kNone ? coarse_faces(input_.face_count(), options_) : coarse_target_;
 }
 
-void Run::solve_coarse(FineProblem& fine) {
+void Run::simplify_fine(FineProblem& fine) {
   stage("simplify", 0.12, [&](StageStatistics&, const Checkpoint& checkpoint) {
     fine.coarse = simplify(*disk_, coarse_target(), options_.threads, checkpoint);
   });
+}
+
+void Run::solve_coarse(FineProblem& fine) {
   result_.coarse_faces = fine.coarse.mesh.face_count();
   fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
 }
@@ -89,12 +92,19 @@ void Run::measure_fine(FineProblem& fine, const Checkpoint& checkpoint) {
   measure();
 }
 
+/// The mesh as its own coarse mesh.
+std::vector<Vec2> Run::run_whole() {
+  result_.coarse_faces = input_.face_count();
+  return run_cm(input_, "coarse", 0.9);
+}
+
 std::vector<Vec2> Run::run_beltrami() {
-  if (coarse_target() >= input_.face_count()) {
-    result_.coarse_faces = input_.face_count();
-    return run_cm(input_, "coarse", 0.9);
-  }
+  if (coarse_target() >= input_.face_count()) return run_whole();
   FineProblem fine;
+  simplify_fine(fine);
+  if (fine.coarse.mesh.face_count() > kLeastReduction * input_.face_count()) {
+    return run_whole();
+  }
   solve_coarse(fine);
   stage("prolong", 0.37,
         [&](StageStatistics&, const Checkpoint& checkpoint) { measure_fine(fine, checkpoint); });
@@ -123,6 +133,7 @@ std::vector<Vec2> Run::run_plain() {
 
 std::vector<Vec2> Run::run_uv_prolongation() {
   FineProblem fine;
+  simplify_fine(fine);
   solve_coarse(fine);
   std::vector<Vec2> uvs;
   stage("prolong", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {

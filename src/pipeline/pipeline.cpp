@@ -7,13 +7,13 @@
 
 #include "base/error.h"
 #include "flatten/dirichlet.h"
+#include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
 #include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
-#include "repair/single_precision.h"
 
 namespace beltrami {
 namespace {
@@ -25,7 +25,6 @@ constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one 
 /// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
 constexpr std::array<Index, 2> kFallbacks = {1000, 100};
 constexpr Index kFewestFaces = 20;
-constexpr double kLeastReduction = 0.7;
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
 constexpr double kHopelessEnergy = 1e3;
 
@@ -87,13 +86,13 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
 }
 
 /// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
-/// coarser mesh; where that fails too, the embedding as it is, and the certificate will say so.
+/// coarser mesh; where that fails too, a drawing that cannot fold.
 std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const Checkpoint& checkpoint) {
   std::vector<Vec2> uvs = tutte_embedding(mesh);
   if (repair(mesh, rest, uvs, {.threads = options_.threads}).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
-  return other.empty() ? uvs : other;
+  return other.empty() ? grid_drawing(mesh) : other;
 }
 
 /// The pipeline in small: a mesh of a tenth of the faces, or 1,000, or 100, is flattened and its
@@ -183,62 +182,6 @@ void Run::refine(std::vector<Vec2>& uvs) {
   });
 }
 
-/// Brings the map into the caller's unit (exactly: the scale is a power of two), its bounding box
-/// around the origin, or into the unit square.
-void Run::place(const Normalisation& frame, std::vector<Vec2>& uvs) const {
-  Vec2 low = uvs.front(), high = uvs.front();
-  for (const Vec2& w : uvs) {
-    low = low.cwiseMin(w);
-    high = high.cwiseMax(w);
-  }
-  if (options_.unit_square) {
-    // One ulp short, so that no rounding leaves the square.
-    const double scale = (1 - 0x1p-52) / (high - low).maxCoeff();
-    for (Vec2& w : uvs) w = scale * (w - low);
-  } else {
-    // Where floats are densest, above all in single precision.
-    const Vec2 centre = 0.5 * (low + high);
-    for (Vec2& w : uvs) w = (w - centre) / frame.scale;
-  }
-}
-
-/// Places the map and judges the very numbers that are returned, in double and in single precision.
-void Run::deliver(const Normalisation& frame, std::vector<Vec2>& uvs) {
-  stage("certify", 1.0, [&](StageStatistics&, const Checkpoint& checkpoint) {
-    place(frame, uvs);
-    result_.certificate = certify(disk_->faces, disk_->boundary, uvs, options_.threads);
-    checkpoint(0.3);
-    SinglePrecision single =
-        round_to_single(*disk_, uvs, result_.certificate, options_.threads, checkpoint);
-    result_.single_certificate = single.certificate;
-    result_.float32_moves = single.moved;
-    if (options_.float32) {
-      if (!single.certificate.injective() && result_.certificate.injective()) {
-        result_.status = BELTRAMI_NOT_INJECTIVE_FLOAT32;
-      }
-      result_.certificate = single.certificate;
-      uvs.swap(single.uvs);
-    } else if (single.moved > 0) {
-      for (Index v = 0; v < size_of(uvs); ++v) {
-        if (single.uvs[v] != nearest_single(uvs[v])) {
-          result_.single_moves.emplace_back(v, single.uvs[v]);
-        }
-      }
-    }
-    checkpoint(0.8);
-
-    result_.face_energies.resize(disk_->faces.size());
-    // Undone for the measure, which takes UVs in the unit of the normalised positions.
-    std::vector<Vec2> in_mesh_unit(uvs.size());
-    for (std::size_t v = 0; v < uvs.size(); ++v) in_mesh_unit[v] = uvs[v] * frame.scale;
-    result_.distortion = measure_distortion(disk_->positions, disk_->faces, in_mesh_unit,
-                                            options_.threads, result_.face_energies.data());
-  });
-  if (!result_.certificate.injective() && result_.status != BELTRAMI_NOT_INJECTIVE_FLOAT32) {
-    result_.status = BELTRAMI_NOT_INJECTIVE;
-  }
-}
-
 std::vector<Vec2> Run::run_tutte() {
   std::vector<Vec2> uvs;
   stage("tutte", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
@@ -250,57 +193,63 @@ std::vector<Vec2> Run::run_tutte() {
   return uvs;
 }
 
-/// Faces that are not positive, and crossings where the boundary was to stay simple.
-std::int64_t Run::broken_promises(const std::vector<Vec2>& uvs) const {
-  const Certificate found = certify(disk_->faces, disk_->boundary, uvs, options_.threads);
-  const std::int64_t crossings = keeps_boundary_simple() ? found.crossings.count : 0;
-  return found.orientations.negative + found.orientations.degenerate + crossings;
-}
-
-/// The pipeline, and where its map breaks its promise again with coarser meshes (paper section
-/// 3.2), at last Tutte's embedding of the fine mesh. The best map is kept.
-std::vector<Vec2> Run::run_with_fallback() {
-  const bool promises = options_.method == BELTRAMI_METHOD_BELTRAMI &&
-                        options_.flatten != BELTRAMI_FLATTEN_BFF &&
-                        options_.flatten != BELTRAMI_FLATTEN_FLIM;
-  if (!promises) return run_method();
-  std::vector<Vec2> best;
-  std::vector<Triangle> best_faces;
+/// The pipeline, and where its map, as it would be delivered, breaks its promise again with coarser
+/// meshes (paper section 3.2), with the usual one if a coarser one was asked for, and at last with
+/// embeddings of the fine mesh: Tutte's, then one that cannot fold. The best map is kept.
+Delivery Run::run_with_fallback() {
+  std::optional<Delivery> best;
   std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
   const auto attempt = [&](auto&& run) {
     disk_ = &input_;
-    std::vector<Vec2> uvs;
+    result_.status = BELTRAMI_OK;
+    std::vector<Vec2> uvs = run();
+    if (options_.refine) refine(uvs);
+    Delivery made = prepare(uvs);
+    const std::int64_t broken = broken_promises(made);
+    if (broken >= fewest) return false;
+    fewest = broken;
+    best = std::move(made);
+    return broken == 0;
+  };
+  const bool promises = options_.method == BELTRAMI_METHOD_BELTRAMI &&
+                        options_.flatten != BELTRAMI_FLATTEN_BFF &&
+                        options_.flatten != BELTRAMI_FLATTEN_FLIM;
+  if (!promises) {
+    attempt([&] { return run_method(); });
+    return *std::move(best);
+  }
+  const auto attempt_solving = [&](auto&& run) {
     try {
-      uvs = run();
+      return attempt(run);
     } catch (const Error& error) {
       if (error.status() != BELTRAMI_E_SOLVER) throw;
       return false;
     }
-    const std::int64_t broken = broken_promises(uvs);
-    if (broken >= fewest) return false;
-    fewest = broken;
-    best.swap(uvs);
-    best_faces = disk_->faces;
-    return broken == 0;
   };
-  bool kept = attempt([&] { return run_method(); });
-  for (const Index target : kFallbacks) {
-    if (kept || target >= coarse_target()) continue;
+  bool kept = attempt_solving([&] { return run_method(); });
+  const Index asked_for = coarse_target(), usual = coarse_faces(input_.face_count(), {});
+  for (const Index target : {kFallbacks[0], kFallbacks[1], usual}) {
+    const bool coarser = target < asked_for, finer = target == usual && usual > asked_for;
+    if (kept || !(coarser || finer)) continue;
     ++result_.restarts;
-    coarse_limit_ = target;
-    kept = attempt([&] { return run_method(); });
+    coarse_target_ = target;
+    kept = attempt_solving([&] { return run_method(); });
   }
-  if (!kept) {
+  for (const bool drawn : {false, true}) {
+    if (kept) break;
     ++result_.restarts;
-    attempt([&] { return run_tutte(); });
-    result_.status = BELTRAMI_NOT_CONVERGED;
+    kept = attempt_solving([&] {
+      result_.status = BELTRAMI_NOT_CONVERGED;
+      return drawn ? grid_drawing(input_) : run_tutte();
+    });
   }
-  if (best.empty()) throw Error(BELTRAMI_E_SOLVER, "no linear system of the mesh could be solved");
-  if (best_faces != disk_->faces) {
-    retriangulated_ = build_disk(input_.positions, std::move(best_faces));
+  if (best->faces.empty()) {
+    disk_ = &input_;
+  } else if (disk_ == &input_ || best->faces != disk_->faces) {
+    retriangulated_ = build_disk(input_.positions, best->faces);
     disk_ = &retriangulated_;
   }
-  return best;
+  return *std::move(best);
 }
 
 std::vector<Vec2> Run::run_method() {
@@ -320,13 +269,9 @@ std::vector<Vec2> Run::run_method() {
   }
 }
 
-Flattening Run::flatten(const Normalisation& frame) {
+Flattening Run::flatten() {
   const double cpu = cpu_seconds();
-  std::vector<Vec2> uvs = run_with_fallback();
-  if (options_.refine) refine(uvs);
-  deliver(frame, uvs);
-  if (disk_ != &input_) result_.faces = disk_->faces;
-  result_.uvs = std::move(uvs);
+  deliver(run_with_fallback());
   result_.seconds = wall_seconds() - started_;
   result_.cpu_seconds = cpu_seconds() - cpu;
   result_.peak_memory_bytes = peak_memory_bytes();
@@ -335,7 +280,7 @@ Flattening Run::flatten(const Normalisation& frame) {
 
 Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Options& options,
                    const Progress& progress, const std::atomic<bool>& cancelled) {
-  return Run(disk, options, progress, cancelled).flatten(frame);
+  return Run(disk, frame, options, progress, cancelled).flatten();
 }
 
 }  // namespace beltrami

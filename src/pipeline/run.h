@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -16,6 +16,7 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "pipeline/pipeline.h"
+#include "repair/rounding.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {
@@ -29,17 +30,34 @@ struct FineProblem {
   std::vector<Cotangents> cotangents;  ///< for the harmonic solves
 };
 
+/// A map in the numbers that are delivered, but for a power of two, and what they are worth.
+struct Delivery {
+  beltrami_status status = BELTRAMI_OK;  ///< of the method: OK or NOT_CONVERGED
+  std::vector<Vec2> uvs;                 ///< one per vertex, in double precision
+  Certificate certificate;               ///< of them
+  std::optional<Rounded> single;         ///< in single precision, with the option float32
+  std::vector<Triangle> faces;           ///< of the map if they are not the input's; else empty
+};
+
+/// Simplification may get stuck far above its target: a coarse mesh that keeps more of the faces
+/// than this saves nothing.
+inline constexpr double kLeastReduction = 0.7;
+
 /// Faces that a mesh of so many is simplified to: the option's number, or max(1%, 10,000), and no
 /// more than it has.
 Index coarse_faces(Index faces, const Options& options);
 
 class Run {
  public:
-  Run(const DiskMesh& disk, const Options& options, const Progress& progress,
-      const std::atomic<bool>& cancelled)
-      : input_(disk), options_(options), progress_(progress), cancelled_(cancelled) {}
+  Run(const DiskMesh& disk, const Normalisation& frame, const Options& options,
+      const Progress& progress, const std::atomic<bool>& cancelled)
+      : input_(disk),
+        frame_(frame),
+        options_(options),
+        progress_(progress),
+        cancelled_(cancelled) {}
 
-  Flattening flatten(const Normalisation& frame);
+  Flattening flatten();
 
  private:
   /// Runs `body(statistics, checkpoint)` as the stage `name`, which takes the progress bar up to
@@ -49,7 +67,7 @@ class Run {
   void report(double fraction, const char* name);
 
   // pipeline.cpp: the methods, and what comes after them.
-  std::vector<Vec2> run_with_fallback();
+  Delivery run_with_fallback();
   std::vector<Vec2> run_method();
   std::vector<Vec2> run_tutte();
   std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
@@ -57,19 +75,26 @@ class Run {
                               const Checkpoint& checkpoint);
   std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                        const Checkpoint& checkpoint);
-  std::int64_t broken_promises(const std::vector<Vec2>& uvs) const;
   void refine(std::vector<Vec2>& uvs);
-  void place(const Normalisation& frame, std::vector<Vec2>& uvs) const;
-  void deliver(const Normalisation& frame, std::vector<Vec2>& uvs);
   NewtonOptions newton_options(const DiskMesh& mesh) const;
   NewtonResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                        NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
                        const Checkpoint& checkpoint);
 
+  // delivery.cpp: the numbers that are delivered.
+  Numbers numbers(bool single) const;
+  std::vector<Vec2> placed(const std::vector<Vec2>& uvs) const;
+  Delivery prepare(const std::vector<Vec2>& uvs);
+  std::int64_t broken_promises(const Delivery& made) const;
+  void deliver(Delivery made);
+  void measure(const std::vector<Vec2>& uvs);
+
   // fine_map.cpp: from the coarse map to the fine one.
   std::vector<Vec2> run_beltrami();
   std::vector<Vec2> run_uv_prolongation();
   std::vector<Vec2> run_plain();
+  std::vector<Vec2> run_whole();
+  void simplify_fine(FineProblem& fine);
   void solve_coarse(FineProblem& fine);
   void measure_fine(FineProblem& fine, const Checkpoint& checkpoint);
   Index coarse_target() const;
@@ -90,9 +115,10 @@ class Run {
   void count_flips(const std::vector<Vec2>& uvs);
 
   const DiskMesh& input_;
+  const Normalisation& frame_;
   const DiskMesh* disk_ = &input_;  // or what intrinsic flips made of it
   DiskMesh retriangulated_;
-  Index coarse_limit_ = std::numeric_limits<Index>::max();
+  Index coarse_target_ = kNone;  // of a restart; none: as the options have it
   const Options& options_;
   const Progress& progress_;
   const std::atomic<bool>& cancelled_;

@@ -15,6 +15,9 @@ namespace {
 constexpr double kScaffoldWeight = 1;
 constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
 constexpr int kCirclePoints = 48;
+/// Of the circle over the distance of its centre from the origin: below it the circle's points
+/// would round onto each other.
+constexpr double kLeastRadius = 1e-9;
 /// Scaffold faces flatter than this (height over longest edge) weigh less in proportion: boundary
 /// vertices in a line would be frozen by slivers that resist any relative move.
 constexpr double kSliver = 0.05;
@@ -30,7 +33,8 @@ RestTriangle lay_flat(const Vec2& a, const Vec2& b, const Vec2& c) {
 std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count) {
   Eigen::AlignedBox2d box;
   for (const Vec2& p : inner) box.extend(p);
-  const double radius = factor * 0.5 * box.diagonal().norm();
+  const double radius = std::max(factor * 0.5 * box.diagonal().norm(),
+                                 kLeastRadius * box.center().cwiseAbs().maxCoeff());
   std::vector<Vec2> circle;
   circle.reserve(count);
   for (int i = 0; i < count; ++i) {

@@ -18,7 +18,8 @@ struct RingFaces {
 };
 
 /// `count` points, counter-clockwise, on the circle around the centre of the bounding box of
-/// `inner`, whose radius is `factor` times half the diagonal of the box. Precondition: `inner` is
+/// `inner`, whose radius is `factor` times half the diagonal of the box, or a little more where the
+/// box is too small and far from the origin for so many points around it. Precondition: `inner` is
 /// not empty. For the circle's polygon to contain `inner`, factor * cos(pi / count) > 1.
 std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count);
 

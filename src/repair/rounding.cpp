@@ -1,6 +1,8 @@
-#include "repair/single_precision.h"
+#include "repair/rounding.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -26,24 +28,11 @@ constexpr int kCrossingRounds = 4;
 constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
 constexpr int kCirclePoints = 48;
 
-constexpr double kGreatest = std::numeric_limits<float>::max();
-
-double to_single(double x) {
-  return static_cast<double>(static_cast<float>(std::clamp(x, -kGreatest, kGreatest)));
-}
-
-/// The distance to the next single-precision number away from zero.
-double unit_in_the_last_place(double x) {
-  const auto single = static_cast<float>(std::abs(x));
-  return static_cast<double>(std::nextafter(single, std::numeric_limits<float>::infinity())) -
-         static_cast<double>(single);
-}
-
-/// Mends the faces of one triangulated disk whose vertices are at single-precision places.
+/// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
  public:
-  Rounding(const DiskMesh& mesh, std::vector<Vec2>& uvs, int threads)
-      : mesh_(mesh), uvs_(uvs), threads_(threads) {}
+  Rounding(const DiskMesh& mesh, const Numbers& numbers, std::vector<Vec2>& uvs, int threads)
+      : mesh_(mesh), numbers_(numbers), uvs_(uvs), threads_(threads) {}
 
   /// Tries to make `faces` positive, and never makes another face worse.
   void mend(std::vector<Index> faces, const Checkpoint& checkpoint) {
@@ -107,14 +96,13 @@ class Rounding {
     Quality best = quality_at(vertex);
     Vec2 place = start;
     const auto attempt = [&](const Vec2& trial) {
-      uvs_[vertex] = nearest_single(trial);
+      uvs_[vertex] = numbers_.nearest(trial);
       const Quality quality = quality_at(vertex);
       if (!(best < quality)) return;
       best = quality;
       place = uvs_[vertex];
     };
-    const Vec2 unit =
-        spacing * Vec2(unit_in_the_last_place(start.x()), unit_in_the_last_place(start.y()));
+    const Vec2 unit = spacing * Vec2(numbers_.spacing(start.x()), numbers_.spacing(start.y()));
     for (int i = -kReach; i <= kReach; ++i) {
       for (int j = -kReach; j <= kReach; ++j) {
         attempt({start.x() + i * unit.x(), start.y() + j * unit.y()});
@@ -128,8 +116,8 @@ class Rounding {
     uvs_[vertex] = place;
   }
 
-  /// Towards equilateral faces of the mean size, whatever their shapes in space: what single
-  /// precision cannot hold is a sliver. Marks the faces of the patch as tried.
+  /// Towards equilateral faces of the mean size, whatever their shapes in space: what the
+  /// numbers cannot hold is a sliver. Marks the faces of the patch as tried.
   void mend_patch(Index face, int rings, std::vector<bool>& tried) {
     Patch patch = cut_patch(mesh_, {}, uvs_, face, rings);
     for (const Index f : patch.mesh_faces) tried[f] = true;
@@ -146,43 +134,36 @@ class Rounding {
     if (!(side > 0)) return;
     patch.rest.assign(patch.faces.size(), {side, 0.5 * side, 2 * kEquilateral * side});
     if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return;
-    for (Vec2& w : patch.uvs) w = nearest_single(w);
+    for (Vec2& w : patch.uvs) w = numbers_.nearest(w);
     if (non_positive_faces(patch.faces, patch.uvs, threads_).empty()) patch.exchange(uvs_);
   }
 
   static constexpr double kEquilateral = 0.43301270189221932;  // area for a side of 1
 
   const DiskMesh& mesh_;
+  const Numbers numbers_;
   std::vector<Vec2>& uvs_;
   const int threads_;
 };
 
-/// The mesh and the ring around its boundary as one disk; the circle's points come last.
-struct Surrounded {
-  DiskMesh disk;
-  std::vector<Vec2> circle;
-};
-
-std::optional<Surrounded> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+/// The mesh and the ring around its boundary as one disk; the circle's points come last. Nothing
+/// where the boundary is not simple to begin with, or too small for a circle around it.
+std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
-  Surrounded all;
-  for (const Vec2& w : circle_around(polygon, kCircleFactor, kCirclePoints)) {
-    all.circle.push_back(nearest_single(w));
-  }
   std::vector<Triangle> faces = mesh.faces;
   try {
-    for (Triangle t : triangulate_ring(polygon, all.circle).faces) {
+    const auto circle = circle_around(polygon, kCircleFactor, kCirclePoints);
+    for (Triangle t : triangulate_ring(polygon, circle).faces) {
       for (Index& v : t) {
         v = v < size_of(polygon) ? mesh.boundary[v] : size_of(uvs) + v - size_of(polygon);
       }
       faces.push_back(t);
     }
-  } catch (const Error&) {
-    return std::nullopt;  // the boundary is not simple to begin with
+  } catch (const Error& error) {
+    if (error.status() != BELTRAMI_E_INTERNAL) throw;
+    return std::nullopt;
   }
-  std::vector<Vec3> positions(uvs.size() + all.circle.size(), Vec3::Zero());
-  all.disk = build_disk(std::move(positions), std::move(faces));
-  return all;
+  return build_disk(std::vector<Vec3>(uvs.size() + kCirclePoints, Vec3::Zero()), std::move(faces));
 }
 
 /// The ring's faces at the edges that cross.
@@ -210,17 +191,19 @@ std::int64_t faults(const Certificate& certificate) {
 }
 
 /// Mends boundary crossings, and flips that need the boundary to move. `uvs`: before rounding.
-void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int threads,
-                    const Checkpoint& checkpoint, SinglePrecision& result) {
-  const auto all = surround(mesh, uvs);
-  if (!all) return;
+void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Numbers& numbers,
+                    int threads, const Checkpoint& checkpoint, Rounded& result) {
+  const auto surrounded = surround(mesh, uvs);
+  if (!surrounded) return;
   std::vector<Vec2> places = result.uvs;
-  places.insert(places.end(), all->circle.begin(), all->circle.end());
+  for (const Vec2& w : circle_around(result.uvs, kCircleFactor, kCirclePoints)) {
+    places.push_back(numbers.nearest(w));
+  }
   for (int round = 0; round < kCrossingRounds && !result.certificate.injective(); ++round) {
     auto faces = non_positive_faces(mesh.faces, places, threads);
-    const auto beside = faces_at_crossings(mesh, all->disk, places);
+    const auto beside = faces_at_crossings(mesh, *surrounded, places);
     faces.insert(faces.end(), beside.begin(), beside.end());
-    Rounding(all->disk, places, threads).mend(std::move(faces), checkpoint);
+    Rounding(*surrounded, numbers, places, threads).mend(std::move(faces), checkpoint);
     const std::vector<Vec2> mended(places.begin(),
                                    places.begin() + static_cast<std::ptrdiff_t>(uvs.size()));
     const Certificate after = certify(mesh.faces, mesh.boundary, mended, threads);
@@ -230,33 +213,69 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int thre
   }
 }
 
-}  // namespace
-
-Vec2 nearest_single(const Vec2& place) {
-  return {to_single(place.x()), to_single(place.y())};
+template <class Real>
+double nearest_of(double x) {
+  constexpr double greatest = std::numeric_limits<Real>::max();
+  return static_cast<double>(static_cast<Real>(std::clamp(x, -greatest, greatest)));
 }
 
-SinglePrecision round_to_single(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                                const Certificate& exact, int threads,
-                                const Checkpoint& checkpoint) {
-  SinglePrecision result;
-  result.uvs.reserve(uvs.size());
-  for (const Vec2& w : uvs) result.uvs.push_back(nearest_single(w));
-  const std::vector<Vec2> nearest = result.uvs;
+template <class Real>
+double spacing_of(double x) {
+  const auto number = static_cast<Real>(std::abs(x));
+  const Real next = std::nextafter(number, std::numeric_limits<Real>::infinity());
+  return static_cast<double>(next) - static_cast<double>(number);
+}
 
-  const bool beyond = std::any_of(uvs.begin(), uvs.end(), [](const Vec2& w) {
-    return w.cwiseAbs().maxCoeff() > kGreatest;  // nothing to mend: the numbers are not there
-  });
-  const bool had_flips = beyond || exact.orientations.first_bad_face != kNone;
+}  // namespace
+
+double Numbers::delivered(double x) const {
+  const double number = std::ldexp(x, -exponent);
+  return single ? nearest_of<float>(number) : nearest_of<double>(number);
+}
+
+double Numbers::nearest(double x) const {
+  return std::ldexp(delivered(x), exponent);
+}
+
+double Numbers::spacing(double x) const {
+  const double number = delivered(x);
+  return std::ldexp(single ? spacing_of<float>(number) : spacing_of<double>(number), exponent);
+}
+
+bool Numbers::hold(const std::vector<Vec2>& places) const {
+  const double greatest =
+      single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
+  Eigen::AlignedBox2d box;
+  for (const Vec2& place : places) {
+    const Vec2 number(std::ldexp(place.x(), -exponent), std::ldexp(place.y(), -exponent));
+    if (!(number.cwiseAbs().maxCoeff() <= greatest)) return false;
+    box.extend(nearest(place));
+  }
+  return box.sizes().minCoeff() > 0;
+}
+
+Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<Vec2>& placed, const Numbers& numbers, int threads,
+                  const Checkpoint& checkpoint) {
+  Rounded result;
+  result.uvs.reserve(placed.size());
+  for (const Vec2& w : placed) result.uvs.push_back(numbers.nearest(w));
+  const auto judge = [&] {
+    result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, threads);
+    return result.certificate.injective();
+  };
+  if (judge() || !numbers.hold(placed)) return result;
+  const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, threads);
+  const std::vector<Vec2> nearest = result.uvs;
   auto bad = non_positive_faces(mesh.faces, result.uvs, threads);
-  if (!bad.empty() && !had_flips) {
-    Rounding(mesh, result.uvs, threads).mend(std::move(bad), checkpoint);
+  if (!bad.empty() && exact.orientations.first_bad_face == kNone) {
+    Rounding(mesh, numbers, result.uvs, threads).mend(std::move(bad), checkpoint);
+    judge();
   }
-  result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, threads);
-  if (!beyond && exact.injective() && !result.certificate.injective()) {
-    mend_with_ring(mesh, uvs, threads, checkpoint, result);
+  if (exact.injective() && !result.certificate.injective()) {
+    mend_with_ring(mesh, uvs, numbers, threads, checkpoint, result);
   }
-  for (std::size_t v = 0; v < uvs.size(); ++v) result.moved += result.uvs[v] != nearest[v];
+  for (std::size_t v = 0; v < placed.size(); ++v) result.moved += result.uvs[v] != nearest[v];
   return result;
 }
 

@@ -1,0 +1,50 @@
+// Roundings of a map to the numbers that it is delivered in, which keep it injective.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+
+/// The numbers of a floating-point type, in a unit of 2^exponent of its own: x stands for the
+/// number x * 2^-exponent of the type.
+struct Numbers {
+  bool single = false;  ///< float; else double
+  int exponent = 0;
+
+  /// The nearest number to a finite one; beyond the range of the type the end of it.
+  double nearest(double x) const;
+  Vec2 nearest(const Vec2& place) const { return {nearest(place.x()), nearest(place.y())}; }
+  /// The distance to the next number away from zero.
+  double spacing(double x) const;
+  /// Whether the type reaches as far as the places, and is fine enough not to round them all onto a
+  /// line: where not, no rounding nearby is injective.
+  bool hold(const std::vector<Vec2>& places) const;
+  /// The number of the type that x stands for.
+  double delivered(double x) const;
+  Vec2 delivered(const Vec2& place) const { return {delivered(place.x()), delivered(place.y())}; }
+};
+
+struct Rounded {
+  std::vector<Vec2> uvs;    ///< one per vertex; every coordinate is one of the numbers
+  Certificate certificate;  ///< of them
+  std::int64_t moved = 0;   ///< vertices that are not at the nearest number
+};
+
+/// Rounds every coordinate of `placed` to nearest. Where that flips a face or makes the boundary
+/// cross itself, vertices nearby move: first by a few units in the last place, then into the kernel
+/// of their one-ring, then in patches that are untangled towards equilateral faces; crossings are
+/// undone by the faces of a triangulated ring around the boundary, which must become positive. What
+/// cannot be mended is said by the certificate. What is wrong with `uvs` already is left alone.
+/// `placed` is `uvs` moved and scaled, in floating point: it may have folds that `uvs` has not.
+/// Precondition: finite.
+Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<Vec2>& placed, const Numbers& numbers, int threads,
+                  const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami
