@@ -350,6 +350,44 @@ TEST(MeasureDistortion, HasTheSameBitsOnTwoThreads) {
   EXPECT_EQ(one.worst_face, two.worst_face);
 }
 
+TEST(MeasureFace, HasTheGreaterSingularValueFirstToTheLastBit) {
+  Random random(9);
+  for (int i = 0; i < 20000; ++i) {
+    const double scale = std::pow(2.0, random.between(-3, 3)), turn = random.between(0, 7);
+    std::array<Vec3, 3> p;
+    std::array<Vec2, 3> w;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = {random.unit(), random.unit(), 0};
+      const double mirrored = i % 2 == 0 ? -p[k].x() : p[k].x();
+      w[k] = scale * Vec2(std::cos(turn) * mirrored - std::sin(turn) * p[k].y(),
+                          std::sin(turn) * mirrored + std::cos(turn) * p[k].y());
+    }
+    const FaceDistortion d = measure_face(p, w);
+    ASSERT_GE(d.s1, std::abs(d.s2)) << i;
+  }
+}
+
+TEST(MeasureFace, MeasuresTheSameAtTheEndsOfTheRangeOfNumbers) {
+  const std::array<Vec3, 3> p = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.25, 0.5, 0)};
+  const std::array<Vec2, 3> w = {Vec2(0, 0), Vec2(1.5, 0.25), Vec2(0.25, 0.75)};
+  const FaceDistortion plain = measure_face(p, w);
+  for (const int exponent : {-1060, -1000, -600, -300, 300, 600, 1000, 1022}) {
+    const double unit = std::ldexp(1.0, exponent);
+    const FaceDistortion d = measure_face({unit * p[0], unit * p[1], unit * p[2]},
+                                          {unit * w[0], unit * w[1], unit * w[2]});
+    EXPECT_EQ(d.s1, plain.s1) << exponent;
+    EXPECT_EQ(d.s2, plain.s2) << exponent;
+    EXPECT_EQ(d.symmetric_dirichlet, plain.symmetric_dirichlet) << exponent;
+    const Distortion mean = measure_distortion({unit * p[0], unit * p[1], unit * p[2]}, {{0, 1, 2}},
+                                               {unit * w[0], unit * w[1], unit * w[2]}, 1, nullptr);
+    EXPECT_EQ(mean.symmetric_dirichlet, plain.symmetric_dirichlet) << exponent;
+    EXPECT_EQ(mean.left_out, 0) << exponent;
+  }
+  const FaceDistortion shrunk =
+      measure_face(p, {0x1p-700 * w[0], 0x1p-700 * w[1], 0x1p-700 * w[2]});
+  EXPECT_EQ(shrunk.s1, 0x1p-700 * plain.s1);
+}
+
 TEST(MeasureDistortion, StaysAccurateOnSlivers) {
   // A needle of height 1e-7, mapped by the identity.
   const Distortion d = measure_distortion({{0, 0, 0}, {1, 0, 0}, {0.3, 1e-7, 0}}, {{2, 0, 1}},

@@ -124,6 +124,7 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
                              .threads = options_.threads};
     if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
+    if (keeps_boundary_simple() && count_crossings(mesh.boundary, uvs).count > 0) continue;
     clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
     return uvs;
   }

@@ -102,6 +102,8 @@ class Run {
   std::vector<Vec2> flatten_metric(const FineProblem& fine);
   std::vector<Vec2> flatten_dirichlet(const FineProblem& fine);
   std::vector<Vec2> flatten_reduced(const FineProblem& fine, bool scaffold);
+  std::vector<Vec2> descend_from_circle(const std::vector<RestTriangle>& rest, bool simple,
+                                        StageStatistics& statistics, const Checkpoint& checkpoint);
   std::vector<Vec2> flatten_boundary_first(const FineProblem& fine);
   std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
                                      const std::vector<bool>& held, bool global);
