@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "distortion/symmetric_dirichlet.h"
 #include "exact/certificate.h"
@@ -258,23 +257,21 @@ void Descent::assemble(const LooseFaces& loose, const std::vector<FaceModel>& mo
 }
 
 /// The Newton direction. A shift relative to the diagonal covers what is free or within the
-/// roundoff.
+/// roundoff. Empty where none makes the system definite.
 std::vector<Vec2> Descent::solve() {
   const Eigen::VectorXd diagonal = hessian_.diagonal();
   const double floor = diagonal.maxCoeff() * kShift;
+  std::vector<Vec2> direction;
   for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
     hessian_.diagonal() = diagonal * (1 + shift) + Eigen::VectorXd::Constant(2 * metas_, floor);
     const Eigen::LLT<DenseMatrix, Eigen::Lower> factor(hessian_);
     if (factor.info() != Eigen::Success) continue;
     const Eigen::VectorXd flat = factor.solve(-gradient_);
     if (!flat.allFinite()) continue;
-    std::vector<Vec2> direction(metas_);
-    for (Index m = 0; m < metas_; ++m) direction[m] = {flat[m], flat[metas_ + m]};
-    return direction;
+    for (Index m = 0; m < metas_; ++m) direction.push_back({flat[m], flat[metas_ + m]});
+    break;
   }
-  throw Error(
-      BELTRAMI_E_SOLVER,
-      "a reduced Newton system could not be made definite: the mesh is numerically extreme");
+  return direction;
 }
 
 std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
@@ -285,6 +282,7 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
              proxy ? model_faces(loose, typename Density::Proxy{}) : model_faces(loose, density));
   });
   const std::vector<Vec2> direction = solve();
+  if (direction.empty()) return {0.0, false};
   double predicted = 0;
   for (Index m = 0; m < metas_; ++m) {
     predicted -= gradient_[m] * direction[m].x() + gradient_[metas_ + m] * direction[m].y();

@@ -32,7 +32,7 @@ struct ReducedDescent {
 /// constant, and take part once they have become better than that, so that the energy never rises.
 /// With `scaffold` the polygon stays simple: the ring around it is triangulated anew for each step,
 /// its faces joining the energy with a small weight, and every step is judged by exact predicates.
-/// Throws Error SOLVER if no shift makes a Newton system definite.
+/// Ends, not converged, where no shift makes a Newton system definite.
 ReducedDescent minimise_reduced(const ReducedProblem& problem, bool scaffold, double tolerance,
                                 int max_iterations, int threads, std::vector<Vec2>& x,
                                 const Checkpoint& checkpoint);

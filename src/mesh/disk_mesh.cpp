@@ -13,6 +13,9 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 16384;
+/// Of the exponent for the area, from a box of unit size: a surface that is nearly a line or a point
+/// would grow until the fourth powers of its lengths leave the range of numbers.
+constexpr int kMostGrowth = 40;
 
 std::string quoted(Index index) {
   return std::to_string(index);
@@ -390,7 +393,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
                 "the surface has no area: every face is degenerate (check the vertex positions)");
   }
   // Nearest power of two to 1/sqrt(area).
-  rescale(-static_cast<int>(std::lround(0.5 * std::log2(area))));
+  rescale(std::min(kMostGrowth, -static_cast<int>(std::lround(0.5 * std::log2(area)))));
   return frame;
 }
 

@@ -75,8 +75,8 @@ struct Normalisation {
 };
 
 /// Recentres the bounding box to the origin and scales by the power of two that brings the area
-/// into [1/2, 2): scaling the input by a power of two then gives the same bits.
-/// Throws Error ZERO_AREA if the area is zero. Precondition: finite.
+/// into [1/2, 2), or the box to a size of 2^40 where that is less: scaling the input by a power of
+/// two then gives the same bits. Throws Error ZERO_AREA if the area is zero. Precondition: finite.
 Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         int threads = 1);
 
