@@ -22,6 +22,7 @@
 #include "fullspace/tutte.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/shared_data.h"
 
 namespace beltrami {
 namespace {
@@ -393,35 +394,9 @@ TEST(Pipeline, LeavesOutFacesWithoutAreaAndHasFiniteEnergies) {
 
 // ---- Scanned models, where they are at hand -------------------------------------------------
 
-std::filesystem::path data_folder() {
-  return std::filesystem::path(BELTRAMI_SOURCE_DIR).parent_path() / "shared" / "data";
-}
-
-/// Vertices and triangles of an OBJ file without texture coordinates.
-TriangleList read_obj(const std::filesystem::path& path) {
-  TriangleList mesh;
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line)) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "v") {
-      double x, y, z;
-      words >> x >> y >> z;
-      mesh.positions.push_back({x, y, z});
-    } else if (kind == "f") {
-      Index a, b, c;
-      words >> a >> b >> c;
-      mesh.faces.push_back({a - 1, b - 1, c - 1});
-    }
-  }
-  return mesh;
-}
-
 /// The energy at which the authors' own full-space code ends.
 double reference_energy(const std::string& name) {
-  std::ifstream file(data_folder() / "reference.json");
+  std::ifstream file(shared_data::folder() / "reference.json");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t entry = text.find('"' + name + '"');
   if (entry == std::string::npos) return 0;
@@ -431,9 +406,10 @@ double reference_energy(const std::string& name) {
 class Scan : public testing::TestWithParam<const char*> {};
 
 TEST_P(Scan, IsFlattenedInjectivelyCloseToTheReferenceEnergy) {
-  if (!std::filesystem::exists(data_folder())) GTEST_SKIP() << "the mesh data are not here";
+  if (!std::filesystem::exists(shared_data::folder())) GTEST_SKIP() << "the mesh data are not here";
   const std::string name = GetParam();
-  const TriangleList mesh = read_obj(data_folder() / "disks" / (name + ".obj"));
+  const TriangleList mesh =
+      shared_data::read_obj(shared_data::folder() / "disks" / (name + ".obj"));
   ASSERT_FALSE(mesh.faces.empty());
   const double reference = reference_energy(name);
   ASSERT_GT(reference, 2);

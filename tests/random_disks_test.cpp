@@ -1,4 +1,4 @@
-// Nothing it cannot flatten: 500 disks that nobody chose.
+// Nothing it cannot flatten: 800 disks that nobody chose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -160,6 +160,97 @@ TEST_P(RandomDisks, EndInjective) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomDisks, testing::Range(0, 50));
+
+// ---- Everything at its extreme, through every method -----------------------------------------
+
+void scale_coordinates(Random& random, double decades, int one_in, TriangleList& mesh) {
+  for (Vec3& p : mesh.positions) {
+    for (int k = 0; k < 3; ++k) {
+      if (random.below(one_in) == 0) p[k] *= std::pow(10.0, random.between(-decades, decades));
+    }
+  }
+}
+
+void scale_to_an_end_of_the_range(Random& random, TriangleList& mesh) {
+  double greatest = 0;
+  for (const Vec3& p : mesh.positions) greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
+  const double target = random.below(2) == 0 ? 1e-308 : 1e302;
+  for (Vec3& p : mesh.positions) p = p / greatest * target;
+}
+
+TriangleList extreme_disk(int seed, Random& random) {
+  TriangleList mesh = random_disk(seed);
+  if (random.below(3) == 0) scale_coordinates(random, 20, 4, mesh);
+  if (random.below(12) == 0) scale_coordinates(random, 250, 3, mesh);
+  if (random.below(6) == 0) {
+    const double flat = std::pow(10.0, -random.between(3, 14));
+    for (Vec3& p : mesh.positions) p.y() *= flat;
+  }
+  if (random.below(6) == 0) {
+    const Vec3 offset = std::pow(10.0, random.between(0, 12)) * random.vec3();
+    for (Vec3& p : mesh.positions) p += offset;
+  }
+  if (random.below(6) == 0) scale_to_an_end_of_the_range(random, mesh);
+  if (random.below(4) == 0) {
+    const double unit = random.below(2) == 0 ? std::ldexp(1.0, random.below(80) - 40)
+                                             : std::pow(10.0, random.between(-12, 12));
+    for (Vec3& p : mesh.positions) p = (unit * p).cwiseMax(-1e307).cwiseMin(1e307);
+  }
+  return mesh;
+}
+
+Options extreme_options(Random& random) {
+  Options options;
+  if (random.below(3) > 0) options.coarse_faces = 4 + random.below(random.below(2) == 0 ? 20 : 300);
+  options.method = std::max(0, random.below(10) - 4);
+  if (random.below(2) == 0) options.flatten = random.below(5);
+  if (random.below(4) == 0) options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;
+  if (random.below(3) == 0) options.injectivity = random.below(3);
+  options.delaunay = random.below(6) == 0;
+  options.unit_square = random.below(4) == 0;
+  options.float32 = random.below(3) == 0;
+  options.refine = random.below(8) == 0;
+  return options;
+}
+
+/// Whether the mode promises an injective map in the numbers that were asked for.
+bool promises(const Options& options) {
+  if (options.injectivity == BELTRAMI_INJECTIVITY_LOCAL) return false;
+  if (options.method == BELTRAMI_METHOD_TUTTE) return !options.float32;
+  return options.method == BELTRAMI_METHOD_BELTRAMI && options.flatten != BELTRAMI_FLATTEN_BFF &&
+         options.flatten != BELTRAMI_FLATTEN_FLIM;
+}
+
+class ExtremeDisks : public testing::TestWithParam<int> {};
+
+TEST_P(ExtremeDisks, EndWithAMapAndATruthfulStatus) {
+  for (int seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(static_cast<std::uint64_t>(seed) + 2000000);
+    TriangleList mesh = extreme_disk(seed, random);
+    const Options options = extreme_options(random);
+    Normalisation frame;
+    try {
+      frame = normalise(mesh.positions, mesh.faces);
+    } catch (const Error&) {
+      continue;  // no area is left
+    }
+    const DiskMesh disk = disks::disk(std::move(mesh));
+    const std::atomic<bool> cancelled{false};
+    const Flattening result = flatten(disk, frame, options, {}, cancelled);
+    for (const Vec2& w : result.uvs) ASSERT_TRUE(w.allFinite());
+    const auto& faces = result.faces.empty() ? disk.faces : result.faces;
+    const bool injective = certify(faces, disk.boundary, result.uvs, 1).injective();
+    EXPECT_EQ(injective, result.certificate.injective());
+    // Beyond the range of the type a map is not what was asked for even where it is injective.
+    EXPECT_TRUE(injective || result.status >= BELTRAMI_NOT_INJECTIVE);
+    const bool beyond_floats =
+        options.float32 && !options.unit_square && std::abs(frame.exponent) > 90;
+    EXPECT_TRUE(injective || beyond_floats || !promises(options));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ExtremeDisks, testing::Range(0, 30));
 
 }  // namespace
 }  // namespace beltrami

@@ -74,6 +74,7 @@ std::int64_t Run::broken_promises(const Delivery& made) const {
 /// The results: the map in the unit that was asked for, its verdicts and its energies.
 void Run::deliver(Delivery made) {
   result_.status = made.status;
+  const bool held = numbers(options_.float32).hold(made.uvs);
   stage("certify", 1.0, [&](StageStatistics&, const Checkpoint& checkpoint) {
     result_.certificate = made.certificate;
     Rounded single = made.single ? *std::move(made.single)
@@ -82,7 +83,7 @@ void Run::deliver(Delivery made) {
     result_.single_certificate = single.certificate;
     result_.float32_moves = single.moved;
     if (options_.float32) {
-      if (!single.certificate.injective() && made.certificate.injective()) {
+      if (made.certificate.injective() && !(held && single.certificate.injective())) {
         result_.status = BELTRAMI_NOT_INJECTIVE_FLOAT32;
       }
       result_.certificate = single.certificate;
@@ -97,7 +98,8 @@ void Run::deliver(Delivery made) {
     measure(made.uvs);
     for (Vec2& w : made.uvs) w = numbers(options_.float32).delivered(w);
   });
-  if (!result_.certificate.injective() && result_.status != BELTRAMI_NOT_INJECTIVE_FLOAT32) {
+  if (!(held && result_.certificate.injective()) &&
+      result_.status != BELTRAMI_NOT_INJECTIVE_FLOAT32) {
     result_.status = BELTRAMI_NOT_INJECTIVE;
   }
   result_.faces = std::move(made.faces);

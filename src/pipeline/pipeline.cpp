@@ -194,52 +194,51 @@ std::vector<Vec2> Run::run_tutte() {
   return uvs;
 }
 
-/// The pipeline, and where its map, as it would be delivered, breaks its promise again with coarser
-/// meshes (paper section 3.2), with the usual one if a coarser one was asked for, and at last with
-/// embeddings of the fine mesh: Tutte's, then one that cannot fold. The best map is kept.
+/// Whether the method's map must be injective; the others are judged as they are.
+bool Run::promises() const {
+  return options_.method == BELTRAMI_METHOD_BELTRAMI && options_.flatten != BELTRAMI_FLATTEN_BFF &&
+         options_.flatten != BELTRAMI_FLATTEN_FLIM;
+}
+
+/// The method, and where its map, as it would be delivered, breaks its promise, or there is none,
+/// again with coarser meshes (paper section 3.2), with the usual one if a coarser one was asked
+/// for, and at last with embeddings of the fine mesh: Tutte's, then one that cannot fold. The best
+/// map is kept.
 Delivery Run::run_with_fallback() {
   std::optional<Delivery> best;
   std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
   const auto attempt = [&](auto&& run) {
     disk_ = &input_;
     result_.status = BELTRAMI_OK;
-    std::vector<Vec2> uvs = run();
-    if (options_.refine) refine(uvs);
+    std::vector<Vec2> uvs;
+    try {
+      uvs = run();
+      if (options_.refine) refine(uvs);
+    } catch (const Error& error) {
+      // GIF's only one asks for another method, with the reason.
+      if (error.status() != BELTRAMI_E_SOLVER || options_.method == BELTRAMI_METHOD_GIF) throw;
+      return false;
+    }
     Delivery made = prepare(uvs);
-    const std::int64_t broken = broken_promises(made);
+    const std::int64_t broken = promises() ? broken_promises(made) : 0;
     if (broken >= fewest) return false;
     fewest = broken;
     best = std::move(made);
     return broken == 0;
   };
-  const bool promises = options_.method == BELTRAMI_METHOD_BELTRAMI &&
-                        options_.flatten != BELTRAMI_FLATTEN_BFF &&
-                        options_.flatten != BELTRAMI_FLATTEN_FLIM;
-  if (!promises) {
-    attempt([&] { return run_method(); });
-    return *std::move(best);
-  }
-  const auto attempt_solving = [&](auto&& run) {
-    try {
-      return attempt(run);
-    } catch (const Error& error) {
-      if (error.status() != BELTRAMI_E_SOLVER) throw;
-      return false;
-    }
-  };
-  bool kept = attempt_solving([&] { return run_method(); });
+  bool kept = attempt([&] { return run_method(); });
   const Index asked_for = coarse_target(), usual = coarse_faces(input_.face_count(), {});
   for (const Index target : {kFallbacks[0], kFallbacks[1], usual}) {
     const bool coarser = target < asked_for, finer = target == usual && usual > asked_for;
-    if (kept || !(coarser || finer)) continue;
+    if (kept || !(coarser || finer) || options_.method != BELTRAMI_METHOD_BELTRAMI) continue;
     ++result_.restarts;
     coarse_target_ = target;
-    kept = attempt_solving([&] { return run_method(); });
+    kept = attempt([&] { return run_method(); });
   }
   for (const bool drawn : {false, true}) {
     if (kept) break;
     ++result_.restarts;
-    kept = attempt_solving([&] {
+    kept = attempt([&] {
       result_.status = BELTRAMI_NOT_CONVERGED;
       return drawn ? grid_drawing(input_) : run_tutte();
     });

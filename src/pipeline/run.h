@@ -67,6 +67,7 @@ class Run {
   void report(double fraction, const char* name);
 
   // pipeline.cpp: the methods, and what comes after them.
+  bool promises() const;
   Delivery run_with_fallback();
   std::vector<Vec2> run_method();
   std::vector<Vec2> run_tutte();
