@@ -10,7 +10,11 @@
 #include <vector>
 
 #include "exact/certificate.h"
+#include "fullspace/newton.h"
+#include "fullspace/tutte.h"
 #include "pipeline/pipeline.h"
+#include "scaffold/ring_faces.h"
+#include "scaffold/triangulate_ring.h"
 #include "support/disks.h"
 #include "support/hard_disks.h"
 #include "support/shared_data.h"
@@ -37,6 +41,12 @@ Flattening run(TriangleList mesh, const Options& options) {
     EXPECT_EQ(w, Vec2(w.cast<float>().cast<double>()));
   }
   return result;
+}
+
+Options method(std::int32_t which) {
+  Options options;
+  options.method = which;
+  return options;
 }
 
 Options coarse(std::int64_t faces, bool float32) {
@@ -113,16 +123,57 @@ TEST(HardDisks, AreSaidToUnfoldBeyondTheRangeOfNumbers) {
   EXPECT_EQ(result.status, BELTRAMI_NOT_INJECTIVE);
 }
 
+TEST(HardDisks, AreFlattenedConformallyWhereTheyAreAlmostALine) {
+  // Brought to unit area it would be longer than 1e80.
+  TriangleList mesh = meshes::fan(9);
+  for (Vec3& p : mesh.positions) p.setZero();
+  mesh.positions[0] = {0, 0, 4e116};
+  mesh.positions[1] = {2e83, 3e247, 0};
+  mesh.positions[2] = {1e251, 0, 0};
+  mesh.positions[3] = {7e277, 0, 0};
+  const Flattening result = run(mesh, method(BELTRAMI_METHOD_BFF));
+  EXPECT_GE(result.status, BELTRAMI_OK);
+  EXPECT_EQ(result.restarts, 0);
+}
+
+TEST(HardDisks, WithoutInnerVerticesHaveAReducedMapOfSparseSteps) {
+  // With more bridges than dense steps can serve.
+  const Flattening strip = run(meshes::strip(1500), method(BELTRAMI_METHOD_GIF));
+  EXPECT_EQ(strip.status, BELTRAMI_OK);
+  EXPECT_NEAR(strip.distortion.symmetric_dirichlet, 2, 0.01);
+}
+
+TEST(HardDisks, HaveACircleWhereTheyHaveNoArea) {
+  TriangleList mesh = meshes::grid(3, 3);
+  for (Vec3& p : mesh.positions) p.setZero();
+  const DiskMesh disk = disks::disk(mesh);
+  EXPECT_TRUE(certify(disk.faces, disk.boundary, tutte_embedding(disk), 1).injective());
+}
+
+TEST(HardDisks, EndWhereNoSystemIsDefinite) {
+  // Of a map that shrinks by 1e-80 the energy is a number, its fourth powers are not.
+  const DiskMesh disk = disks::disk(meshes::grid(2, 2));
+  const std::vector<Vec2> before = disks::flat_uvs(disk);
+  std::vector<Vec2> after = before;
+  const std::vector<RestTriangle> rest(disk.faces.size(), {1e80, 0, 1e80});
+  NewtonOptions options;
+  options.proxy_steps = 0;
+  const NewtonResult done =
+      minimise_energy(disk.faces, rest, disks::only_fixed(disk, 0), after, options);
+  EXPECT_FALSE(done.converged);
+  EXPECT_EQ(after, before);
+}
+
+TEST(HardDisks, HaveARingAroundABoundaryThatIsSmallAndFarAway) {
+  const double ulp = 0x1p-52;
+  const std::vector<Vec2> polygon = {{1, 1}, {1 + ulp, 1}, {1, 1 + ulp}};
+  EXPECT_EQ(triangulate_ring(polygon, circle_around(polygon, 1.5, 48)).faces.size(), 51u);
+}
+
 struct SharedDisk {
   const char* name;
   Options options;
 };
-
-Options method(std::int32_t which) {
-  Options options;
-  options.method = which;
-  return options;
-}
 
 TEST(HardDisks, OfTheSharedDataEndWithAMap) {
   const std::filesystem::path folder = shared_data::folder() / "broken";

@@ -16,12 +16,15 @@ constexpr Status kStatuses[] = {
     BELTRAMI_STATUS(NOT_CONVERGED,
                     "The map is injective, but an optimisation stopped at its iteration limit: "
                     "raise max-iterations or tolerance for less distortion."),
-    BELTRAMI_STATUS(NOT_INJECTIVE,
-                    "The map has flipped or empty faces, or its boundary crosses itself: see the "
-                    "certificate for where, and try another method or the UVs in F64."),
+    BELTRAMI_STATUS(
+        NOT_INJECTIVE,
+        "The map has flipped or empty faces, or its boundary crosses itself: see the "
+        "certificate for where, and try another method or the UVs in F64; where UVs are "
+        "beyond the range of numbers, scale the mesh or set unit-square."),
     BELTRAMI_STATUS(NOT_INJECTIVE_FLOAT32,
                     "The map is injective in double precision, but no rounding to single precision "
-                    "was found that is: use the UVs in F64, or cut the mesh into smaller charts."),
+                    "was found that is, or they are beyond its range: use the UVs in F64 or the "
+                    "option unit-square, or cut the mesh into smaller charts."),
     BELTRAMI_STATUS(E_INVALID_ARGUMENT,
                     "The call itself is wrong: check it for NULL, an unset struct_size, an unknown "
                     "key, a value out of range, or an odd type or stride."),

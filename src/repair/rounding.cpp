@@ -234,6 +234,10 @@ double Numbers::delivered(double x) const {
 }
 
 double Numbers::nearest(double x) const {
+  constexpr int kModerate = 400;  // the product of two such powers is far from both ends
+  const double size = std::abs(x);
+  const bool moderate = size > 0x1p-400 && size < 0x1p400 && std::abs(exponent) < kModerate;
+  if (!single && moderate) return x;
   return std::ldexp(delivered(x), exponent);
 }
 
