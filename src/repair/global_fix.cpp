@@ -1,5 +1,6 @@
 #include "repair/global_fix.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,13 @@ bool is_counter_clockwise(const std::vector<Vec2>& polygon) {
   return area > 0;
 }
 
+/// Whether places are apart by more than the roundoff where they are.
+bool has_extent(const std::vector<Vec2>& places) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& place : places) box.extend(place);
+  return box.diagonal().norm() > kLeastLength * box.center().norm();
+}
+
 /// The mesh and the ring as one triangulation of the outer circle, whose points come last.
 struct Glued {
   std::vector<Triangle> faces;
@@ -57,8 +65,7 @@ Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
       triangulate_ring(inner, circle_around(inner, kCircleFactor, kCirclePoints));
 
   Glued glued{mesh.faces, uvs, 0};
-  auto circle = circle_around(uvs, kCircleFactor, kCirclePoints);
-  if (circle.front() == circle[1]) circle = circle_around(inner, kCircleFactor, kCirclePoints);
+  const auto circle = circle_around(has_extent(uvs) ? uvs : inner, kCircleFactor, kCirclePoints);
   glued.places.insert(glued.places.end(), circle.begin(), circle.end());
   glued.extent = (circle.front() - circle[kCirclePoints / 2]).norm();
   const auto vertex = [&](Index i) {
