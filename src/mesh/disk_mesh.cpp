@@ -13,8 +13,8 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 16384;
-/// Of the exponent for the area, from a box of unit size: a surface that is nearly a line or a point
-/// would grow until the fourth powers of its lengths leave the range of numbers.
+/// Of the exponent for the area, from a box of unit size: a surface that is nearly a line or a
+/// point would grow until the fourth powers of its lengths leave the range of numbers.
 constexpr int kMostGrowth = 40;
 
 std::string quoted(Index index) {
