@@ -1,16 +1,47 @@
 #include "atomic_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <random>
+#include <utility>
 
+#include "descriptor.h"
 #include "failure.h"
+
+#if defined(_WIN32)
+#include <io.h>
+#else
+#include <unistd.h>
+#endif
 
 namespace beltrami::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+#if defined(_WIN32)
+constexpr int kFlags = O_WRONLY | O_BINARY;
+bool may_write(const char* path) {
+  return access(path, 2) == 0;
+}
+void set_permissions(int, fs::perms) {}  // it only knows "read only", and such a file is refused
+#else
+// Of no meaning for regular files, but it tells write_all() that they take any number of bytes.
+constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NONBLOCK;
+bool may_write(const char* path) {
+  return faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) == 0;
+}
+void set_permissions(int descriptor, fs::perms permissions) {
+  // Not every file system has them.
+  static_cast<void>(fchmod(descriptor, static_cast<mode_t>(permissions)));
+}
+#endif
 
 fs::path follow_links(const std::string& path) {
   std::error_code error;
@@ -18,7 +49,7 @@ fs::path follow_links(const std::string& path) {
   // Links can form a loop; the system gives up after 40 of them as well.
   for (int hop = 0; hop < 40 && fs::is_symlink(target, error); ++hop) {
     const fs::path next = fs::read_symlink(target, error);
-    if (error) break;
+    if (error) throw Failure(path + ": cannot be written: " + error.message());
     target = next.is_absolute() ? next : target.parent_path() / next;
   }
   return target;
@@ -32,71 +63,90 @@ fs::path temporary_beside(const fs::path& target) {
   return target.parent_path() / ("." + name + "." + std::to_string(random()) + ".tmp");
 }
 
+/// Of what is at `path`, links followed. Throws Failure for a directory.
+fs::file_status status_of(const std::string& path) {
+  if (path.empty()) throw Failure("an output path is empty");
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) throw Failure(path + ": cannot be written: is a directory");
+  return status;
+}
+
+bool is_special(const fs::file_status& status) {
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path) {
-  if (path.empty()) throw Failure("an output path is empty");
-  const fs::path target = follow_links(path);
-  target_ = target.string();
-  std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) throw Failure(path_ + ": cannot be written: is a directory");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    file_ = std::fopen(target_.c_str(), "wb");
-    if (!file_) fail("cannot be written");
+  const fs::file_status status = status_of(path);
+  if (is_special(status)) {
+    descriptor_ = open_special(path.c_str());
+    if (descriptor_ < 0) fail("cannot be written");
     return;
   }
-  if (fs::exists(status)) {
-    // Renaming would replace a write-protected file; the user protected it for a reason.
-    std::FILE* existing = std::fopen(target_.c_str(), "r+b");
-    if (!existing) fail("cannot be written");
-    std::fclose(existing);
-  }
-  temporary_ = temporary_beside(target).string();
-  file_ = std::fopen(temporary_.c_str(), "wbx");
-  if (!file_) {
-    const int number = errno;
-    temporary_.clear();
-    errno = number;
+  const fs::path target = follow_links(path);
+  target_ = target.string();
+  folder_ = target.has_parent_path() ? target.parent_path().string() : ".";
+  // Renaming would replace a write-protected file; the user protected it for a reason.
+  if (fs::exists(status) && !may_write(target_.c_str())) fail("cannot be written");
+  // Before it exists: a signal may come between any two steps.
+  temporary_.emplace(temporary_beside(target).string());
+  descriptor_ = open(temporary_->path().c_str(), kFlags | O_CREAT | O_EXCL, 0666);
+  if (descriptor_ < 0) {
+    temporary_->keep();
     fail("cannot be written");
   }
-  if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
+  if (fs::exists(status)) set_permissions(descriptor_, status.permissions());
 }
 
 AtomicFile::~AtomicFile() {
-  if (file_) std::fclose(file_);
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail("cannot be written");
+  if (!write_all(descriptor_, bytes)) fail("cannot be written");
 }
 
 void AtomicFile::close() {
-  if (!file_) return;
-  const bool flushed = std::fflush(file_) == 0;
+  if (descriptor_ < 0) return;
+  const bool stored = !temporary_ || sync(descriptor_);
   const int number = errno;
-  const bool closed = std::fclose(file_) == 0;
-  file_ = nullptr;
-  if (flushed && closed) return;
-  if (!flushed) errno = number;
+  const bool closed = ::close(std::exchange(descriptor_, -1)) == 0 || errno == EINTR;
+  if (stored && closed) return;
+  if (!stored) errno = number;
   fail("cannot be written");
 }
 
 void AtomicFile::commit() {
   close();
-  if (temporary_.empty()) return;
-  std::error_code error;
-  fs::rename(temporary_, target_, error);
-  if (error) throw Failure(path_ + ": cannot be replaced: " + error.message());
-  temporary_.clear();
+  if (!temporary_) return;
+#if defined(_WIN32)
+  fs::rename(temporary_->path(), target_);  // the C library's does not replace
+#else
+  if (std::rename(temporary_->path().c_str(), target_.c_str()) != 0) fail("cannot be replaced");
+#endif
+  temporary_->keep();
+  temporary_.reset();
+  // The file has its name now. That the name outlives a power cut is asked for, but where a folder
+  // cannot be opened or synchronised, nothing is wrong with the file.
+  sync_directory(folder_.c_str());
 }
 
-void AtomicFile::fail(const std::string& what) const {
-  throw Failure(path_ + ": " + what + ": " + std::strerror(errno));
+void AtomicFile::fail(const char* what) const {
+  const int number = errno;
+  if (number == ENOMEM) throw std::bad_alloc();
+  if (number == EINTR) throw Failure(BELTRAMI_E_CANCELLED, "cancelled");
+  throw Failure(path_ + ": " + what + ": " + std::strerror(number));
 }
 
 void require_writable(const std::string& path) {
+  if (is_special(status_of(path))) {
+    if (!may_write(path.c_str())) {
+      throw Failure(path + ": cannot be written: " + std::strerror(errno));
+    }
+    return;
+  }
   const AtomicFile probe(path);
 }
 

@@ -1,7 +1,6 @@
 // beltrami check: judge the UVs that a file carries.
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "atomic_file.h"
@@ -54,16 +53,14 @@ class Check {
     read();
     judge();
     measure();
-    write_files();
-    bar_.clear();
-    if (!arguments_.quiet) std::fputs(to_summary(report_, "").c_str(), stdout);
-    return report_.certificate->injective ? kExitInjective : kExitNotInjective;
+    return write_files();
   }
 
  private:
   void require_files() const {
     format_of(arguments_.input);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
+    if (!arguments_.quiet) require_apart_from_stdout({arguments_.report, arguments_.picture});
     for (const std::string& path : {arguments_.report, arguments_.picture}) {
       if (!path.empty()) require_writable(path);
     }
@@ -119,7 +116,8 @@ class Check {
     clock.finish();
   }
 
-  void write_files() {
+  /// Returns the exit code.
+  int write_files() {
     throw_if_interrupted();
     std::optional<AtomicFile> picture, report;
     if (!arguments_.picture.empty()) {
@@ -134,9 +132,14 @@ class Check {
       report.emplace(arguments_.report).write(to_json(report_));
       report->close();
     }
+    const std::string summary = arguments_.quiet ? std::string() : to_summary(report_, "");
+    bar_.clear();
     throw_if_interrupted();
+    // From here on nothing needs memory: with something replaced, it must not run out.
     if (picture) picture->commit();
     if (report) report->commit();
+    return print(summary, "the summary",
+                 report_.certificate->injective ? kExitInjective : kExitNotInjective);
   }
 
   const CheckArguments& arguments_;

@@ -1,38 +1,32 @@
 #include "command.h"
 
+#include <sys/stat.h>
+
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <new>
 
 #include "atomic_file.h"
+#include "descriptor.h"
 
 namespace beltrami::cli {
 namespace {
 
 const auto program_start = std::chrono::steady_clock::now();
 
-void write_failure_report(Report& report, const std::string& path) {
+/// Never throws: the line on stderr is taken by the first failure, which is the one to mend first.
+template <class MakeFailure>
+void report_failure(Report& report, const std::string& path, MakeFailure&& failure) {
   if (path.empty()) return;
-  report.seconds = seconds_so_far();
-  AtomicFile file(path);
-  file.write(to_json(report));
-  file.commit();
-}
-
-int fail(Report& report, const std::string& report_path, const Failure& failure) {
-  if (failure.exit_code == kExitCancelled) {
-    std::fputs("cancelled\n", stderr);
-  } else {
-    std::fprintf(stderr, "beltrami: %s\n", one_line(failure.what()).c_str());
-  }
-  report.set_failure(failure);
   try {
-    write_failure_report(report, report_path);
+    report.set_failure(failure());
+    report.seconds = seconds_so_far();
+    AtomicFile file(path);
+    file.write(to_json(report));
+    file.commit();
   } catch (const std::exception&) {
-    // The line on stderr is taken by the first failure, which is the one to mend first.
+    return;
   }
-  return failure.exit_code;
 }
 
 }  // namespace
@@ -86,8 +80,13 @@ bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
   // Files that are yet to be written are compared by name.
-  const fs::path first = fs::weakly_canonical(fs::absolute(a, error), error);
-  return first == fs::weakly_canonical(fs::absolute(b, error), error) && !error;
+  const auto full_name = [&](const std::string& path) {
+    fs::path name = fs::weakly_canonical(fs::absolute(path, error), error);
+    if (error == std::errc::not_enough_memory) throw std::bad_alloc();
+    return name;
+  };
+  const fs::path first = full_name(a);
+  return first == full_name(b) && !error;
 }
 
 void require_distinct(const std::vector<std::string>& paths) {
@@ -100,22 +99,45 @@ void require_distinct(const std::vector<std::string>& paths) {
   }
 }
 
+void require_apart_from_stdout(const std::vector<std::string>& paths) {
+#if !defined(_WIN32)
+  struct stat out {};
+  if (fstat(kStandardOutput, &out) != 0 || !S_ISREG(out.st_mode)) return;
+  for (const std::string& path : paths) {
+    struct stat file {};
+    if (stat(path.c_str(), &file) != 0) continue;
+    if (file.st_dev != out.st_dev || file.st_ino != out.st_ino) continue;
+    throw Failure(path + ": standard output goes there, and the summary with it: give --quiet");
+  }
+#endif
+}
+
 int run_guarded(Report& report, const std::string& report_path,
                 const std::vector<std::string>& others, const std::function<int()>& body) {
   std::string path = report_path;
   for (const std::string& other : others) {
     if (same_file(report_path, other)) path.clear();
   }
+  const std::string& input = report.input_path;
   try {
     return body();
   } catch (const Failure& failure) {
-    return fail(report, path, failure);
+    const bool cancelled = failure.exit_code == kExitCancelled;
+    const int code = cancelled ? tell(failure.exit_code, {"cancelled"})
+                               : tell(failure.exit_code, {"beltrami: ", failure.what()});
+    report_failure(report, path, [&] { return failure; });
+    return code;
   } catch (const std::bad_alloc&) {
-    const std::string advice = beltrami_status_advice(BELTRAMI_E_OUT_OF_MEMORY);
-    return fail(report, path, Failure(BELTRAMI_E_OUT_OF_MEMORY, report.input_path + ": " + advice));
+    const char* advice = beltrami_status_advice(BELTRAMI_E_OUT_OF_MEMORY);
+    const int code = tell(kExitInternal, {"beltrami: ", input, ": ", advice});
+    report_failure(report, path,
+                   [&] { return Failure(BELTRAMI_E_OUT_OF_MEMORY, input + ": " + advice); });
+    return code;
   } catch (const std::exception& error) {
-    return fail(report, path,
-                Failure(BELTRAMI_E_INTERNAL, report.input_path + ": " + error.what()));
+    const int code = tell(kExitInternal, {"beltrami: ", input, ": ", error.what()});
+    report_failure(report, path,
+                   [&] { return Failure(BELTRAMI_E_INTERNAL, input + ": " + error.what()); });
+    return code;
   }
 }
 

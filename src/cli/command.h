@@ -27,7 +27,7 @@ struct CheckArguments {
 };
 
 /// The commands: the exit code. They print the summary, or one line on stderr.
-int flatten_command(const FlattenArguments& arguments, const Options& options);
+int flatten_command(const FlattenArguments& arguments, Options& options);
 int check_command(const CheckArguments& arguments);
 
 /// The file's arrays as the library takes them; `file` must outlive it.
@@ -46,6 +46,10 @@ bool same_file(const std::string& a, const std::string& b);
 
 /// Throws Failure if two of the paths are the same file.
 void require_distinct(const std::vector<std::string>& paths);
+
+/// Throws Failure if standard output is one of the paths: the summary, which follows the files,
+/// would be lost with what was there before them.
+void require_apart_from_stdout(const std::vector<std::string>& paths);
 
 /// Runs `body`, which returns the exit code. Its failures become one line on stderr, an exit code,
 /// and a report at `report_path`, unless that is "" or one of `others`, which must not be lost.

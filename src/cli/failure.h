@@ -4,14 +4,17 @@
 #include <beltrami/beltrami.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace beltrami::cli {
 
 /// Exit codes: part of the interface, scripts branch on them (docs/report.md).
 enum ExitCode : int {
   kExitInjective = 0,
+  kExitUnprinted = 1,     ///< the files are written, but stdout could not be
   kExitUnusable = 2,      ///< arguments, files or mesh
   kExitNotInjective = 3,  ///< a result exists, but it is not injective
   kExitInternal = 4,      ///< out of memory, or a defect
@@ -50,7 +53,20 @@ class Failure : public std::runtime_error {
   std::uint64_t element;
 };
 
-/// `text` on one line, for stderr: control characters become spaces.
+/// `text` on one line: control characters become spaces.
 std::string one_line(std::string text);
+
+/// Says why the process fails: `parts` as one line on stderr, control characters as spaces. Only
+/// the first call says anything, since it names what is to be mended first. Returns the exit code
+/// of the first call. Needs no memory.
+int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept;
+
+/// Writes `text` to standard output. Returns `exit_code`, or kExitUnprinted once that has been
+/// told: `what`, such as "the summary", is lost. Needs no memory.
+int print(std::string_view text, const char* what, int exit_code) noexcept;
+
+/// Has std::terminate, which is where exceptions of destructors and of static objects end, remove
+/// the temporaries, tell one line and exit with kExitInternal.
+void install_terminate_handler() noexcept;
 
 }  // namespace beltrami::cli

@@ -1,5 +1,4 @@
 // beltrami flatten: read, flatten, write, report.
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -21,9 +20,14 @@ Context make_context() {
   return {raw, &beltrami_destroy};
 }
 
+void note_options(const Options& options, Report& report) {
+  report.options = options.values();
+  report.threads = options.integer(BELTRAMI_OPTION_THREADS);
+}
+
 class Flattening {
  public:
-  Flattening(const FlattenArguments& arguments, const Options& options, Report& report)
+  Flattening(const FlattenArguments& arguments, Options& options, Report& report)
       : arguments_(arguments),
         options_(options),
         report_(report),
@@ -37,12 +41,7 @@ class Flattening {
     const CancelOnInterrupt guard(context_.get());
     flatten();
     fetch_results();
-    write_files();
-    bar_.clear();
-    if (!arguments_.quiet) {
-      std::fputs(to_summary(report_, arguments_.output).c_str(), stdout);
-    }
-    return report_.certificate->injective ? kExitInjective : kExitNotInjective;
+    return write_files();
   }
 
  private:
@@ -52,7 +51,10 @@ class Flattening {
     require_writable_format(arguments_.output);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
     require_distinct({arguments_.output, arguments_.report, arguments_.picture});
-    for (const std::string& path : {arguments_.output, arguments_.report, arguments_.picture}) {
+    const std::vector<std::string> written = {arguments_.output, arguments_.report,
+                                              arguments_.picture};
+    if (!arguments_.quiet) require_apart_from_stdout(written);
+    for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
     }
   }
@@ -69,12 +71,24 @@ class Flattening {
     clock.finish();
   }
 
+  /// All cores are the program's own choice, which must not be what fails at a memory limit.
+  void fit_threads() {
+    const auto limit = static_cast<std::uint64_t>(options_.integer(BELTRAMI_OPTION_MEMORY_LIMIT));
+    for (;;) {
+      std::uint64_t estimate = 0;
+      require(beltrami_estimate_memory(context_.get(), &estimate));
+      report_.estimated_memory_bytes = estimate;
+      if (limit == 0 || estimate <= limit || !options_.use_fewer_threads()) return;
+      const std::int64_t threads = options_.integer(BELTRAMI_OPTION_THREADS);
+      require(beltrami_set_int(context_.get(), BELTRAMI_OPTION_THREADS, threads));
+      note_options(options_, report_);
+    }
+  }
+
   void flatten() {
     // A signal from before the guard has cancelled nothing yet.
     throw_if_interrupted();
-    std::uint64_t estimate = 0;
-    require(beltrami_estimate_memory(context_.get(), &estimate));
-    report_.estimated_memory_bytes = estimate;
+    fit_threads();
     const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
       static_cast<ProgressBar*>(bar)->show(fraction, stage);
       return interrupted();
@@ -126,8 +140,9 @@ class Flattening {
     clock.finish();
   }
 
-  /// All files are complete on the disk before the first of them replaces anything.
-  void write_files() {
+  /// All files are complete on the disk before the first of them replaces anything. Returns the
+  /// exit code.
+  int write_files() {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
     AtomicFile output(arguments_.output);
@@ -145,10 +160,16 @@ class Flattening {
       report.emplace(arguments_.report).write(to_json(report_));
       report->close();
     }
+    const std::string summary =
+        arguments_.quiet ? std::string() : to_summary(report_, arguments_.output);
+    bar_.clear();
     throw_if_interrupted();
+    // From here on nothing needs memory: with something replaced, it must not run out.
     output.commit();
     if (picture) picture->commit();
     if (report) report->commit();
+    return print(summary, "the summary",
+                 report_.certificate->injective ? kExitInjective : kExitNotInjective);
   }
 
   void write_picture(AtomicFile& file) {
@@ -167,7 +188,7 @@ class Flattening {
   }
 
   const FlattenArguments& arguments_;
-  const Options& options_;
+  Options& options_;
   Report& report_;
   ProgressBar bar_;
   Context context_;
@@ -176,12 +197,11 @@ class Flattening {
 
 }  // namespace
 
-int flatten_command(const FlattenArguments& arguments, const Options& options) {
+int flatten_command(const FlattenArguments& arguments, Options& options) {
   Report report;
   report.command = "flatten";
   report.input_path = arguments.input;
-  report.options = options.to_json();
-  report.threads = options.integer(BELTRAMI_OPTION_THREADS);
+  note_options(options, report);
   return run_guarded(report, arguments.report,
                      {arguments.input, arguments.output, arguments.picture},
                      [&] { return Flattening(arguments, options, report).run(); });

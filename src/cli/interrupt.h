@@ -1,17 +1,21 @@
-// Ctrl-C: from a signal to a cancelled run.
+// Signals: from Ctrl-C to a cancelled run, and ends that leave no temporary behind.
 #pragma once
 
 #include <beltrami/beltrami.h>
 
 namespace beltrami::cli {
 
-/// From now on SIGINT and SIGTERM ask for an end; the third one ends the process at once.
-void install_interrupt_handler();
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU ask for an end, the third of them ends the
+/// process at once; other signals that kill, SIGKILL excepted, remove the temporaries first.
+/// Writing where nobody reads any more, or beyond a limit, is an error of the write. What the
+/// parent process had ignored (nohup, background jobs of scripts) stays ignored, what it handles
+/// stays handled.
+void install_signal_handlers();
 
-/// Whether a signal has come.
+/// Whether a signal has asked for an end.
 bool interrupted();
 
-/// Throws the Failure of a cancelled command if a signal has come.
+/// Throws the Failure of a cancelled command if a signal has asked for an end.
 void throw_if_interrupted();
 
 /// While it lives, a signal cancels the runs of `context`. One at a time.

@@ -2,9 +2,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
+#include <exception>
+#include <new>
+#include <sstream>
 
 #include "command.h"
+#include "descriptor.h"
 #include "interrupt.h"
 
 namespace beltrami::cli {
@@ -12,7 +15,7 @@ namespace {
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 injective, 3 not injective, 2 unusable arguments, files or mesh, 4 out of\n"
-    "memory or an internal failure, 130 cancelled.";
+    "memory or an internal failure, 130 cancelled, 1 files written but no summary on stdout.";
 
 CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("flatten", "Flatten a disk-like triangle mesh to UVs");
@@ -40,7 +43,6 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
 }
 
 int run(int argc, char** argv) {
-  install_interrupt_handler();
   CLI::App app("Injective, low-distortion flattening of disk-like triangle meshes", "beltrami");
   app.set_version_flag("--version", beltrami_build_info());
   app.require_subcommand(1);
@@ -53,22 +55,32 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    std::ostringstream text, none;
+    const int code = app.exit(help, text, none);
+    return print(text.str(), "the text", code);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "beltrami: %s (see beltrami --help)\n", one_line(error.what()).c_str());
-    return kExitUnusable;
+    return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }
   return flatten_app->parsed() ? flatten_command(flatten, options) : check_command(check);
+}
+
+/// Before the static objects of CLI11, which need memory, are made.
+[[gnu::constructor(101)]] void prepare_for_static_objects() {
+  install_terminate_handler();
 }
 
 }  // namespace
 }  // namespace beltrami::cli
 
 int main(int argc, char** argv) {
+  using namespace beltrami::cli;
+  reserve_standard_descriptors();
+  install_signal_handlers();
   try {
-    return beltrami::cli::run(argc, argv);
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return tell(kExitInternal, {"beltrami: out of memory"});
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami: %s\n", beltrami::cli::one_line(error.what()).c_str());
-    return beltrami::cli::kExitInternal;
+    return tell(kExitInternal, {"beltrami: ", error.what()});
   }
 }

@@ -1,12 +1,9 @@
 #include "mesh_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 
+#include "descriptor.h"
 #include "failure.h"
 
 namespace beltrami::cli {
@@ -17,30 +14,6 @@ std::string extension_of(const std::string& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
   return extension;
-}
-
-std::string read_file(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw Failure(path + ": is a directory, not a mesh file");
-  }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file) throw Failure(path + ": cannot be opened: " + std::strerror(errno));
-  std::string text;
-  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
-  // One byte more, so that the read that fills the buffer also meets the end of the file.
-  text.resize(ignored ? 65536 : static_cast<std::size_t>(size) + 1);
-  std::size_t used = 0;
-  for (;;) {
-    if (used == text.size()) text.resize(2 * text.size());
-    const std::size_t got = std::fread(text.data() + used, 1, text.size() - used, file.get());
-    if (got == 0) break;
-    used += got;
-  }
-  if (std::ferror(file.get())) throw Failure(path + ": cannot be read: " + std::strerror(errno));
-  text.resize(used);
-  return text;
 }
 
 /// Brings text from other systems into the one form that the readers know.

@@ -3,10 +3,15 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string_view>
+#include <thread>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
 
 #include "failure.h"
 
@@ -23,7 +28,17 @@ std::string plain_number(double value) {
   return digits;
 }
 
+/// Cores that the process may use: not all that there are, under taskset or a job scheduler.
+std::int64_t usable_cores() {
+#if defined(__linux__)
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
+#endif
+  return std::max<std::int64_t>(1, std::thread::hardware_concurrency());
+}
+
 std::string default_word(const Option& option) {
+  if (option.is_thread_count()) return "all cores";
   if (option.info.type != BELTRAMI_TYPE_CHOICE) return plain_number(option.info.default_value);
   const auto value = static_cast<std::size_t>(option.info.default_value);
   return value < option.choices.size() ? option.choices[value] : plain_number(double(value));
@@ -113,6 +128,9 @@ Options::Options() {
     if (beltrami_option_describe(key, &option.info) != BELTRAMI_OK) break;
     option.integer = static_cast<std::int64_t>(option.info.default_value);
     option.real = option.info.default_value;
+    if (option.is_thread_count()) {
+      option.integer = std::min(usable_cores(), static_cast<std::int64_t>(option.info.maximum));
+    }
     if (option.info.type == BELTRAMI_TYPE_CHOICE) {
       for (std::int32_t value = 0; const char* name = beltrami_option_choice(key, value); ++value) {
         option.choices.emplace_back(name);
@@ -133,6 +151,7 @@ void Options::add_to(CLI::App& command) {
     const auto parse = [&option, flag](const std::string& text) {
       const std::string error = parse_option(text, option);
       if (!error.empty()) throw CLI::ValidationError(flag, error);
+      option.given = true;
     };
     command.add_option_function<std::string>(flag, parse, help_text(option))
         ->type_name(option.info.type == BELTRAMI_TYPE_CHOICE  ? joined_choices(option, "|")
@@ -154,21 +173,30 @@ void Options::apply_to(beltrami_context* context) const {
   }
 }
 
-nlohmann::ordered_json Options::to_json() const {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+OptionValues Options::values() const {
+  OptionValues values;
   for (const Option& option : options_) {
-    nlohmann::ordered_json& value = json[option.info.name];
+    const std::string name = option.info.name;
     if (option.is_flag()) {
-      value = option.integer != 0;
+      values.emplace_back(name, option.integer != 0);
     } else if (option.info.type == BELTRAMI_TYPE_FLOAT) {
-      value = option.real;
+      values.emplace_back(name, option.real);
     } else if (option.info.type == BELTRAMI_TYPE_CHOICE) {
-      value = option.choices.at(static_cast<std::size_t>(option.integer));
+      values.emplace_back(name, option.choices.at(static_cast<std::size_t>(option.integer)));
     } else {
-      value = option.integer;
+      values.emplace_back(name, option.integer);
     }
   }
-  return json;
+  return values;
+}
+
+bool Options::use_fewer_threads() {
+  for (Option& option : options_) {
+    if (!option.is_thread_count() || option.given || option.integer == 1) continue;
+    option.integer /= 2;
+    return true;
+  }
+  return false;
 }
 
 std::int64_t Options::integer(std::int32_t key) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #if !defined(_WIN32)
 #include <sys/resource.h>
@@ -60,6 +61,14 @@ Json input_json(const Report& report) {
       {"first_degenerate_face",
        report.result ? element(report.result->first_degenerate_face) : Json(nullptr)},
       {"welded_vertices", optional(report.welded_vertices)}};
+}
+
+Json options_json(const Report& report) {
+  Json options = Json::object();
+  for (const auto& [name, value] : report.options) {
+    std::visit([&, &key = name](const auto& known) { options[key] = known; }, value);
+  }
+  return options;
 }
 
 Json injective_json(const Report& report) {
@@ -173,7 +182,7 @@ std::string to_json(const Report& report) {
       {"message", report.message.empty() ? Json(nullptr) : Json(report.message)},
       {"element", element_json(report)},
       {"input", input_json(report)},
-      {"options", report.options},
+      {"options", options_json(report)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
       {"coarse_faces", optional(report.coarse_faces)},

@@ -6,9 +6,10 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "failure.h"
@@ -25,6 +26,10 @@ struct StageTime {
   int iterations = 0;
 };
 
+/// Options by name. Plain data, for objects of the JSON library need memory to end.
+using OptionValues =
+    std::vector<std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>>;
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -38,7 +43,7 @@ struct Report {
       welded_vertices;
   std::optional<double> area;
 
-  nlohmann::ordered_json options = nlohmann::ordered_json::object();
+  OptionValues options;
   std::optional<beltrami_certificate> certificate;
   std::optional<bool> float32_injective;  ///< of the UVs as written, rounded to nearest
   std::optional<bool> float32_possible;   ///< with the option float32

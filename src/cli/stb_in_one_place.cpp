@@ -1,3 +1,21 @@
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+/// stb's own use of malloc writes through null pointers where memory runs out. The blocks of a call
+/// that ends so are lost; the program ends, too.
+void* allocate(std::size_t size) {
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void* reallocate(void* old, std::size_t size) {
+  if (void* memory = std::realloc(old, size)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
 // The stb headers carry code that does not pass our warnings: it is compiled here and only here.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -9,6 +27,9 @@
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
+#define STBIW_MALLOC(size) allocate(size)
+#define STBIW_REALLOC(old, size) reallocate(old, size)
+#define STBIW_FREE(old) std::free(old)
 #include <stb_easy_font.h>
 #include <stb_image_write.h>
 #if defined(__GNUC__)

@@ -2,6 +2,9 @@
 #include "atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <thread>
 
 #include "failure.h"
 #include "temporary_directory.h"
@@ -56,9 +59,52 @@ TEST(AtomicFile, RefusesWhatCannotBeWritten) {
 TEST(AtomicFile, LeavesDevicesInPlace) {
   if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   AtomicFile file("/dev/full");
-  file.write("text");
-  EXPECT_THROW(file.commit(), Failure);
+  EXPECT_THROW(file.write("text"), Failure);
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, LeavesOtherNamesOfTheTargetWithTheOldFile) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt", "old");
+  fs::create_hard_link(path, directory.path("b.txt"));
+  AtomicFile file(path);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(directory.read("a.txt"), "new");
+  EXPECT_EQ(directory.read("b.txt"), "old");
+}
+
+TEST(AtomicFile, IsRemovedByWhatEndsTheProcessAtOnce) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt", "old");
+  AtomicFile file(path);
+  file.write("new");
+  remove_leftovers();
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"a.txt"});
+  EXPECT_THROW(file.commit(), Failure);
+  EXPECT_EQ(directory.read("a.txt"), "old");
+  AtomicFile next(path);
+  next.write("new");
+  next.commit();
+  remove_leftovers();
+  EXPECT_EQ(directory.read("a.txt"), "new") << "what has its name is no leftover";
+}
+
+TEST(AtomicFile, TellsThePipesReaderNothingBeforeTheWrite) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("pipe");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_NO_THROW(require_writable(path)) << "nobody reads it yet";
+  std::string got;
+  std::thread reader([&] { got = directory.read("pipe"); });
+  require_writable(path);
+  const std::string text(1 << 20, 'x');  // more than a pipe holds
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+  reader.join();
+  EXPECT_EQ(got, text);
+  EXPECT_TRUE(fs::is_fifo(path));
 }
 
 }  // namespace

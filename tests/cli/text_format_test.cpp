@@ -1,7 +1,11 @@
 // Options, reports and the progress line.
 #include <gtest/gtest.h>
+#if defined(__linux__)
+#include <sched.h>
+#endif
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "options.h"
@@ -62,11 +66,30 @@ TEST(ParseOption, TakesNamedChoices) {
 }
 
 TEST(Options, HaveTheLibrarysDefaults) {
-  const Options options;
-  EXPECT_EQ(options.to_json()["method"], "beltrami");
-  EXPECT_EQ(options.to_json()["unit-square"], false);
-  EXPECT_GT(options.to_json()["tolerance"], 0.0);
+  Report report;
+  report.options = Options().values();
+  const auto json = nlohmann::json::parse(to_json(report))["options"];
+  EXPECT_EQ(json["method"], "beltrami");
+  EXPECT_EQ(json["unit-square"], false);
+  EXPECT_GT(json["tolerance"], 0.0);
 }
+
+#if defined(__linux__)
+TEST(Options, UseAllCoresThatTheProcessMayUseUnlessTold) {
+  cpu_set_t before;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  EXPECT_EQ(Options().integer(BELTRAMI_OPTION_THREADS), CPU_COUNT(&before));
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  for (std::size_t core = 0; CPU_COUNT(&one) == 0; ++core) {
+    if (CPU_ISSET(core, &before)) CPU_SET(core, &one);
+  }
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  EXPECT_EQ(Options().integer(BELTRAMI_OPTION_THREADS), 1);
+  EXPECT_FALSE(Options().use_fewer_threads());
+  sched_setaffinity(0, sizeof before, &before);
+}
+#endif
 
 TEST(Report, NeverHoldsNumbersThatJsonHasNot) {
   Report report;
