@@ -1,6 +1,5 @@
 // Runs: states, progress, cancellation, results and their bits.
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -299,19 +298,27 @@ TEST(Cancel, IsDroppedByANewMesh) {
   EXPECT_EQ(run(context), BELTRAMI_OK);
 }
 
-TEST(Cancel, FromAnotherThreadEndsALongRun) {
-  const Context context = loaded_with(meshes::bumps(220, 220), BELTRAMI_METHOD_CM);
-  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_TOLERANCE, 0), BELTRAMI_OK);
-  std::atomic<bool> begun{false};
-  std::thread other([&] {
-    while (!begun) std::this_thread::yield();
-    beltrami_cancel(context.get());
-  });
-  const auto begin = [](void* user, double, const char*) -> int32_t {
-    static_cast<std::atomic<bool>*>(user)->store(true);
+/// Holds a run up in its first call of progress until somebody lets go.
+struct Gate {
+  std::atomic<bool> reached{false}, open{false};
+
+  static int32_t pass(void* user, double, const char*) {
+    auto& self = *static_cast<Gate*>(user);
+    self.reached = true;
+    while (!self.open) std::this_thread::yield();
     return 0;
-  };
-  EXPECT_EQ(beltrami_run(context.get(), begin, &begun), BELTRAMI_E_CANCELLED);
+  }
+};
+
+TEST(Cancel, FromAnotherThreadEndsTheRun) {
+  const Context context = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
+  Gate gate;
+  std::thread other([&] {
+    while (!gate.reached) std::this_thread::yield();
+    beltrami_cancel(context.get());
+    gate.open = true;
+  });
+  EXPECT_EQ(beltrami_run(context.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED);
   other.join();
 }
 
@@ -346,22 +353,19 @@ TEST(Cancel, OfOneContextLeavesAnotherOnTheSameThreadAlone) {
 }
 
 TEST(Cancel, OfOneContextLeavesAnotherOnAnotherThreadAlone) {
-  const Context cancelled = loaded_with(meshes::bumps(220, 220), BELTRAMI_METHOD_CM);
-  ASSERT_EQ(beltrami_set_float(cancelled.get(), BELTRAMI_OPTION_TOLERANCE, 0), BELTRAMI_OK);
-  std::atomic<bool> begun{false};
-  const auto begin = [](void* user, double, const char*) -> int32_t {
-    static_cast<std::atomic<bool>*>(user)->store(true);
-    return 0;
-  };
-  std::thread other(
-      [&] { EXPECT_EQ(beltrami_run(cancelled.get(), begin, &begun), BELTRAMI_E_CANCELLED); });
-  while (!begun) std::this_thread::yield();
+  const Context cancelled = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
+  Gate gate;
+  std::thread other([&] {
+    EXPECT_EQ(beltrami_run(cancelled.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED);
+  });
+  while (!gate.reached) std::this_thread::yield();
   const Context undisturbed = whole_pipeline(meshes::bumps(40, 40));
   const auto cancel = [](void* user, double, const char*) -> int32_t {
     beltrami_cancel(static_cast<beltrami_context*>(user));
     return 0;
   };
   EXPECT_EQ(beltrami_run(undisturbed.get(), cancel, cancelled.get()), BELTRAMI_OK);
+  gate.open = true;
   other.join();
 }
 

@@ -263,9 +263,11 @@ TEST(Flatten, SaysWhenMemoryRunsOut) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquare);
   std::filesystem::resize_file(in, std::uintmax_t{4} << 30);  // sparse: it takes no room
-  Program program({"flatten", in, directory.path("out.obj"), "--report", directory.path("r.json")},
-                  rlim_t{1} << 30);
-  const Outcome outcome = program.wait();
+  Surroundings around;
+  around.limits = {{RLIMIT_AS, rlim_t{1} << 30}};
+  const Outcome outcome = run({"flatten", in, directory.path("out.obj"), "--report",
+                               directory.path("r.json"), "--threads", "1"},
+                              around);
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_EQ(outcome.err_lines(), 1) << outcome.err;
   EXPECT_EQ(Json::parse(directory.read("r.json"))["status"], "BELTRAMI_E_OUT_OF_MEMORY");
