@@ -31,8 +31,6 @@ function(beltrami_add_static_library target)
     set_target_properties(${target} PROPERTIES OUTPUT_NAME beltrami)
   endif()
   # What is left open in the archive, by name; the package configuration finds GMP where it lies.
-  find_library(BELTRAMI_GMP_LIBRARY gmp REQUIRED)
-  mark_as_advanced(BELTRAMI_GMP_LIBRARY)
   target_link_libraries(${target} INTERFACE Threads::Threads
     $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
   if(BELTRAMI_SOLVER MATCHES "^cholmod")

@@ -103,7 +103,12 @@ int main(void) {
   }
   waited = now_ms() - cancelled;
   pthread_join(job.thread, NULL);
-  printf("%s %.0f ms after the request\n", beltrami_status_name(job.status), waited);
+  if (cancelled == 0) {
+    printf("%s before the user lost patience\n", beltrami_status_name(job.status));
+  } else {
+    printf("%s %.0f ms after the request\n", beltrami_status_name(job.status), waited);
+  }
   beltrami_destroy(job.context);
-  return job.status == BELTRAMI_E_CANCELLED ? EXIT_SUCCESS : EXIT_FAILURE;
+  /* A fast machine may be done by then. */
+  return job.status >= 0 || job.status == BELTRAMI_E_CANCELLED ? EXIT_SUCCESS : EXIT_FAILURE;
 }
