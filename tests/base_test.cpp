@@ -68,8 +68,8 @@ TEST(ParallelFor, RethrowsAnExceptionOfAnyThread) {
   }
 }
 
-// The other thread is kept waiting until the exception is on its way. Without a stop it would be busy
-// with the remaining chunks for years.
+// The other thread is kept waiting until the exception is on its way. Without a stop it would be
+// busy with the remaining chunks for years.
 TEST(ParallelFor, StopsAfterAnException) {
   std::atomic<bool> thrown{false};
   const auto body = [&](std::int64_t begin, std::int64_t) {

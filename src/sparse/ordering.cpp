@@ -688,8 +688,8 @@ std::vector<int> minimum_degree_order(const Graph& graph) {
     row = std::copy(graph.neighbours(v).begin(), graph.neighbours(v).end(), row);
     start[v + 1] = static_cast<int>(row - pattern.innerIndexPtr());
   }
-  // One longer than the result, as Eigen works on it: where memory ends, its resizing of what is not
-  // empty frees twice.
+  // One longer than the result, as Eigen works on it: where memory ends, its resizing of what is
+  // not empty frees twice.
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(n + 1);
   Eigen::internal::minimum_degree_ordering(pattern, order);
   return {order.indices().begin(), order.indices().end()};

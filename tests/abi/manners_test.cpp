@@ -134,8 +134,8 @@ TEST(Manners, TheProcessIsLeftAsItWas) {
   setenv("OMP_NUM_THREADS", "3", 1);
   const ProcessState before;
   use_everything();
-  // Ended threads leave the list a little after they were joined; one that stays is waited for until
-  // the test's own time is up.
+  // Ended threads leave the list a little after they were joined; one that stays is waited for
+  // until the test's own time is up.
   while (ProcessState().texts["threads"] != before.texts.at("threads")) usleep(1000);
   EXPECT_EQ(ProcessState().texts, before.texts);
 }

@@ -355,9 +355,8 @@ TEST(Cancel, OfOneContextLeavesAnotherOnTheSameThreadAlone) {
 TEST(Cancel, OfOneContextLeavesAnotherOnAnotherThreadAlone) {
   const Context cancelled = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
   Gate gate;
-  std::thread other([&] {
-    EXPECT_EQ(beltrami_run(cancelled.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED);
-  });
+  std::thread other(
+      [&] { EXPECT_EQ(beltrami_run(cancelled.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED); });
   while (!gate.reached) std::this_thread::yield();
   const Context undisturbed = whole_pipeline(meshes::bumps(40, 40));
   const auto cancel = [](void* user, double, const char*) -> int32_t {

@@ -17,6 +17,8 @@ struct Command {
   const char* name;
   std::vector<std::string> arguments;  ///< in.obj, out.obj and the like are files of the test
   long step;                           ///< between the allocations that fail
+
+  friend void PrintTo(const Command& command, std::ostream* out) { *out << command.name; }
 };
 
 class OutOfMemory : public testing::TestWithParam<Command> {

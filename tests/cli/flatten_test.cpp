@@ -131,6 +131,25 @@ TEST(Flatten, StaysWithinAMemoryLimitOrSaysWhatItNeeds) {
   EXPECT_NE(flattened.out.find("MiB"), std::string::npos) << flattened.out;
 }
 
+TEST(Flatten, TakesOnlyAsManyThreadsOfItsOwnAccordAsAMemoryLimitHasRoomFor) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(60));
+  const auto flatten = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"flatten", in, directory.path("out.obj"), "--flatten", "dirichlet",
+                               "--report", directory.path("r.json")});
+    const int code = run(more).exit_code;
+    return std::pair(code, Json::parse(directory.read("r.json")));
+  };
+  const Json one = flatten({"--threads", "1"}).second;
+  const std::string limit = std::to_string(one["estimated_memory_bytes"].get<std::uint64_t>());
+  EXPECT_EQ(flatten({"--threads", "1", "--memory-limit", limit}).first, 0);
+  EXPECT_EQ(flatten({"--threads", "64", "--memory-limit", limit}).first, 4) << "the user's wish";
+  const auto [code, own] = flatten({"--memory-limit", limit});
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(own["threads"], own["options"]["threads"]);
+  EXPECT_LE(own["estimated_memory_bytes"], one["estimated_memory_bytes"]);
+}
+
 TEST(Flatten, WithOnlyOneIterationIsStillInjective) {
   const TemporaryDirectory directory;
   const Outcome outcome = run({"flatten", directory.file("in.obj", grid(12)),
