@@ -61,7 +61,7 @@ class Program {
     for (const auto& [name, value] : around.environment) setenv(name.c_str(), value.c_str(), 1);
     for (const auto& [resource, value] : around.limits) {
       const rlimit limit = {value, value};
-      setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+      setrlimit(static_cast<decltype(RLIMIT_AS)>(resource), &limit);
     }
     execv(pointers[0], pointers.data());
     _exit(127);
