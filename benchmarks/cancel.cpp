@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "command.h"
-#include "mesh_file.h"
 #include "refine.h"
 
 namespace {
@@ -226,13 +225,13 @@ int main(int argc, char** argv) {
   app.add_option("--stage", stage, "This stage only");
   CLI11_PARSE(app, argc, argv);
   try {
-    auto file = beltrami::cli::read_mesh(path, beltrami::cli::Content::kSurface);
+    auto file = beltrami::benchmarks::read_triangles(path);
     if (faces > file.face_count()) file = beltrami::benchmarks::refine(file, faces);
     beltrami_context* raw = nullptr;
     if (beltrami_create(&raw) != BELTRAMI_OK) throw std::bad_alloc();
     const Context context(raw, beltrami_destroy);
     for (const std::string& option : options) set(raw, option);
-    const beltrami_mesh mesh = beltrami::cli::view_of(file);
+    const beltrami_mesh mesh = beltrami::cli::view_of(file.view());
     const Clock::time_point begin = Clock::now();
     if (beltrami_set_mesh(raw, &mesh) != BELTRAMI_OK) {
       throw std::runtime_error(beltrami_error_message(raw));

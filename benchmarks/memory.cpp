@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "command.h"
-#include "mesh_file.h"
 #include "process_memory.h"
 #include "refine.h"
 
@@ -71,7 +70,7 @@ void set_option(beltrami_context* context, const std::string& assignment) {
   }
 }
 
-Measured run(const cli::MeshFile& file, const std::vector<std::string>& options) {
+Measured run(const TriangleMesh& file, const std::vector<std::string>& options) {
   Measured measured{};
   StagePeaks peaks;
   malloc_trim(0);
@@ -79,7 +78,7 @@ Measured run(const cli::MeshFile& file, const std::vector<std::string>& options)
   beltrami_context* context = nullptr;
   beltrami_create(&context);
   for (const std::string& option : options) set_option(context, option);
-  const beltrami_mesh mesh = cli::view_of(file);
+  const beltrami_mesh mesh = cli::view_of(file.view());
   std::uint64_t estimate = 0;
   if (beltrami_set_mesh(context, &mesh) < 0 || beltrami_estimate_memory(context, &estimate) < 0) {
     throw std::runtime_error(beltrami_error_message(context));
@@ -101,7 +100,7 @@ Measured run(const cli::MeshFile& file, const std::vector<std::string>& options)
 }
 
 /// Runs in a process of its own, so that no run sees what another one left to the allocator.
-Measured run_apart(const cli::MeshFile& file, const std::vector<std::string>& options) {
+Measured run_apart(const TriangleMesh& file, const std::vector<std::string>& options) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe could be made");
   std::fflush(nullptr);
@@ -138,7 +137,7 @@ std::vector<std::string> words(const std::string& text) {
 }
 
 /// Returns whether the estimate was enough.
-bool report(const std::string& name, const cli::MeshFile& mesh, const std::string& mode) {
+bool report(const std::string& name, const TriangleMesh& mesh, const std::string& mode) {
   const Measured m = run_apart(mesh, words(mode));
   if (m.status < 0) {
     std::printf("%-24.24s %9llu %s: %s\n", name.c_str(),
@@ -174,10 +173,10 @@ int main(int argc, char** argv) {
     std::printf("%s\n%-24s %9s %8s %8s %6s  %6s %8s  %s\n", beltrami_build_info(), "mesh", "faces",
                 "MiB", "estimate", "ratio", "B/vert", "E", "mode: MiB at the peak of each stage");
     for (const std::string& path : meshes) {
-      const cli::MeshFile base = cli::read_mesh(path, cli::Content::kSurface);
+      const benchmarks::TriangleMesh base = benchmarks::read_triangles(path);
       const std::string name = std::filesystem::path(path).stem().string();
       for (const std::uint64_t faces : sizes) {
-        const cli::MeshFile mesh =
+        const benchmarks::TriangleMesh mesh =
             faces > base.face_count() ? benchmarks::refine(base, faces) : base;
         for (const std::string& mode : modes) enough &= benchmarks::report(name, mesh, mode);
       }

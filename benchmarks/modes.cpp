@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "command.h"
-#include "mesh_file.h"
 #include "refine.h"
 
 namespace {
@@ -55,13 +54,13 @@ struct Figures {
   unsigned long long flips_before = 0, flips = 0, crossings = 0;
 };
 
-Figures run(const beltrami::cli::MeshFile& file, const Mode& mode, std::int32_t energy_kind,
-            int threads) {
+Figures run(const beltrami::benchmarks::TriangleMesh& file, const Mode& mode,
+            std::int32_t energy_kind, int threads) {
   beltrami_context* raw = nullptr;
   beltrami_create(&raw);
   const std::unique_ptr<beltrami_context, void (*)(beltrami_context*)> context(raw,
                                                                                beltrami_destroy);
-  const beltrami_mesh mesh = beltrami::cli::view_of(file);
+  const beltrami_mesh mesh = beltrami::cli::view_of(file.view());
   Figures figures{};
   figures.status = beltrami_set_mesh(raw, &mesh);
   if (figures.status < 0) return figures;
@@ -91,7 +90,7 @@ Figures run(const beltrami::cli::MeshFile& file, const Mode& mode, std::int32_t 
 
 Json benchmark(const std::string& path, std::uint64_t faces, bool with_cm, std::int32_t energy,
                int threads) {
-  auto mesh = beltrami::cli::read_mesh(path, beltrami::cli::Content::kSurface);
+  auto mesh = beltrami::benchmarks::read_triangles(path);
   if (faces > mesh.face_count()) mesh = beltrami::benchmarks::refine(mesh, faces);
   const std::string name = std::filesystem::path(path).stem().string();
   std::printf("\n%s, %llu faces\n", name.c_str(),

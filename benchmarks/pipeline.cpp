@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "command.h"
-#include "mesh_file.h"
 #include "process_memory.h"
 #include "refine.h"
 #include "yardstick.h"
@@ -50,7 +49,7 @@ void require(beltrami_status status, beltrami_context* context) {
   if (status < 0) throw std::runtime_error(beltrami_error_message(context));
 }
 
-Run run_pipeline(const cli::MeshFile& file, std::int32_t method, int threads) {
+Run run_pipeline(const TriangleMesh& file, std::int32_t method, int threads) {
   const double before = start_of_peak();
   beltrami_context* raw = nullptr;
   beltrami_create(&raw);
@@ -58,7 +57,7 @@ Run run_pipeline(const cli::MeshFile& file, std::int32_t method, int threads) {
                                                                                beltrami_destroy);
   beltrami_set_int(raw, BELTRAMI_OPTION_THREADS, threads);
   beltrami_set_int(raw, BELTRAMI_OPTION_METHOD, method);
-  const beltrami_mesh mesh = cli::view_of(file);
+  const beltrami_mesh mesh = cli::view_of(file.view());
   Run run;
   const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID), wall = seconds(CLOCK_MONOTONIC);
   require(beltrami_set_mesh(raw, &mesh), raw);
@@ -113,7 +112,7 @@ void keep_best(Run& best, Run run) {
   }
 }
 
-Figures measure_mesh(const cli::MeshFile& mesh, int rounds, bool with_cm) {
+Figures measure_mesh(const TriangleMesh& mesh, int rounds, bool with_cm) {
   Figures figures;
   for (int round = 0; round < rounds; ++round) {
 #ifdef BELTRAMI_WITH_CHOLMOD
@@ -172,10 +171,10 @@ Json benchmark(const std::string& path, const std::vector<std::uint64_t>& sizes,
   std::printf("\n%s\n%9s %7s %6s %6s %8s %8s %7s %6s %7s %7s %5s\n", name.c_str(), "faces", "cpu s",
               "/ Um", "/ Ua", "E", "E / CM", "/ CM", "2 thr.", "growth", "B/vert", "flips");
   Json rows = Json::array();
-  const cli::MeshFile base = cli::read_mesh(path, cli::Content::kSurface);
+  const TriangleMesh base = read_triangles(path);
   double last_cost = 0, last_faces = 0;
   for (const std::uint64_t faces : sizes) {
-    const cli::MeshFile mesh = faces > base.face_count() ? refine(base, faces) : base;
+    const TriangleMesh mesh = faces > base.face_count() ? refine(base, faces) : base;
     const Figures f = measure_mesh(mesh, rounds, mesh.face_count() <= cm_faces);
     const double count = static_cast<double>(mesh.face_count());
     Json shares = Json::object();

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "triangulate.h"
+
 namespace beltrami::benchmarks {
 namespace {
 
@@ -19,11 +21,11 @@ Point operator*(double s, const Point& a) {
   return {s * a[0], s * a[1], s * a[2]};
 }
 
-Point point(const cli::MeshFile& mesh, std::uint32_t v) {
+Point point(const TriangleMesh& mesh, std::uint32_t v) {
   return {mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]};
 }
 
-void append(cli::MeshFile& mesh, const Point& p) {
+void append(TriangleMesh& mesh, const Point& p) {
   mesh.positions.insert(mesh.positions.end(), p.begin(), p.end());
 }
 
@@ -39,7 +41,7 @@ struct Edges {
   std::vector<std::uint32_t> of_corner;  // edge from corner k to k + 1 of each face
 };
 
-Edges find_edges(const cli::MeshFile& mesh) {
+Edges find_edges(const TriangleMesh& mesh) {
   const std::size_t corners = mesh.faces.size();
   const auto next = [](std::size_t c) { return c % 3 == 2 ? c - 2 : c + 1; };
   const auto key = [&](std::size_t c) {
@@ -70,7 +72,7 @@ Edges find_edges(const cli::MeshFile& mesh) {
 }
 
 /// Loop's masks for the old vertices.
-void smooth_vertices(const cli::MeshFile& mesh, const Edges& edges, cli::MeshFile& fine) {
+void smooth_vertices(const TriangleMesh& mesh, const Edges& edges, TriangleMesh& fine) {
   const std::size_t count = mesh.vertex_count();
   std::vector<Point> ring(count, {0, 0, 0}), rim(count, {0, 0, 0});
   std::vector<int> valence(count, 0);
@@ -96,9 +98,9 @@ void smooth_vertices(const cli::MeshFile& mesh, const Edges& edges, cli::MeshFil
   }
 }
 
-cli::MeshFile subdivide(const cli::MeshFile& mesh) {
+TriangleMesh subdivide(const TriangleMesh& mesh) {
   const Edges edges = find_edges(mesh);
-  cli::MeshFile fine;
+  TriangleMesh fine;
   smooth_vertices(mesh, edges, fine);
   for (const Edge& edge : edges.list) {
     const Point ends = point(mesh, edge.a) + point(mesh, edge.b);
@@ -115,7 +117,7 @@ cli::MeshFile subdivide(const cli::MeshFile& mesh) {
 }
 
 /// Splits edges that are the longest of all their faces, longest first.
-cli::MeshFile split_longest(const cli::MeshFile& mesh, std::uint64_t faces) {
+TriangleMesh split_longest(const TriangleMesh& mesh, std::uint64_t faces) {
   const Edges edges = find_edges(mesh);
   std::vector<std::size_t> longest(mesh.face_count());  // corner
   std::vector<std::uint32_t> votes(edges.list.size(), 0);
@@ -135,7 +137,7 @@ cli::MeshFile split_longest(const cli::MeshFile& mesh, std::uint64_t faces) {
     if (votes[e] == edges.list[e].faces) candidates.push_back(e);
   }
   std::sort(candidates.begin(), candidates.end(), longer);
-  cli::MeshFile fine = mesh;
+  TriangleMesh fine = mesh;
   std::vector<std::uint32_t> middle(edges.list.size(), 0);
   std::uint64_t count = mesh.face_count();
   for (const std::uint32_t e : candidates) {
@@ -159,8 +161,14 @@ cli::MeshFile split_longest(const cli::MeshFile& mesh, std::uint64_t faces) {
 
 }  // namespace
 
-cli::MeshFile refine(const cli::MeshFile& mesh, std::uint64_t faces) {
-  cli::MeshFile fine = mesh;
+TriangleMesh read_triangles(const std::string& path) {
+  cli::MeshFile file = cli::read_mesh(path, cli::Content::kSurface);
+  std::vector<std::uint32_t> faces = cli::triangulate(file);
+  return {std::move(file.positions), std::move(faces)};
+}
+
+TriangleMesh refine(const TriangleMesh& mesh, std::uint64_t faces) {
+  TriangleMesh fine = mesh;
   while (4 * fine.face_count() <= faces + faces / 20) fine = subdivide(fine);
   while (fine.face_count() < faces - faces / 200) fine = split_longest(fine, faces);
   return fine;

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "beltrami/closest_point.h"
-#include "mesh_file.h"
 #include "refine.h"
 #include "simplify/back_ends.h"
 #include "yardstick.h"
@@ -21,7 +20,7 @@
 namespace beltrami::benchmarks {
 namespace {
 
-DiskMesh disk_of(const cli::MeshFile& file) {
+DiskMesh disk_of(const TriangleMesh& file) {
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < file.positions.size(); i += 3) {
     positions.emplace_back(file.positions[i], file.positions[i + 1], file.positions[i + 2]);
@@ -61,7 +60,7 @@ Outcome run(const std::function<CoarseDisk()>& simplify, int rounds) {
 }
 
 void benchmark(const std::string& path, std::uint64_t faces, Index target, int rounds) {
-  auto file = cli::read_mesh(path, cli::Content::kSurface);
+  auto file = read_triangles(path);
   if (faces > file.face_count()) file = refine(file, faces);
   const DiskMesh fine = disk_of(file);
   const Outcome ours =

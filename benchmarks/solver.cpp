@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh_file.h"
 #include "refine.h"
 #include "sparse/native_solver.h"
 #include "yardstick.h"
@@ -41,7 +40,7 @@ Cost run_eigen(const System& system) {
 }
 
 void benchmark(const std::string& path, std::uint64_t faces, int rounds, bool with_eigen) {
-  auto mesh = cli::read_mesh(path, cli::Content::kSurface);
+  auto mesh = read_triangles(path);
   if (faces > mesh.face_count()) mesh = refine(mesh, faces);
   const System system = interior_laplacian(mesh, Numbering::kAlongCurve);
   std::printf("\n%s, %llu faces, %lld unknowns\n",

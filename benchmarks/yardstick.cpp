@@ -99,7 +99,7 @@ void number_along_curve(std::vector<Vec3>& positions, std::vector<Triangle>& fac
 
 }  // namespace
 
-System interior_laplacian(const cli::MeshFile& file, Numbering numbering) {
+System interior_laplacian(const TriangleMesh& file, Numbering numbering) {
   std::vector<Vec3> positions;
   for (std::size_t v = 0; v < file.vertex_count(); ++v) {
     positions.emplace_back(file.positions[3 * v], file.positions[3 * v + 1],

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "mesh_file.h"
+#include "refine.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami::benchmarks {
@@ -22,7 +22,7 @@ struct System {
 /// The order of the unknowns: as in the file, which is what a user of CHOLMOD has (kAlongCurve
 /// saves it up to a tenth), or as the library has them, which the native solver counts on.
 enum class Numbering { kOfFile, kAlongCurve };
-System interior_laplacian(const cli::MeshFile& file, Numbering numbering);
+System interior_laplacian(const TriangleMesh& file, Numbering numbering);
 
 /// CPU seconds of the steps; wall seconds of all.
 struct Cost {

@@ -12,12 +12,12 @@
 namespace beltrami::cli {
 namespace {
 
-double area_of(const MeshFile& file) {
+double area_of(const TriangleView& mesh) {
   double area = 0;
-  for (std::size_t i = 0; i < file.faces.size(); i += 3) {
-    const double* a = &file.positions[3 * std::size_t{file.faces[i]}];
-    const double* b = &file.positions[3 * std::size_t{file.faces[i + 1]}];
-    const double* c = &file.positions[3 * std::size_t{file.faces[i + 2]}];
+  for (std::size_t i = 0; i < mesh.faces.size(); i += 3) {
+    const double* a = &mesh.positions[3 * std::size_t{mesh.faces[i]}];
+    const double* b = &mesh.positions[3 * std::size_t{mesh.faces[i + 1]}];
+    const double* c = &mesh.positions[3 * std::size_t{mesh.faces[i + 2]}];
     std::array<double, 3> p, q;
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = b[k] - a[k];
@@ -29,14 +29,15 @@ double area_of(const MeshFile& file) {
   return area;
 }
 
-std::uint64_t unreferenced_vertices(const MeshFile& file) {
-  std::vector<bool> used(file.vertex_count(), false);
-  std::uint64_t unused = file.vertex_count();
-  for (const std::uint32_t vertex : file.faces) {
-    if (!used[vertex]) --unused;
+/// Of a disk, by Euler's formula.
+std::uint64_t boundary_edges_of(const TriangleView& disk) {
+  std::vector<bool> used(disk.vertex_count(), false);
+  std::uint64_t vertices = 0;
+  for (const std::uint32_t vertex : disk.faces) {
+    vertices += !used[vertex];
     used[vertex] = true;
   }
-  return unused;
+  return 2 * vertices - 2 - disk.face_count();
 }
 
 void round_to_float32(std::vector<double>& uvs) {
@@ -70,12 +71,11 @@ class Check {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     file_ = read_mesh(arguments_.input, Content::kUvs);
-    report_.vertices = file_.vertex_count();
-    report_.faces = file_.face_count();
-    report_.welded_vertices = file_.welded_vertices;
-    report_.unreferenced_vertices = unreferenced_vertices(file_);
-    report_.area = area_of(file_);
     if (arguments_.float32) round_to_float32(file_.uvs);
+    surface_.emplace(file_, arguments_.weld);
+    report_.set_input(file_, *surface_);
+    report_.unreferenced_vertices = unreferenced_vertices(file_);
+    report_.area = area_of(surface_->view());
     clock.finish();
   }
 
@@ -83,20 +83,20 @@ class Check {
     throw_if_interrupted();
     bar_.show(0.2, "check");
     StageClock clock(report_, "check");
-    const beltrami_mesh mesh = view_of(file_);
-    const beltrami_buffer uvs = uv_view(file_.uvs);
+    const TriangleView triangles = surface_->view();
+    const beltrami_mesh mesh = view_of(triangles);
+    const beltrami_buffer uvs = uv_view(triangles);
     beltrami_certificate certificate{};
     certificate.struct_size = sizeof certificate;
     const beltrami_status status = beltrami_check_injective(&mesh, &uvs, &certificate);
-    require_ok(status, arguments_.input, "", certificate.error_element_kind,
-               certificate.error_element);
+    require_ok_mesh(status, arguments_.input, "", certificate.error_element_kind,
+                    certificate.error_element, file_, *surface_);
+    to_face_of(*surface_, certificate.first_bad_face);
     report_.certificate = certificate;
     report_.status = beltrami_status_name(status);
-    // Euler's formula on what has just been verified to be a disk.
-    const std::uint64_t used = *report_.vertices - *report_.unreferenced_vertices;
-    report_.boundary_edges = 2 * used - 2 - *report_.faces;
+    report_.boundary_edges = boundary_edges_of(triangles);
     report_.float32_injective =
-        arguments_.float32 ? certificate.injective != 0 : injective_in_float32(file_, file_.uvs);
+        arguments_.float32 ? certificate.injective != 0 : injective_in_float32(triangles);
     clock.finish();
   }
 
@@ -104,14 +104,16 @@ class Check {
     throw_if_interrupted();
     bar_.show(0.6, "measure");
     StageClock clock(report_, "measure");
-    const beltrami_mesh mesh = view_of(file_);
-    const beltrami_buffer uvs = uv_view(file_.uvs);
+    const TriangleView triangles = surface_->view();
+    const beltrami_mesh mesh = view_of(triangles);
+    const beltrami_buffer uvs = uv_view(triangles);
     beltrami_energy energy{};
     energy.struct_size = sizeof energy;
-    if (!arguments_.picture.empty()) face_energies_.resize(file_.face_count());
+    if (!arguments_.picture.empty()) face_energies_.resize(triangles.face_count());
     const beltrami_status status = beltrami_measure(
         &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
     require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+    to_face_of(*surface_, energy.worst_face);
     report_.energy = energy;
     clock.finish();
   }
@@ -123,7 +125,8 @@ class Check {
     if (!arguments_.picture.empty()) {
       bar_.show(0.8, "picture");
       StageClock clock(report_, "picture");
-      picture.emplace(arguments_.picture).write(encode_png(render_picture(file_, face_energies_)));
+      picture.emplace(arguments_.picture)
+          .write(encode_png(render_picture(surface_->view(), face_energies_)));
       picture->close();
       clock.finish();
     }
@@ -146,6 +149,7 @@ class Check {
   Report& report_;
   ProgressBar bar_;
   MeshFile file_;
+  std::optional<Surface> surface_;  ///< of file_
   std::vector<double> face_energies_;
 };
 
@@ -155,7 +159,7 @@ int check_command(const CheckArguments& arguments) {
   Report report;
   report.command = "check";
   report.input_path = arguments.input;
-  report.options = {{"float32", arguments.float32}};
+  report.options = {{"float32", arguments.float32}, {"weld", arguments.weld}};
   return run_guarded(report, arguments.report, {arguments.input, arguments.picture},
                      [&] { return Check(arguments, report).run(); });
 }

@@ -35,24 +35,34 @@ double seconds_so_far() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
 }
 
-beltrami_mesh view_of(const MeshFile& file) {
+beltrami_mesh view_of(const TriangleView& triangles) {
   beltrami_mesh mesh{};
   mesh.struct_size = sizeof mesh;
-  mesh.vertex_count = file.vertex_count();
-  mesh.face_count = file.face_count();
-  mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  mesh.vertex_count = triangles.vertex_count();
+  mesh.face_count = triangles.face_count();
+  mesh.positions = {triangles.positions.data(), 0, BELTRAMI_F64, 0};
+  mesh.indices = {triangles.faces.data(), 0, BELTRAMI_U32, 0};
   return mesh;
 }
 
-beltrami_buffer uv_view(const std::vector<double>& uvs) {
-  return {uvs.data(), 0, BELTRAMI_F64, 0};
+beltrami_buffer uv_view(const TriangleView& triangles) {
+  return {triangles.uvs.data(), 0, BELTRAMI_F64, 0};
 }
 
-bool injective_in_float32(const MeshFile& file, const std::vector<double>& uvs) {
-  const std::vector<float> rounded(uvs.begin(), uvs.end());
+std::uint64_t unreferenced_vertices(const MeshFile& file) {
+  std::vector<bool> used(file.vertex_count(), false);
+  std::uint64_t unused = file.vertex_count();
+  for (const std::uint32_t vertex : file.polygons.corners()) {
+    if (!used[vertex]) --unused;
+    used[vertex] = true;
+  }
+  return unused;
+}
+
+bool injective_in_float32(const TriangleView& triangles) {
+  const std::vector<float> rounded(triangles.uvs.begin(), triangles.uvs.end());
   const beltrami_buffer view = {rounded.data(), 0, BELTRAMI_F32, 0};
-  const beltrami_mesh mesh = view_of(file);
+  const beltrami_mesh mesh = view_of(triangles);
   beltrami_certificate certificate{};
   certificate.struct_size = sizeof certificate;
   const beltrami_status status = beltrami_check_injective(&mesh, &view, &certificate);
@@ -72,6 +82,31 @@ void require_ok(beltrami_status status, const std::string& path, const char* mes
     text += named ? " (counted from 0)" : " (" + name + ", counted from 0)";
   }
   throw Failure(status, text, element_kind, element);
+}
+
+void require_ok_mesh(beltrami_status status, const std::string& path, const char* message,
+                     std::int32_t element_kind, std::uint64_t element, const MeshFile& file,
+                     const Surface& surface) {
+  if (status >= 0) return;
+  std::string text = message;
+  if (element_kind == BELTRAMI_ELEMENT_FACE) {
+    const std::string triangle = "face " + std::to_string(element);
+    to_face_of(surface, element);
+    const std::size_t at = text.find(triangle);
+    if (at != std::string::npos) {
+      text.replace(at, triangle.size(), "face " + std::to_string(element));
+    }
+  }
+  if (status == BELTRAMI_E_COMPONENTS && surface.welded_vertices() == 0 && welding_connects(file)) {
+    text = "face " + std::to_string(element) +
+           " shares no vertex with the faces that it touches: weld vertices at one place with "
+           "--weld";
+  }
+  require_ok(status, path, text.c_str(), element_kind, element);
+}
+
+void to_face_of(const Surface& surface, std::uint64_t& triangle) {
+  if (triangle != BELTRAMI_NO_ELEMENT) triangle = surface.face_of(triangle);
 }
 
 bool same_file(const std::string& a, const std::string& b) {

@@ -7,15 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "mesh_file.h"
 #include "options.h"
 #include "report.h"
+#include "surface.h"
 
 namespace beltrami::cli {
 
 struct FlattenArguments {
   std::string input, output;
   std::string report, picture;  ///< paths, or "" for none
+  bool weld = false;            ///< vertices at one place count as one
   bool quiet = false;
 };
 
@@ -23,6 +24,7 @@ struct CheckArguments {
   std::string input;
   std::string report, picture;  ///< paths, or "" for none
   bool float32 = false;         ///< judge the UVs rounded to single precision
+  bool weld = false;            ///< vertices at one place and with one UV count as one
   bool quiet = false;
 };
 
@@ -30,16 +32,29 @@ struct CheckArguments {
 int flatten_command(const FlattenArguments& arguments, Options& options);
 int check_command(const CheckArguments& arguments);
 
-/// The file's arrays as the library takes them; `file` must outlive it.
-beltrami_mesh view_of(const MeshFile& file);
-beltrami_buffer uv_view(const std::vector<double>& uvs);
+/// The arrays as the library takes them; what `triangles` views must outlive it.
+beltrami_mesh view_of(const TriangleView& triangles);
+beltrami_buffer uv_view(const TriangleView& triangles);
 
-/// Whether `uvs` rounded to single precision are still injective on `file`.
-bool injective_in_float32(const MeshFile& file, const std::vector<double>& uvs);
+/// Whether the UVs rounded to single precision are still injective.
+bool injective_in_float32(const TriangleView& triangles);
+
+/// Vertices that no face of the file uses.
+std::uint64_t unreferenced_vertices(const MeshFile& file);
 
 /// Throws for a status below 0: "path: message (face 3, counted from 0)".
 void require_ok(beltrami_status status, const std::string& path, const char* message,
                 std::int32_t element_kind, std::uint64_t element);
+
+/// The same for a status about a mesh that was read: triangles become faces of the file, and where
+/// it is in pieces only because faces do not share their vertices, the message says how to weld it.
+/// `surface` is of `file`.
+void require_ok_mesh(beltrami_status status, const std::string& path, const char* message,
+                     std::int32_t element_kind, std::uint64_t element, const MeshFile& file,
+                     const Surface& surface);
+
+/// The number of a face of the file for that of a triangle; BELTRAMI_NO_ELEMENT stays.
+void to_face_of(const Surface& surface, std::uint64_t& triangle);
 
 /// Whether two paths lead to one file; "" is no path.
 bool same_file(const std::string& a, const std::string& b);

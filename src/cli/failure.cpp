@@ -90,6 +90,10 @@ int print(std::string_view text, const char* what, int exit_code) noexcept {
   return tell(kExitUnprinted, {"beltrami: standard output: ", what, " is lost: ", reason});
 }
 
+void remark(std::string_view line) noexcept {
+  write_all(kStandardError, line);
+}
+
 void install_terminate_handler() noexcept {
   std::set_terminate([] {
     remove_leftovers();

@@ -65,6 +65,10 @@ int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept;
 /// told: `what`, such as "the summary", is lost. Needs no memory.
 int print(std::string_view text, const char* what, int exit_code) noexcept;
 
+/// Writes `line`, with its line end, to stderr, where it can be: it is of no consequence. Needs no
+/// memory.
+void remark(std::string_view line) noexcept;
+
 /// Has std::terminate, which is where exceptions of destructors and of static objects end, remove
 /// the temporaries, tell one line and exit with kExitInternal.
 void install_terminate_handler() noexcept;

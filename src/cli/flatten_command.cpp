@@ -20,8 +20,9 @@ Context make_context() {
   return {raw, &beltrami_destroy};
 }
 
-void note_options(const Options& options, Report& report) {
+void note_options(const FlattenArguments& arguments, const Options& options, Report& report) {
   report.options = options.values();
+  report.options.emplace_back("weld", arguments.weld);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
 
@@ -63,11 +64,13 @@ class Flattening {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     file_ = read_mesh(arguments_.input, Content::kSurface);
-    report_.vertices = file_.vertex_count();
-    report_.faces = file_.face_count();
-    report_.welded_vertices = file_.welded_vertices;
-    const beltrami_mesh mesh = view_of(file_);
-    require(beltrami_set_mesh(context_.get(), &mesh));
+    surface_.emplace(file_, arguments_.weld);
+    report_.set_input(file_, *surface_);
+    const beltrami_mesh mesh = view_of(surface_->view());
+    const beltrami_status status = beltrami_set_mesh(context_.get(), &mesh);
+    require_ok_mesh(status, arguments_.input, beltrami_error_message(context_.get()),
+                    beltrami_error_element_kind(context_.get()),
+                    beltrami_error_element(context_.get()), file_, *surface_);
     clock.finish();
   }
 
@@ -81,7 +84,7 @@ class Flattening {
       if (limit == 0 || estimate <= limit || !options_.use_fewer_threads()) return;
       const std::int64_t threads = options_.integer(BELTRAMI_OPTION_THREADS);
       require(beltrami_set_int(context_.get(), BELTRAMI_OPTION_THREADS, threads));
-      note_options(options_, report_);
+      note_options(arguments_, options_, report_);
     }
   }
 
@@ -104,20 +107,38 @@ class Flattening {
     result.struct_size = sizeof result;
     require(beltrami_get_result(context, &result));
     report_.boundary_edges = result.boundary_edges;
-    report_.unreferenced_vertices = result.unreferenced_vertices;
+    report_.unreferenced_vertices = unreferenced_vertices(file_);
     report_.area = result.area;
     report_.coarse_faces = result.coarse_faces;
     report_.flips_before_repair = result.flips_before_repair;
+    to_face_of(*surface_, result.first_degenerate_face);
     report_.result = result;
-    require(beltrami_get_faces(context, file_.faces.data(), BELTRAMI_U32, 0));
+    if (result.delaunay_flips > 0) take_flipped_triangles();
 
     file_.single_uvs = options_.integer(BELTRAMI_OPTION_FLOAT32) != 0;
     file_.uvs.resize(2 * file_.vertex_count());
     require(beltrami_get_uvs(context, file_.uvs.data(), BELTRAMI_F64, 0));
+    surface_->spread_uvs(file_.uvs);
+    report_.not_kept = not_kept(file_, arguments_.output);
+    fetch_verdicts();
+  }
+
+  /// The triangles of the intrinsic triangulation take the place of the file's faces, and with them
+  /// goes what belonged to those.
+  void take_flipped_triangles() {
+    std::vector<std::uint32_t> corners(surface_->view().faces.size());
+    require(beltrami_get_faces(context_.get(), corners.data(), BELTRAMI_U32, 0));
+    replace_faces(file_, std::move(corners));
+    surface_->follow_file();
+  }
+
+  void fetch_verdicts() {
+    beltrami_context* context = context_.get();
     // What is written reads back to these very doubles, so this is the verdict on the file.
     beltrami_certificate certificate{};
     certificate.struct_size = sizeof certificate;
     require(beltrami_get_certificate(context, &certificate));
+    to_face_of(*surface_, certificate.first_bad_face);
     report_.certificate = certificate;
     beltrami_certificate single{};
     single.struct_size = sizeof single;
@@ -126,6 +147,7 @@ class Flattening {
     beltrami_energy energy{};
     energy.struct_size = sizeof energy;
     require(beltrami_get_energy(context, &energy));
+    to_face_of(*surface_, energy.worst_face);
     report_.energy = energy;
 
     const std::int32_t stages = beltrami_stage_count(context);
@@ -136,7 +158,7 @@ class Flattening {
       report_.stages.push_back({stage.name, stage.seconds, stage.cpu_seconds, stage.iterations});
     }
     StageClock clock(report_, "float32");
-    report_.float32_injective = injective_in_float32(file_, file_.uvs);
+    report_.float32_injective = injective_in_float32(surface_->view());
     clock.finish();
   }
 
@@ -160,14 +182,18 @@ class Flattening {
       report.emplace(arguments_.report).write(to_json(report_));
       report->close();
     }
-    const std::string summary =
-        arguments_.quiet ? std::string() : to_summary(report_, arguments_.output);
+    std::string note, summary;
+    if (!arguments_.quiet) {
+      note = to_note(report_, arguments_.output);
+      summary = to_summary(report_, arguments_.output);
+    }
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
     output.commit();
     if (picture) picture->commit();
     if (report) report->commit();
+    remark(note);
     return print(summary, "the summary",
                  report_.certificate->injective ? kExitInjective : kExitNotInjective);
   }
@@ -175,9 +201,10 @@ class Flattening {
   void write_picture(AtomicFile& file) {
     bar_.show(1, "picture");
     StageClock clock(report_, "picture");
-    std::vector<double> energies(file_.face_count());
+    const TriangleView triangles = surface_->view();
+    std::vector<double> energies(triangles.face_count());
     require(beltrami_get_face_energies(context_.get(), energies.data(), 0));
-    file.write(encode_png(render_picture(file_, energies)));
+    file.write(encode_png(render_picture(triangles, energies)));
     file.close();
     clock.finish();
   }
@@ -193,6 +220,7 @@ class Flattening {
   ProgressBar bar_;
   Context context_;
   MeshFile file_;
+  std::optional<Surface> surface_;  ///< of file_
 };
 
 }  // namespace
@@ -201,7 +229,7 @@ int flatten_command(const FlattenArguments& arguments, Options& options) {
   Report report;
   report.command = "flatten";
   report.input_path = arguments.input;
-  note_options(options, report);
+  note_options(arguments, options, report);
   return run_guarded(report, arguments.report,
                      {arguments.input, arguments.output, arguments.picture},
                      [&] { return Flattening(arguments, options, report).run(); });

@@ -17,16 +17,26 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 injective, 3 not injective, 2 unusable arguments, files or mesh, 4 out of\n"
     "memory or an internal failure, 130 cancelled, 1 files written but no summary on stdout.";
 
+constexpr const char* kKept =
+    "OUT is IN with new texture coordinates: faces stay polygons (triangles for the computation, "
+    "and\n"
+    "for the verdict), and normals, colours, groups, materials and other attributes are kept "
+    "where\n"
+    "the format can hold them; a line says what is not kept.";
+
 CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("flatten", "Flatten a disk-like triangle mesh to UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
   command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
+  command->add_flag("--weld", arguments.weld,
+                    "Flatten vertices at one place (to the last bit) as one; every vertex of the\n"
+                    "file stays in OUT");
   options.add_to(*command);
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  command->footer(kExitCodes);
+  command->footer(std::string(kKept) + "\n\n" + kExitCodes);
   return command;
 }
 
@@ -34,6 +44,8 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   CLI::App* command = app.add_subcommand("check", "Judge the UVs that a mesh file carries");
   command->add_option("MESH", arguments.input, "Mesh with UVs: .obj or .ply")->required();
   command->add_flag("--float32", arguments.float32, "Judge the UVs rounded to single precision");
+  command->add_flag("--weld", arguments.weld,
+                    "Judge vertices at one place and with one UV (to the last bit) as one");
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");

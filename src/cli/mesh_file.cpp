@@ -24,6 +24,24 @@ void normalise_text(std::string& text) {
   if (lone_returns) std::replace(text.begin(), text.end(), '\r', '\n');
 }
 
+/// The reader of the format, on the text of the file.
+MeshFile read_text(const std::string& path, Content content) {
+  const MeshFormat format = format_of(path);
+  std::string text = read_file(path);
+  if (text.empty()) throw Failure(path + ": the file is empty");
+  if (format == MeshFormat::kObj || format == MeshFormat::kOff) normalise_text(text);
+  switch (format) {
+    case MeshFormat::kObj:
+      return read_obj(text, path, content);
+    case MeshFormat::kOff:
+      return read_off(text, path, content);
+    case MeshFormat::kPly:
+      return read_ply(text, path, content);
+    default:
+      return read_stl(text, path, content);
+  }
+}
+
 }  // namespace
 
 MeshFormat format_of(const std::string& path) {
@@ -42,20 +60,9 @@ void require_writable_format(const std::string& path) {
 }
 
 MeshFile read_mesh(const std::string& path, Content content) {
-  const MeshFormat format = format_of(path);
-  std::string text = read_file(path);
-  if (text.empty()) throw Failure(path + ": the file is empty");
-  if (format == MeshFormat::kObj || format == MeshFormat::kOff) normalise_text(text);
-  switch (format) {
-    case MeshFormat::kObj:
-      return read_obj(text, path, content);
-    case MeshFormat::kOff:
-      return read_off(text, path, content);
-    case MeshFormat::kPly:
-      return read_ply(text, path, content);
-    default:
-      return read_stl(text, path, content);
-  }
+  MeshFile mesh = read_text(path, content);
+  mesh.path = path;
+  return mesh;
 }
 
 }  // namespace beltrami::cli

@@ -112,7 +112,7 @@ struct Edges {
   std::vector<Edge> inner, boundary;
 };
 
-Edges find_edges(const MeshFile& mesh) {
+Edges find_edges(const TriangleView& mesh) {
   std::vector<Edge> all;
   all.reserve(mesh.faces.size());
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
@@ -130,12 +130,12 @@ Edges find_edges(const MeshFile& mesh) {
   return edges;
 }
 
-Vector3 position_of(const MeshFile& mesh, std::uint32_t vertex) {
+Vector3 position_of(const TriangleView& mesh, std::uint32_t vertex) {
   const double* p = &mesh.positions[3 * std::size_t{vertex}];
   return {p[0], p[1], p[2]};
 }
 
-Fit fit_uvs(const MeshFile& mesh) {
+Fit fit_uvs(const TriangleView& mesh) {
   Fit fit;
   for (const std::uint32_t vertex : mesh.faces) {
     fit.include(mesh.uvs[2 * std::size_t{vertex}], mesh.uvs[2 * std::size_t{vertex} + 1]);
@@ -175,7 +175,8 @@ void draw_legend(Canvas& canvas, const EnergyScale& scale) {
             title);
 }
 
-Canvas draw_layout(const MeshFile& mesh, const std::vector<double>& energies, const Edges& edges) {
+Canvas draw_layout(const TriangleView& mesh, const std::vector<double>& energies,
+                   const Edges& edges) {
   Canvas canvas(kPanel * kSamples, kPanel * kSamples);
   Fit fit = fit_uvs(mesh);
   fit.place(canvas.width(), canvas.height() - kLegend * kSamples);
@@ -208,7 +209,7 @@ Canvas draw_layout(const MeshFile& mesh, const std::vector<double>& energies, co
 }
 
 /// Normals of the vertices in the frame of `view`, weighted by area.
-std::vector<std::array<float, 3>> smooth_normals(const MeshFile& mesh, const View& view) {
+std::vector<std::array<float, 3>> smooth_normals(const TriangleView& mesh, const View& view) {
   std::vector<std::array<float, 3>> normals(mesh.vertex_count(), {0, 0, 0});
   for (std::size_t i = 0; i < mesh.faces.size(); i += 3) {
     const Vector3 a = position_of(mesh, mesh.faces[i]);
@@ -236,7 +237,7 @@ Color lit(const Color& base, const Vector3& seen_normal) {
   return {strength * base[0], strength * base[1], strength * base[2]};
 }
 
-Canvas draw_model(const MeshFile& mesh, const Edges& edges) {
+Canvas draw_model(const TriangleView& mesh, const Edges& edges) {
   std::vector<Vector3> boundary;
   for (const Edge& edge : edges.boundary) boundary.push_back(position_of(mesh, edge.first));
   const View view = choose_view(mesh, boundary);
@@ -297,7 +298,7 @@ void resolve(const Canvas& canvas, int left, Image& image) {
 
 }  // namespace
 
-Image render_picture(const MeshFile& mesh, const std::vector<double>& face_energies) {
+Image render_picture(const TriangleView& mesh, const std::vector<double>& face_energies) {
   Image image;
   image.width = 2 * kPanel;
   image.height = kPanel;

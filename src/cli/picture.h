@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_file.h"
+#include "surface.h"
 
 namespace beltrami::cli {
 
@@ -16,7 +16,7 @@ struct Image {
 
 /// Draws `mesh` (with finite UVs) and `face_energies`, its symmetric Dirichlet energies per face;
 /// faces of infinite energy are red.
-Image render_picture(const MeshFile& mesh, const std::vector<double>& face_energies);
+Image render_picture(const TriangleView& mesh, const std::vector<double>& face_energies);
 
 /// The bytes of a PNG file.
 std::string encode_png(const Image& image);

@@ -1,128 +1,29 @@
-// Stanford PLY: text, and binary of either byte order. Elements and properties that are of no use
-// here are passed over, whatever their order and types.
+// Stanford PLY: text, and binary of either byte order. Faces are polygons or triangle strips. What
+// is of no use to a run is kept for the output, whatever its order and types.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
-#include <limits>
-#include <optional>
 
 #include "failure.h"
 #include "mesh_file.h"
+#include "ply_header.h"
 #include "text_cursor.h"
 
 namespace beltrami::cli {
 namespace {
 
-enum class Type { kI8, kU8, kI16, kU16, kI32, kU32, kF32, kF64 };
-enum class Encoding { kText, kLittle, kBig };
-
-struct Property {
-  std::string name;
-  Type type = Type::kF32;
-  std::optional<Type> count_type;  ///< of a list
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-struct Header {
-  Encoding encoding = Encoding::kText;
-  std::vector<Element> elements;
-};
-
-std::size_t size_of(Type type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-Type parse_type(const TextCursor& cursor, std::string_view word) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"char", "int8"},
-                                                                      {"uchar", "uint8"},
-                                                                      {"short", "int16"},
-                                                                      {"ushort", "uint16"},
-                                                                      {"int", "int32"},
-                                                                      {"uint", "uint32"},
-                                                                      {"float", "float32"},
-                                                                      {"double", "float64"}}};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<Type>(i);
-  }
-  cursor.fail("unknown property type '" + std::string(word) + "'");
-}
-
-std::string_view next_word(TextCursor& cursor) {
-  cursor.skip_blanks();
-  return cursor.word();
-}
-
-Property parse_property(TextCursor& cursor) {
-  Property property;
-  std::string_view word = next_word(cursor);
-  if (word == "list") {
-    property.count_type = parse_type(cursor, next_word(cursor));
-    word = next_word(cursor);
-  }
-  property.type = parse_type(cursor, word);
-  property.name = next_word(cursor);
-  return property;
-}
-
-Encoding parse_format(TextCursor& cursor) {
-  const std::string_view word = next_word(cursor);
-  if (word == "ascii") return Encoding::kText;
-  if (word == "binary_little_endian") return Encoding::kLittle;
-  if (word == "binary_big_endian") return Encoding::kBig;
-  cursor.fail("unknown PLY format '" + std::string(word) + "'");
-}
-
-/// Leaves the cursor on the first byte after the line of end_header.
-Header parse_header(TextCursor& cursor) {
-  if (cursor.word() != "ply") cursor.fail("this is not a PLY file: it does not begin with 'ply'");
-  Header header;
-  bool has_format = false;
-  for (;;) {
-    cursor.skip_line();
-    if (cursor.at_end()) cursor.fail("the header has no end_header");
-    const std::string_view keyword = next_word(cursor);
-    if (keyword == "end_header") break;
-    if (keyword == "format") {
-      header.encoding = parse_format(cursor);
-      has_format = true;
-    } else if (keyword == "element") {
-      Element element;
-      element.name = next_word(cursor);
-      const std::int64_t count = cursor.integer("an element count");
-      if (count < 0 || count > std::numeric_limits<std::int32_t>::max()) {
-        cursor.fail("an element count is out of range: " + std::to_string(count));
-      }
-      element.count = static_cast<std::uint64_t>(count);
-      header.elements.push_back(std::move(element));
-    } else if (keyword == "property") {
-      if (header.elements.empty()) cursor.fail("a property before the first element");
-      header.elements.back().properties.push_back(parse_property(cursor));
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      cursor.fail("unknown keyword '" + std::string(keyword.substr(0, 40)) + "' in the header");
-    }
-  }
-  if (!has_format) cursor.fail("the header names no format");
-  cursor.skip_line();
-  return header;
-}
-
-/// The values of the body one after another. Every PLY type fits a double without loss.
+/// The values of the body one after another.
 class Values {
  public:
-  Values(TextCursor& cursor, Encoding encoding, const char* end)
+  Values(TextCursor& cursor, PlyEncoding encoding, const char* end)
       : cursor_(cursor), encoding_(encoding), at_(cursor.position()), end_(end) {}
 
   /// False at the end of the file.
-  bool next(Type type, double& value) {
-    if (encoding_ == Encoding::kText) {
+  bool next(Scalar type, double& value) {
+    if (encoding_ == PlyEncoding::kText) {
       cursor_.skip_to_word();
       if (cursor_.at_end()) return false;
       value = cursor_.number("a value");
@@ -133,7 +34,7 @@ class Values {
     std::array<char, 8> bytes{};
     std::memcpy(bytes.data(), at_, size);
     at_ += size;
-    const bool file_is_little = encoding_ == Encoding::kLittle;
+    const bool file_is_little = encoding_ == PlyEncoding::kLittle;
     if (file_is_little != (std::endian::native == std::endian::little)) {
       std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     }
@@ -141,223 +42,295 @@ class Values {
     return true;
   }
 
-  /// Passes over `count` values; false at the end of the file.
-  bool skip(Type type, std::uint64_t count) {
-    if (encoding_ != Encoding::kText) {
-      if (static_cast<std::uint64_t>(end_ - at_) / size_of(type) < count) return false;
-      at_ += count * size_of(type);
-      return true;
-    }
-    double ignored = 0;
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (!next(type, ignored)) return false;
-    }
-    return true;
-  }
-
   /// For messages: the line in text, nothing in binary.
   std::string place(const std::string& path) const {
-    return encoding_ == Encoding::kText ? cursor_.place() : path + ": ";
+    return encoding_ == PlyEncoding::kText ? cursor_.place() : path + ": ";
   }
 
  private:
-  template <class T>
-  static double decode_as(const char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-  }
-
-  static double decode(Type type, const char* bytes) {
-    switch (type) {
-      case Type::kI8:
-        return decode_as<std::int8_t>(bytes);
-      case Type::kU8:
-        return decode_as<std::uint8_t>(bytes);
-      case Type::kI16:
-        return decode_as<std::int16_t>(bytes);
-      case Type::kU16:
-        return decode_as<std::uint16_t>(bytes);
-      case Type::kI32:
-        return decode_as<std::int32_t>(bytes);
-      case Type::kU32:
-        return decode_as<std::uint32_t>(bytes);
-      case Type::kF32:
-        return decode_as<float>(bytes);
-      default:
-        return decode_as<double>(bytes);
-    }
-  }
-
   TextCursor& cursor_;
-  Encoding encoding_;
+  PlyEncoding encoding_;
   const char* at_;
   const char* end_;
 };
 
+std::string short_number(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + 32, value).ptr};
+}
+
+/// The names that UVs of vertices have: the first pair that is there counts.
+constexpr std::array<std::array<std::string_view, 2>, 3> kUvNames = {
+    {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}};
+
 class PlyReader {
  public:
   PlyReader(std::string_view text, const std::string& path, Content content)
-      : text_(text), path_(path), content_(content), cursor_(text, path) {}
+      : path_(path),
+        content_(content),
+        cursor_(text, path),
+        header_(read_ply_header(cursor_)),
+        values_(cursor_, header_.encoding, text.data() + text.size()) {}
 
   MeshFile read() {
-    const Header header = parse_header(cursor_);
-    vertices_ = count_of(header, "vertex");
-    if (vertices_ == 0) throw Failure(path_ + ": no vertices");
-    if (count_of(header, "face") == 0) throw Failure(path_ + ": no faces");
-    Values values(cursor_, header.encoding, text_.data() + text_.size());
-    for (const Element& element : header.elements) read_element(element, values);
+    if (count_of("vertex") == 0) throw Failure(path_ + ": no vertices");
+    if (count_of("face") + count_of("tristrips") == 0) throw Failure(path_ + ": no faces");
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "face") {
+        if (element.count > 0) read_faces(element);
+      } else if (element.name == "tristrips") {
+        if (element.count > 0) read_strips(element);
+      } else {
+        read_table(element);
+      }
+    }
+    if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
+    require_indices();
+    mesh_.comments = std::move(header_.comments);
     return std::move(mesh_);
   }
 
  private:
-  static std::uint64_t count_of(const Header& header, std::string_view name) {
-    for (const Element& element : header.elements) {
-      if (element.name == name) return element.count;
-    }
-    return 0;
+  /// Where the values of a property go: nowhere, to a place in the row, or to a column.
+  struct Target {
+    const PlyProperty* property = nullptr;
+    int slot = -1, column = -1;
+  };
+
+  std::uint64_t count_of(std::string_view name) const {
+    const PlyElement* element = header_.find(name);
+    return element ? element->count : 0;
   }
 
-  void read_element(const Element& element, Values& values) {
-    // A wrong count must not make us reserve what is not there: an item has a byte at least.
-    const std::uint64_t plausible = std::min<std::uint64_t>(element.count, text_.size());
-    if (element.properties.empty()) return;
-    if (element.name == "vertex") {
-      mesh_.positions.reserve(3 * plausible);
-      read_vertices(element, values);
-    } else if (element.name == "face") {
-      mesh_.faces.reserve(3 * plausible);
-      read_faces(element, values);
-    } else {
-      for (std::uint64_t i = 0; i < element.count; ++i) {
-        for (const Property& property : element.properties) skip(property, element, i, values);
-      }
-    }
+  /// A column for the property, where columns are kept.
+  Target keep(const PlyProperty& property, std::vector<Column>& columns) const {
+    Target target{&property, -1, -1};
+    if (content_ != Content::kSurface) return target;
+    target.column = static_cast<int>(columns.size());
+    columns.emplace_back(property.name, property.type, property.count_type.has_value());
+    return target;
   }
 
-  /// Which of x y z u v each property of a vertex is; -1 for others.
-  std::vector<int> vertex_slots(const Element& element) const {
-    constexpr std::array<std::array<std::string_view, 2>, 3> kUvNames = {
-        {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}};
-    const auto has = [&](std::string_view name) {
-      return std::any_of(element.properties.begin(), element.properties.end(),
-                         [&](const Property& p) { return p.name == name && !p.count_type; });
-    };
+  std::vector<Target> vertex_targets(const PlyElement& element) {
     std::array<std::string_view, 5> names = {"x", "y", "z", "", ""};
-    if (!has("x") || !has("y") || !has("z")) {
+    std::vector<std::string_view> replaced = {"s", "t"};
+    if (!element.find("x") || !element.find("y") || !element.find("z")) {
       throw Failure(path_ + ": vertices without the properties x, y and z");
     }
     for (const auto& pair : kUvNames) {
-      if (names[3].empty() && has(pair[0]) && has(pair[1])) {
-        names[3] = pair[0];
-        names[4] = pair[1];
-      }
+      if (!element.find(pair[0]) || !element.find(pair[1])) continue;
+      replaced.insert(replaced.end(), pair.begin(), pair.end());
+      if (names[3].empty()) std::copy(pair.begin(), pair.end(), names.begin() + 3);
     }
     if (content_ == Content::kUvs && names[3].empty()) {
       throw Failure(path_ +
                     ": no texture coordinates: vertices need the properties s and t, u and v, or "
                     "texture_u and texture_v");
     }
-    std::vector<int> slots;
-    for (const Property& property : element.properties) {
+    std::vector<Target> targets;
+    for (const PlyProperty& property : element.properties) {
       const auto found = std::find(names.begin(), names.end(), property.name);
-      slots.push_back(found == names.end() ? -1 : static_cast<int>(found - names.begin()));
+      const bool is_replaced =
+          std::find(replaced.begin(), replaced.end(), property.name) != replaced.end();
+      if (found != names.end() && !property.count_type) {
+        targets.push_back({&property, static_cast<int>(found - names.begin()), -1});
+      } else if (is_replaced) {
+        targets.push_back({&property, -1, -1});
+      } else {
+        targets.push_back(keep(property, mesh_.vertex_columns));
+      }
     }
-    return slots;
+    return targets;
   }
 
-  void read_vertices(const Element& element, Values& values) {
-    const std::vector<int> slots = vertex_slots(element);
-    const std::size_t properties = element.properties.size();
-    std::array<double, 5> vertex{};
+  void read_vertices(const PlyElement& element) {
+    const std::vector<Target> targets = vertex_targets(element);
+    std::array<double, 5> row{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (std::size_t k = 0; k < properties; ++k) {
-        const Property& property = element.properties[k];
-        if (property.count_type || slots[k] < 0) {
-          skip(property, element, i, values);
-        } else if (!values.next(property.type, vertex[static_cast<std::size_t>(slots[k])])) {
-          fail_truncated(element, i);
-        }
+      for (const Target& target : targets) {
+        read_value(target, element, i, mesh_.vertex_columns, row.data());
       }
-      mesh_.positions.insert(mesh_.positions.end(), vertex.begin(), vertex.begin() + 3);
+      mesh_.positions.insert(mesh_.positions.end(), row.begin(), row.begin() + 3);
       if (content_ == Content::kUvs) {
-        mesh_.uvs.insert(mesh_.uvs.end(), vertex.begin() + 3, vertex.end());
+        mesh_.uvs.insert(mesh_.uvs.end(), row.begin() + 3, row.end());
       }
     }
   }
 
-  void read_faces(const Element& element, Values& values) {
-    const auto corners =
-        std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
-          return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
-        });
-    if (corners == element.properties.end()) {
-      throw Failure(path_ + ": faces without the list property vertex_indices");
+  /// The corner lists of faces or strips.
+  const PlyProperty& corner_property(const PlyElement& element) const {
+    const PlyProperty* corners = element.find_list("vertex_indices");
+    if (!corners) corners = element.find_list("vertex_index");
+    if (!corners) throw Failure(path_ + ": faces without the list property vertex_indices");
+    return *corners;
+  }
+
+  void read_faces(const PlyElement& element) {
+    const PlyProperty& corners = corner_property(element);
+    // Strips become faces without properties: then there is no column for all of the faces.
+    const bool with_columns = count_of("tristrips") == 0;
+    std::vector<Target> targets;
+    for (const PlyProperty& property : element.properties) {
+      // Texture coordinates of corners are replaced by those of vertices.
+      const bool skipped = property.name == "vertex_indices" || property.name == "vertex_index" ||
+                           property.name == "texcoord";
+      if (skipped || !with_columns) {
+        targets.push_back({&property, -1, -1});
+      } else {
+        targets.push_back(keep(property, mesh_.face_columns));
+      }
+    }
+    if (!with_columns && element.properties.size() > 1) {
+      mesh_.not_kept.emplace_back("face properties beside triangle strips");
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (const Property& property : element.properties) {
-        if (&property == &*corners) {
-          read_face(property, element, i, values);
+      for (const Target& target : targets) {
+        if (target.property == &corners) {
+          read_face(corners, element, i);
         } else {
-          skip(property, element, i, values);
+          read_value(target, element, i, mesh_.face_columns, nullptr);
         }
       }
     }
   }
 
-  void read_face(const Property& property, const Element& element, std::uint64_t face,
-                 Values& values) {
-    double count = 0;
-    if (!values.next(*property.count_type, count)) fail_truncated(element, face);
-    if (count != 3) {
-      throw Failure(values.place(path_) + "face " + std::to_string(face) +
-                        " (counted from 0) has " + short_number(count) +
-                        " corners: triangulate the mesh first",
-                    BELTRAMI_ELEMENT_FACE, face);
+  void read_face(const PlyProperty& property, const PlyElement& element, std::uint64_t item) {
+    const std::uint64_t count = read_list_size(property, element, item);
+    if (count < 3) {
+      throw Failure(values_.place(path_) + face_name() + " has " + std::to_string(count) +
+                        " corners: a face needs 3 or more",
+                    BELTRAMI_ELEMENT_FACE, mesh_.polygons.size());
     }
-    for (int k = 0; k < 3; ++k) {
-      double index = 0;
-      if (!values.next(property.type, index)) fail_truncated(element, face);
-      // Negated so that NaN fails too.
-      if (!(index >= 0 && index < static_cast<double>(vertices_))) {
-        throw Failure(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                      values.place(path_) + "face " + std::to_string(face) +
-                          " (counted from 0) names vertex " + short_number(index) +
-                          ", but the file has " + std::to_string(vertices_),
-                      BELTRAMI_ELEMENT_FACE, face);
+    for (std::uint64_t k = 0; k < count; ++k) {
+      mesh_.polygons.add_corner(to_vertex(next(property.type, element, item)));
+    }
+    mesh_.polygons.end_polygon();
+  }
+
+  /// Strips have a triangle for every three vertices in a row, every other one turned round; -1
+  /// begins a new strip in the same list, and a vertex that is repeated makes a bridge, not a face.
+  void read_strips(const PlyElement& element) {
+    const PlyProperty& corners = corner_property(element);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const PlyProperty& property : element.properties) {
+        if (&property == &corners) {
+          read_strip(property, element, i);
+        } else {
+          read_value({&property, -1, -1}, element, i, mesh_.face_columns, nullptr);  // passed over
+        }
       }
-      mesh_.faces.push_back(static_cast<std::uint32_t>(index));
     }
   }
 
-  void skip(const Property& property, const Element& element, std::uint64_t item, Values& values) {
-    double count = 1;
-    if (property.count_type && !values.next(*property.count_type, count)) {
-      fail_truncated(element, item);
-    }
-    if (!(count >= 0 && count <= 4294967295.0)) {
-      throw Failure(values.place(path_) + "a list has " + short_number(count) + " items");
-    }
-    if (!values.skip(property.type, static_cast<std::uint64_t>(count))) {
-      fail_truncated(element, item);
+  void read_strip(const PlyProperty& property, const PlyElement& element, std::uint64_t item) {
+    const std::uint64_t count = read_list_size(property, element, item);
+    std::array<std::uint32_t, 3> last{};
+    std::uint64_t length = 0;  // of the strip so far
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const double index = next(property.type, element, item);
+      if (index == -1) {
+        length = 0;
+        continue;
+      }
+      last = {last[1], last[2], to_vertex(index)};
+      if (++length < 3 || last[0] == last[1] || last[1] == last[2] || last[2] == last[0]) continue;
+      const bool turned = length % 2 == 0;
+      mesh_.polygons.add_corner(last[turned ? 1 : 0]);
+      mesh_.polygons.add_corner(last[turned ? 0 : 1]);
+      mesh_.polygons.add_corner(last[2]);
+      mesh_.polygons.end_polygon();
     }
   }
 
-  [[noreturn]] void fail_truncated(const Element& element, std::uint64_t item) const {
-    throw Failure(path_ + ": the file is truncated: it ends in " + element.name + " " +
-                  std::to_string(item) + " (counted from 0) of " + std::to_string(element.count));
+  void read_table(const PlyElement& element) {
+    Table table{element.name, element.count, {}};
+    std::vector<Target> targets;
+    for (const PlyProperty& property : element.properties) {
+      targets.push_back(keep(property, table.columns));
+    }
+    if (targets.empty()) return;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const Target& target : targets) read_value(target, element, i, table.columns, nullptr);
+    }
+    if (!table.columns.empty()) mesh_.tables.push_back(std::move(table));
   }
 
-  static std::string short_number(double value) {
-    std::array<char, 32> digits;
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + 32, value).ptr};
+  /// Reads a value or a list to where it goes.
+  void read_value(const Target& target, const PlyElement& element, std::uint64_t item,
+                  std::vector<Column>& columns, double* row) {
+    const PlyProperty& property = *target.property;
+    Column* column =
+        target.column < 0 ? nullptr : &columns[static_cast<std::size_t>(target.column)];
+    const std::uint64_t count =
+        property.count_type ? read_list_size(property, element, item) : std::uint64_t{1};
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const double value = next(property.type, element, item);
+      if (target.slot >= 0) row[target.slot] = value;
+      if (column) column->append(value);
+    }
+    if (column && property.count_type) column->end_list();
   }
 
-  std::string_view text_;
+  std::uint64_t read_list_size(const PlyProperty& property, const PlyElement& element,
+                               std::uint64_t item) {
+    const double count = next(*property.count_type, element, item);
+    // Negated so that NaN fails too.
+    if (!(count >= 0 && count <= 4294967295.0 && count == std::floor(count))) {
+      throw Failure(values_.place(path_) + "a list of " + element.name + " " +
+                    std::to_string(item) + " (counted from 0) has " + short_number(count) +
+                    " items");
+    }
+    return static_cast<std::uint64_t>(count);
+  }
+
+  double next(Scalar type, const PlyElement& element, std::uint64_t item) {
+    double value = 0;
+    if (!values_.next(type, value)) {
+      throw Failure(path_ + ": the file is truncated: it ends in " + element.name + " " +
+                    std::to_string(item) + " (counted from 0) of " + std::to_string(element.count));
+    }
+    return value;
+  }
+
+  std::string face_name() const {
+    return "face " + std::to_string(mesh_.polygons.size()) + " (counted from 0)";
+  }
+
+  /// What cannot be a vertex fails here, and what is not one too where the vertices came first, as
+  /// they mostly do: then the line is known.
+  std::uint32_t to_vertex(double index) const {
+    const double limit = mesh_.positions.empty() ? static_cast<double>(kMaxIndex)
+                                                 : static_cast<double>(mesh_.vertex_count());
+    // Negated so that NaN fails too.
+    if (!(index >= 0 && index < limit && index == std::floor(index))) {
+      fail_index(values_.place(path_), short_number(index), mesh_.polygons.size());
+    }
+    return static_cast<std::uint32_t>(index);
+  }
+
+  void require_indices() const {
+    const std::vector<std::uint32_t>& corners = mesh_.polygons.corners();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < mesh_.vertex_count()) continue;
+      fail_index(path_ + ": ", std::to_string(corners[i]), mesh_.polygons.of_corner(i));
+    }
+  }
+
+  [[noreturn]] void fail_index(const std::string& place, const std::string& index,
+                               std::uint64_t face) const {
+    throw Failure(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                  place + "face " + std::to_string(face) + " (counted from 0) names vertex " +
+                      index + ", but the file has " + std::to_string(count_of("vertex")),
+                  BELTRAMI_ELEMENT_FACE, face);
+  }
+
   const std::string& path_;
   Content content_;
   TextCursor cursor_;
-  std::uint64_t vertices_ = 0;
+  PlyHeader header_;
+  Values values_;
   MeshFile mesh_;
 };
 

@@ -1,65 +1,37 @@
 // STL, text and binary. STL repeats the coordinates of every corner: corners with the same
-// coordinates to the last bit become one vertex, numbered by first appearance. (0 and -0 are the
-// same coordinate: exporters give both for one point.)
+// coordinates become one vertex, numbered by first appearance. Names of solids and attributes of
+// binary facets are kept; normals of facets are not, being those of their corners.
 #include <bit>
-#include <cstring>
-#include <limits>
 
 #include "failure.h"
 #include "mesh_file.h"
+#include "point_numbers.h"
 #include "text_cursor.h"
 
 namespace beltrami::cli {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
+constexpr std::uint64_t kHeaderBytes = 84, kFacetBytes = 50;
 
-/// Numbers corners by their coordinates: a hash table with open addressing over the vertices.
-class Welder {
+class Corners {
  public:
-  explicit Welder(MeshFile& mesh) : mesh_(mesh), slots_(1024, kFree) {}
+  Corners(MeshFile& mesh, const std::string& path) : mesh_(mesh), path_(path) {}
 
-  void add_corner(double x, double y, double z) {
-    if (2 * (mesh_.vertex_count() + 1) > slots_.size()) grow();
-    const double corner[3] = {x + 0.0, y + 0.0, z + 0.0};  // -0 + 0 is 0
-    std::size_t slot = hash(corner) & (slots_.size() - 1);
-    while (slots_[slot] != kFree) {
-      const std::uint32_t vertex = slots_[slot];
-      if (std::memcmp(&mesh_.positions[3 * std::size_t{vertex}], corner, sizeof corner) == 0) {
-        mesh_.faces.push_back(vertex);
-        ++mesh_.welded_vertices;
-        return;
-      }
-      slot = (slot + 1) & (slots_.size() - 1);
+  void add(double x, double y, double z) {
+    if (points_.size() >= static_cast<std::uint32_t>(kMaxIndex)) {
+      throw Failure(path_ + ": more vertices than can be numbered");
     }
-    slots_[slot] = static_cast<std::uint32_t>(mesh_.vertex_count());
-    mesh_.faces.push_back(slots_[slot]);
-    mesh_.positions.insert(mesh_.positions.end(), corner, corner + 3);
+    const std::uint32_t before = points_.size();
+    mesh_.polygons.add_corner(points_.number({x, y, z}));
+    mesh_.welded_corners += points_.size() == before;
   }
+
+  void finish() { mesh_.positions = points_.take_coordinates(); }
 
  private:
-  static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-
-  static std::size_t hash(const double* corner) {
-    std::uint64_t state = 0;
-    for (int k = 0; k < 3; ++k) {
-      state = (state ^ std::bit_cast<std::uint64_t>(corner[k])) * 0x9E3779B97F4A7C15u;
-      state ^= state >> 29;
-    }
-    return static_cast<std::size_t>(state);
-  }
-
-  void grow() {
-    slots_.assign(2 * slots_.size(), kFree);
-    for (std::size_t i = 0; i < mesh_.vertex_count(); ++i) {
-      std::size_t slot = hash(&mesh_.positions[3 * i]) & (slots_.size() - 1);
-      while (slots_[slot] != kFree) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = static_cast<std::uint32_t>(i);
-    }
-  }
-
   MeshFile& mesh_;
-  std::vector<std::uint32_t> slots_;
+  const std::string& path_;
+  PointNumbers<3> points_;
 };
 
 std::uint32_t little_u32(const char* bytes) {
@@ -71,57 +43,91 @@ std::uint32_t little_u32(const char* bytes) {
 /// The size is the only certain mark: many binary files begin with "solid".
 bool is_binary(std::string_view text) {
   return text.size() >= kHeaderBytes &&
-         text.size() == kHeaderBytes + kFacetBytes * std::size_t{little_u32(text.data() + 80)};
+         text.size() == kHeaderBytes + kFacetBytes * std::uint64_t{little_u32(text.data() + 80)};
 }
 
-MeshFile read_binary(std::string_view text) {
+MeshFile read_binary(std::string_view text, const std::string& path) {
   MeshFile mesh;
-  Welder welder(mesh);
-  const std::size_t faces = (text.size() - kHeaderBytes) / kFacetBytes;
-  mesh.faces.reserve(3 * faces);
-  for (std::size_t i = 0; i < faces; ++i) {
+  Corners corners(mesh, path);
+  const std::uint64_t faces = (text.size() - kHeaderBytes) / kFacetBytes;
+  mesh.polygons.reserve(faces);
+  Column attributes("attributes", Scalar::kU16);
+  bool any = false;
+  for (std::uint64_t i = 0; i < faces; ++i) {
     const char* facet = text.data() + kHeaderBytes + kFacetBytes * i + 12;  // after the normal
     for (int k = 0; k < 3; ++k, facet += 12) {
-      welder.add_corner(std::bit_cast<float>(little_u32(facet)),
-                        std::bit_cast<float>(little_u32(facet + 4)),
-                        std::bit_cast<float>(little_u32(facet + 8)));
+      corners.add(std::bit_cast<float>(little_u32(facet)),
+                  std::bit_cast<float>(little_u32(facet + 4)),
+                  std::bit_cast<float>(little_u32(facet + 8)));
     }
+    mesh.polygons.end_polygon();
+    const unsigned attribute =
+        static_cast<unsigned char>(facet[0]) | static_cast<unsigned char>(facet[1]) << 8;
+    attributes.append(attribute);
+    any |= attribute != 0;
   }
+  corners.finish();
+  if (any) mesh.face_columns.push_back(std::move(attributes));
   return mesh;
 }
 
-MeshFile read_text(std::string_view text, const std::string& path) {
-  MeshFile mesh;
-  Welder welder(mesh);
-  TextCursor cursor(text, path);
-  int corners = 0;
-  bool in_solid = false;
-  for (cursor.skip_to_word(); !cursor.at_end(); cursor.skip_to_word()) {
-    const std::string_view keyword = cursor.word();
+class TextReader {
+ public:
+  TextReader(std::string_view text, const std::string& path)
+      : cursor_(text, path), corners_(mesh_, path) {}
+
+  MeshFile read() {
+    for (cursor_.skip_to_word(); !cursor_.at_end(); cursor_.skip_to_word()) read_statement();
+    if (in_solid_) cursor_.fail("the file is truncated: it has no endsolid");
+    corners_.finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_statement() {
+    const std::string_view keyword = cursor_.word();
     if (keyword == "vertex") {
-      const double x = cursor.number("a coordinate"), y = cursor.number("a coordinate");
-      welder.add_corner(x, y, cursor.number("a coordinate"));
-      ++corners;
+      const double x = cursor_.number("a coordinate"), y = cursor_.number("a coordinate");
+      corners_.add(x, y, cursor_.number("a coordinate"));
     } else if (keyword == "endloop" || keyword == "facet" || keyword == "endsolid") {
-      const std::uint64_t face = (mesh.faces.size() - static_cast<std::size_t>(corners)) / 3;
-      if (corners != (keyword == "endloop" ? 3 : 0)) {
-        cursor.fail("face " + std::to_string(face) + " (counted from 0) has " +
-                        std::to_string(corners) + " corners instead of 3",
-                    BELTRAMI_ELEMENT_FACE, face);
-      }
-      corners = 0;
-      if (keyword != "endloop") cursor.skip_line();  // a normal or a name
-      if (keyword == "endsolid") in_solid = false;
+      end_face(keyword == "endloop" ? 3 : 0);
+      if (keyword != "endloop") cursor_.skip_line();  // a normal or a name
+      if (keyword == "endsolid") in_solid_ = false;
     } else if (keyword == "solid") {
-      in_solid = true;
-      cursor.skip_line();
+      in_solid_ = true;
+      read_name();
     } else if (keyword != "outer" && keyword != "loop" && keyword != "endfacet") {
-      cursor.fail("unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
+      cursor_.fail("unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
     }
   }
-  if (in_solid) cursor.fail("the file is truncated: it has no endsolid");
-  return mesh;
-}
+
+  void end_face(std::uint64_t expected) {
+    const std::uint64_t face = mesh_.polygons.size(), found = mesh_.polygons.open_corners();
+    if (found != expected) {
+      cursor_.fail("face " + std::to_string(face) + " (counted from 0) has " +
+                       std::to_string(found) + " corners instead of 3",
+                   BELTRAMI_ELEMENT_FACE, face);
+    }
+    if (expected > 0) mesh_.polygons.end_polygon();
+  }
+
+  /// The name of a solid is an object of the mesh.
+  void read_name() {
+    cursor_.skip_blanks();
+    const char* begin = cursor_.position();
+    const bool named = !cursor_.at_line_end();
+    cursor_.skip_line();
+    if (!named) return;
+    std::string line = "o " + std::string(begin, cursor_.position());
+    line.erase(line.find_last_not_of(" \t\r\n\\") + 1);
+    mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+  }
+
+  TextCursor cursor_;
+  MeshFile mesh_;
+  Corners corners_;
+  bool in_solid_ = false;
+};
 
 }  // namespace
 
@@ -131,9 +137,9 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
   }
   MeshFile mesh;
   if (is_binary(text)) {
-    mesh = read_binary(text);
+    mesh = read_binary(text, path);
   } else if (text.substr(0, 5) == "solid") {
-    mesh = read_text(text, path);
+    mesh = TextReader(text, path).read();
   } else {
     throw Failure(path + (text.size() < kHeaderBytes
                               ? ": this is not an STL file, or it is truncated"
@@ -141,7 +147,7 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
                                     std::to_string(little_u32(text.data() + 80)) +
                                     " faces do not fit its size"));
   }
-  if (mesh.faces.empty()) throw Failure(path + ": no faces");
+  if (mesh.polygons.empty()) throw Failure(path + ": no faces");
   return mesh;
 }
 

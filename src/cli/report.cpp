@@ -54,6 +54,7 @@ Json input_json(const Report& report) {
       {"path", report.input_path},
       {"vertices", optional(report.vertices)},
       {"faces", optional(report.faces)},
+      {"triangles", optional(report.triangles)},
       {"boundary_edges", optional(report.boundary_edges)},
       {"area", report.area ? number(*report.area) : Json(nullptr)},
       {"unreferenced_vertices", optional(report.unreferenced_vertices)},
@@ -166,6 +167,13 @@ void append_memory(const Report& report, std::string& text) {
 
 }  // namespace
 
+void Report::set_input(const MeshFile& file, const Surface& surface) {
+  vertices = file.vertex_count();
+  faces = file.polygons.size();
+  triangles = surface.view().face_count();
+  welded_vertices = file.welded_corners + surface.welded_vertices();
+}
+
 void Report::set_failure(const Failure& failure) {
   status = failure.status;
   message = failure.what();
@@ -189,6 +197,7 @@ std::string to_json(const Report& report) {
       {"coarse_energy", report.result ? number(report.result->coarse_energy) : Json(nullptr)},
       {"flips_before_repair", optional(report.flips_before_repair)},
       {"repair", repair_json(report)},
+      {"not_kept", report.not_kept},
       {"stages", stages_json(report)},
       {"seconds", number(report.seconds)},
       {"peak_memory_bytes", peak_memory_bytes()},
@@ -198,13 +207,24 @@ std::string to_json(const Report& report) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string to_note(const Report& report, const std::string& written) {
+  if (report.not_kept.empty()) return "";
+  std::string text = "beltrami: note: " + written + " does not keep ";
+  for (std::size_t i = 0; i < report.not_kept.size(); ++i) {
+    text += (i ? ", " : "") + report.not_kept[i];
+  }
+  return one_line(text) + "\n";
+}
+
 std::string to_summary(const Report& report, const std::string& written) {
   std::string text;
   append(text, "vertices   %llu\n", static_cast<unsigned long long>(report.vertices.value_or(0)));
   append(text, "faces      %llu\n", static_cast<unsigned long long>(report.faces.value_or(0)));
+  if (report.triangles.value_or(0) != report.faces.value_or(0)) {
+    append(text, "triangles  %llu\n", static_cast<unsigned long long>(*report.triangles));
+  }
   if (report.welded_vertices.value_or(0) > 0) {
-    append(text, "welded     %llu corners\n",
-           static_cast<unsigned long long>(*report.welded_vertices));
+    append(text, "welded     %llu\n", static_cast<unsigned long long>(*report.welded_vertices));
   }
   if (report.energy && std::isfinite(report.energy->symmetric_dirichlet)) {
     append(text, "energy     %.6g mean, %.6g max (symmetric Dirichlet; 2 is isometric)\n",

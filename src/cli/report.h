@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "failure.h"
+#include "surface.h"
 
 namespace beltrami::cli {
 
@@ -39,7 +40,7 @@ struct Report {
   std::uint64_t element = BELTRAMI_NO_ELEMENT;
 
   std::string input_path;
-  std::optional<std::uint64_t> vertices, faces, boundary_edges, unreferenced_vertices,
+  std::optional<std::uint64_t> vertices, faces, triangles, boundary_edges, unreferenced_vertices,
       welded_vertices;
   std::optional<double> area;
 
@@ -50,17 +51,23 @@ struct Report {
   std::optional<beltrami_energy> energy;
   std::optional<std::uint64_t> coarse_faces, flips_before_repair;
   std::optional<beltrami_result> result;
+  std::vector<std::string> not_kept;  ///< of the input, in words, by the output
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
   std::optional<std::uint64_t>
       estimated_memory_bytes;  ///< of the run, see beltrami_estimate_memory
   double seconds = 0;
 
+  /// Counts of what was read, and of the triangles that it was cut into.
+  void set_input(const MeshFile& file, const Surface& surface);
   void set_failure(const Failure& failure);
 };
 
 /// The JSON text, with a final line end.
 std::string to_json(const Report& report);
+
+/// The line on stderr that says what of the input `written` does not keep; "" if it keeps all.
+std::string to_note(const Report& report, const std::string& written);
 
 /// The lines for people. `written`: the output path, or "".
 std::string to_summary(const Report& report, const std::string& written);

@@ -66,16 +66,22 @@ std::string_view TextCursor::word() {
   return {begin, static_cast<std::size_t>(at_ - begin)};
 }
 
-double TextCursor::number(const char* what) {
+std::optional<double> TextCursor::number_if_any() {
   skip_blanks();
   const char* begin = at_;
   if (at_ != end_ && *at_ == '+' && at_ + 1 != end_ && at_[1] != '-') ++begin;
   double value = 0;
   const auto [past, error] = std::from_chars(begin, end_, value);
-  if (error == std::errc::invalid_argument || !ends_number(past, end_)) fail_word(what);
+  if (error == std::errc::invalid_argument || !ends_number(past, end_)) return std::nullopt;
   if (error == std::errc::result_out_of_range) value = round_extreme(begin, past);
   at_ = past;
   return value;
+}
+
+double TextCursor::number(const char* what) {
+  const std::optional<double> value = number_if_any();
+  if (!value) fail_word(what);
+  return *value;
 }
 
 std::int64_t TextCursor::integer(const char* what) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -59,6 +60,8 @@ class TextCursor {
 
   /// The number here, correctly rounded; too great a one is infinite. `what` is for the message.
   double number(const char* what);
+  /// The same; where no number stands here, nothing, and the cursor is before what does.
+  std::optional<double> number_if_any();
 
   /// The whole number here. It ends at a blank, a line end or a slash.
   std::int64_t integer(const char* what);

@@ -27,12 +27,12 @@ struct Shape {
   double radius = 0;  ///< of a sphere about the center that holds everything
 };
 
-Vector3 vertex(const MeshFile& mesh, std::uint32_t index) {
+Vector3 vertex(const TriangleView& mesh, std::uint32_t index) {
   const double* p = &mesh.positions[3 * std::size_t{index}];
   return {p[0], p[1], p[2]};
 }
 
-Shape measure(const MeshFile& mesh) {
+Shape measure(const TriangleView& mesh) {
   Shape shape;
   for (std::size_t i = 0; i < mesh.faces.size(); i += 3) {
     const Vector3 a = vertex(mesh, mesh.faces[i]), b = vertex(mesh, mesh.faces[i + 1]),
@@ -63,14 +63,14 @@ View frame_of(const Vector3& toward, const Vector3& up) {
   return view;
 }
 
-Vector3 face_normal(const MeshFile& mesh, std::size_t face) {
+Vector3 face_normal(const TriangleView& mesh, std::size_t face) {
   const std::uint32_t* f = &mesh.faces[3 * face];
   const Vector3 a = vertex(mesh, f[0]);
   return 0.5 * cross(vertex(mesh, f[1]) - a, vertex(mesh, f[2]) - a);
 }
 
 /// One weight per face, 1 + kBending in total: its area, and how far its corners' normals turn.
-std::vector<float> face_weights(const MeshFile& mesh) {
+std::vector<float> face_weights(const TriangleView& mesh) {
   std::vector<Vector3> normals(mesh.vertex_count(), Vector3{});
   for (std::size_t i = 0; i < mesh.face_count(); ++i) {
     const Vector3 normal = face_normal(mesh, i);
@@ -103,7 +103,7 @@ std::vector<float> face_weights(const MeshFile& mesh) {
 }
 
 /// What a view shows of the front, less half of what it shows of the back.
-double score(const MeshFile& mesh, const Shape& shape, const std::vector<float>& weights,
+double score(const TriangleView& mesh, const Shape& shape, const std::vector<float>& weights,
              const View& view) {
   std::vector<float> depths(kProbeSize * kProbeSize, -std::numeric_limits<float>::infinity());
   std::vector<bool> backs(depths.size(), false);
@@ -147,7 +147,8 @@ double score(const MeshFile& mesh, const Shape& shape, const std::vector<float>&
 }
 
 /// Models stand on y or, less often, lie with z up. A boundary below the rest, as of a bust, tells.
-Vector3 guess_up(const MeshFile& mesh, const Shape& shape, const std::vector<Vector3>& boundary) {
+Vector3 guess_up(const TriangleView& mesh, const Shape& shape,
+                 const std::vector<Vector3>& boundary) {
   const Vector3 fallback = {0, 1, 0};
   if (boundary.empty() || mesh.faces.empty()) return fallback;
   Vector3 middle{};
@@ -165,7 +166,7 @@ Vector3 guess_up(const MeshFile& mesh, const Shape& shape, const std::vector<Vec
 
 }  // namespace
 
-View choose_view(const MeshFile& mesh, const std::vector<Vector3>& boundary) {
+View choose_view(const TriangleView& mesh, const std::vector<Vector3>& boundary) {
   const Shape shape = measure(mesh);
   const Vector3 up = guess_up(mesh, shape, boundary);
   std::vector<View> candidates;

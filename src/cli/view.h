@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh_file.h"
+#include "surface.h"
 #include "vector3.h"
 
 namespace beltrami::cli {
@@ -15,6 +15,6 @@ struct View {
 
 /// The view of those around and above the model that shows the most of its front. `boundary`:
 /// points along the boundary; where they lie below the rest they tell which way is up.
-View choose_view(const MeshFile& mesh, const std::vector<Vector3>& boundary);
+View choose_view(const TriangleView& mesh, const std::vector<Vector3>& boundary);
 
 }  // namespace beltrami::cli

@@ -37,35 +37,47 @@ const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 TEST(ReadObj, KeepsVerticesAndFacesInOrder) {
   const MeshFile mesh = obj(kSquare);
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 1, 1, 0.25, 0, 1, 0}));
-  EXPECT_EQ(mesh.faces, (Faces{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2, 0, 2, 3}));
   EXPECT_TRUE(mesh.uvs.empty());
 }
 
 TEST(ReadObj, CountsNegativeIndicesBackwards) {
-  EXPECT_EQ(obj(kThree + "f -3 -2 -1\nv 2 2 2\nf -3 -1 -2\n").faces, (Faces{0, 1, 2, 1, 3, 2}));
+  EXPECT_EQ(obj(kThree + "f -3 -2 -1\nv 2 2 2\nf -3 -1 -2\n").polygons.corners(),
+            (Faces{0, 1, 2, 1, 3, 2}));
 }
 
 TEST(ReadObj, TakesAllFormsOfCorners) {
-  EXPECT_EQ(obj(kThree + "vt 0 0\nvn 0 0 1\nf 1/1 2//1 3/1/1\n").faces, (Faces{0, 1, 2}));
-  EXPECT_EQ(obj(kThree + "f 1/ 2/ 3/\n").faces.size(), 3u) << "an empty texture number";
+  EXPECT_EQ(obj(kThree + "vt 0 0\nvn 0 0 1\nf 1/1 2//1 3/1/1\n").polygons.corners(),
+            (Faces{0, 1, 2}));
+  EXPECT_EQ(obj(kThree + "f 1/ 2/ 3/\n").polygons.corners().size(), 3u)
+      << "an empty texture number";
 }
 
-TEST(ReadObj, PassesOverCommentsGroupsAndColours) {
+TEST(ReadObj, CopesWithCommentsGroupsAndColours) {
   const MeshFile mesh = obj(
       "# v 9 9 9\nmtllib a.mtl\no thing\n\n  v 0 0 0 0.5 0.5 0.5 # red\nv\t1 0 0 1\r\nv 0 1 0\r\n"
       "g x\nusemtl y\ns off\nl 1 2\nvp 1\nf 1 2 3 # end\r\n");
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
-  EXPECT_EQ(mesh.faces, (Faces{0, 1, 2}));
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
 }
 
 TEST(ReadObj, FollowsContinuedLines) {
   const MeshFile mesh = obj("v 0 \\\n 0 0\nv 1 0\\\r\n 0\nv 0 1 0\ng a \\\nf b\nf 1 2 \\\n3\n");
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
-  EXPECT_EQ(mesh.faces, (Faces{0, 1, 2}));
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
+}
+
+TEST(ReadObj, TakesPolygons) {
+  const MeshFile mesh = obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3\nf 1 3 5 4\n");
+  EXPECT_EQ(mesh.polygons.size(), 2u);
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2, 0, 2, 4, 3}));
+  EXPECT_EQ(mesh.polygons[1].size(), 4u);
+  EXPECT_EQ(mesh.polygons.of_corner(2), 0u);
+  EXPECT_EQ(mesh.polygons.of_corner(3), 1u);
 }
 
 TEST(ReadObj, TakesFacesBeforeTheirVertices) {
-  EXPECT_EQ(obj("f 1 2 3\n" + kThree).faces, (Faces{0, 1, 2}));
+  EXPECT_EQ(obj("f 1 2 3\n" + kThree).polygons.corners(), (Faces{0, 1, 2}));
 }
 
 TEST(ReadObj, RoundsCorrectly) {
@@ -85,11 +97,7 @@ TEST(ReadObj, SaysWhere) {
   EXPECT_EQ(obj_error("v 0 0\n"), "a.obj: line 1: a coordinate is missing: the line ends early");
   EXPECT_EQ(obj_error(kThree + "\nv 1 x 0\n"), "a.obj: line 5: a coordinate is not a number: 'x'");
   EXPECT_EQ(obj_error(kThree + "f 1 2 3\nf 1 2\n"),
-            "a.obj: line 5: face 1 (counted from 0) has only 2 corners: triangulate the mesh "
-            "first");
-  EXPECT_EQ(obj_error(kThree + "f 1 2 3 1\n"),
-            "a.obj: line 4: face 0 (counted from 0) has more than 3 corners: triangulate the mesh "
-            "first");
+            "a.obj: line 5: face 1 (counted from 0) has only 2 corners: a face needs 3 or more");
   EXPECT_EQ(obj_error(kThree + "f 1 \\\n2 3\nf 1 2 4\nf 5 5 5\n"),
             "a.obj: line 6: face 1 (counted from 0) names vertex number 4, which the file does "
             "not have");
@@ -149,8 +157,9 @@ TEST(ReadOff, TakesCountsCommentsAndColours) {
       "COFF # shape\n# counts\n3 1 0\n0 0 0 255 0 0 255\n\n1 0 0 1 1 1\n0 1 0\n3 0 1 2 7 7\n",
       "a.off", Content::kSurface);
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
-  EXPECT_EQ(mesh.faces, (Faces{0, 1, 2}));
-  EXPECT_EQ(read_off("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", "a.off", Content::kSurface).faces,
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
+  EXPECT_EQ(read_off("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", "a.off", Content::kSurface)
+                .polygons.corners(),
             (Faces{0, 1, 2}));
 }
 
@@ -164,8 +173,8 @@ std::string off_error(const std::string& text) {
 }
 
 TEST(ReadOff, SaysWhere) {
-  EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 0\n"),
-            "a.off: line 6: face 0 (counted from 0) has 4 corners: triangulate the mesh first");
+  EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
+            "a.off: line 6: face 0 (counted from 0) has 2 corners: a face needs 3 or more");
   EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "a.off: line 6: face 0 (counted from 0) names vertex 3, but the file has 3");
   EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n"),
@@ -191,7 +200,7 @@ TEST(ReadPly, PassesOverWhatItDoesNotNeed) {
                                  "a.ply", Content::kUvs);
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.uvs, (Numbers{0.5, 0.25, 1, 0, 0, 1}));
-  EXPECT_EQ(mesh.faces, (Faces{0, 1, 2}));
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
 }
 
 template <class Number>
@@ -222,7 +231,7 @@ TEST(ReadPly, TakesBothByteOrders) {
   for (const bool big : {false, true}) {
     const MeshFile mesh = read_ply(binary_ply(big), "a.ply", Content::kSurface);
     EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 0.1f, 0.1, -1, 0.2f, 0.2, -2}));
-    EXPECT_EQ(mesh.faces, (Faces{0, 1, 2}));
+    EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
   }
 }
 
@@ -233,6 +242,63 @@ std::string ply_error(const std::string& text, Content content = Content::kSurfa
     return failure.what();
   }
   return "read";
+}
+
+TEST(ReadPly, CountsWhatIsStoredAndNothingElse) {
+  const std::string coordinates = "property float x\nproperty float y\nproperty float z\n";
+  const std::string uvs = "property float s\nproperty float t\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string begin = "ply\nformat ascii 1.0\n", rows = "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n";
+  EXPECT_EQ(ply_error(begin + "element vertex 1000000\nelement vertex 3\n" + coordinates + uvs +
+                          face + rows + "3 0 1 999999\n",
+                      Content::kUvs),
+            "a.ply: line 4: a second element 'vertex'");
+  EXPECT_EQ(ply_error(begin + "element vertex 3\n" + face + "3 0 1 2\n", Content::kUvs),
+            "a.ply: vertices without the properties x, y and z");
+  EXPECT_EQ(ply_error(begin + "element vertex 3\n" + coordinates + "property float x\n" + face),
+            "a.ply: line 7: a second property 'x'");
+  // Faces before the vertices: the upper end is known later.
+  const std::string faces_first = begin +
+                                  "element face 1\nproperty list uchar int vertex_indices\n" +
+                                  "element vertex 3\n" + coordinates + "end_header\n";
+  EXPECT_EQ(ply_error(faces_first + "3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n"), "read");
+  EXPECT_EQ(ply_error(faces_first + "3 0 1 3\n0 0 0\n1 0 0\n0 1 0\n"),
+            "a.ply: face 0 (counted from 0) names vertex 3, but the file has 3");
+  for (const char* bad : {"3 0 1 0.5", "3 0 1 -1", "3 0 1 nan", "2.5 0 1 2", "-1 0 1 2"}) {
+    EXPECT_NE(ply_error(faces_first + bad + "\n0 0 0\n1 0 0\n0 1 0\n"), "read") << bad;
+  }
+}
+
+TEST(ReadPly, AWrongCountTakesNoMemory) {
+  const std::string vertices =
+      "element vertex 2000000000\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 2000000000\nproperty list uint int vertex_indices\n";
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    const std::string begin = std::string("ply\nformat ") + format + " 1.0\n";
+    const std::string other = "element other 2000000000\nproperty list uint double data\n";
+    for (const std::string& elements :
+         {vertices + faces, faces + vertices, other + vertices + faces}) {
+      EXPECT_NE(ply_error(begin + elements + "end_header\n9 9 9 9 9 9 9"), "read");
+    }
+  }
+}
+
+TEST(ReadPly, TakesTriangleStrips) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 2\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n";
+  const auto corners = [&](const std::string& strips) {
+    return read_ply(header + strips, "a.ply", Content::kSurface).polygons.corners();
+  };
+  EXPECT_EQ(corners("4 0 1 2 3\n0\n"), (Faces{0, 1, 2, 2, 1, 3}));
+  EXPECT_EQ(corners("7 0 1 2 -1 2 3 4\n3 4 3 5\n"), (Faces{0, 1, 2, 2, 3, 4, 4, 3, 5}))
+      << "-1 begins a new strip";
+  EXPECT_EQ(corners("8 0 1 2 2 3 3 4 5\n0\n"), (Faces{0, 1, 2, 4, 3, 5}))
+      << "repeated vertices are no faces, but they are counted";
+  EXPECT_EQ(ply_error(header + "4 0 1 2 6\n0\n"),
+            "a.ply: line 16: face 1 (counted from 0) names vertex 6, but the file has 6");
+  EXPECT_EQ(ply_error(header + "0\n2 1 2\n"), "a.ply: no faces");
 }
 
 TEST(ReadPly, EveryTruncationIsAnError) {
@@ -249,8 +315,8 @@ TEST(ReadPly, SaysWhere) {
             "a.ply: face 0 (counted from 0) names vertex 3, but the file has 3");
   EXPECT_EQ(ply_error(kPlyHeader + "0 9 0 0 0 0\n1 9 0 0 1 x\n"),
             "a.ply: line 19: a value is not a number: 'x'");
-  EXPECT_EQ(ply_error(kPlyHeader + "0 9 0 0 0 0\n1 9 0 0 1 0\n0 9 1 0 0 1\n0\n5 4 0 1 2 0\n"),
-            "a.ply: line 22: face 0 (counted from 0) has 4 corners: triangulate the mesh first");
+  EXPECT_EQ(ply_error(kPlyHeader + "0 9 0 0 0 0\n1 9 0 0 1 0\n0 9 1 0 0 1\n0\n5 2 0 1\n"),
+            "a.ply: line 22: face 0 (counted from 0) has 2 corners: a face needs 3 or more");
   EXPECT_EQ(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"),
             "a.ply: line 4: unknown property type 'quad'");
   EXPECT_EQ(ply_error("garbage"),
@@ -284,8 +350,8 @@ TEST(ReadStl, WeldsEqualCorners) {
   for (const std::string& text : {binary_stl(), kTextStl}) {
     const MeshFile mesh = read_stl(text, "a.stl", Content::kSurface);
     EXPECT_EQ(mesh.positions, obj(kSquare).positions);
-    EXPECT_EQ(mesh.faces, obj(kSquare).faces);
-    EXPECT_EQ(mesh.welded_vertices, 2u);
+    EXPECT_EQ(mesh.polygons.corners(), obj(kSquare).polygons.corners());
+    EXPECT_EQ(mesh.welded_corners, 2u);
   }
 }
 
@@ -296,9 +362,9 @@ TEST(ReadStl, WeldsManyCorners) {
             std::to_string(i + 1) + " 1 0\nendloop\nendfacet\n";
   }
   const MeshFile mesh = read_stl(text + "endsolid\n", "a.stl", Content::kSurface);
-  EXPECT_EQ(mesh.face_count(), 3000u);
+  EXPECT_EQ(mesh.polygons.size(), 3000u);
   EXPECT_EQ(mesh.vertex_count(), 3002u);
-  EXPECT_EQ(mesh.welded_vertices, 9000u - 3002u);
+  EXPECT_EQ(mesh.welded_corners, 9000u - 3002u);
 }
 
 std::string stl_error(const std::string& text) {
@@ -336,7 +402,8 @@ TEST(ReadMesh, CopesWithForeignLineEndsAndByteOrderMarks) {
   const TemporaryDirectory directory;
   std::string text = "\xEF\xBB\xBF" + kSquare;
   std::replace(text.begin(), text.end(), '\n', '\r');
-  EXPECT_EQ(read_mesh(directory.file("a.obj", text), Content::kSurface).faces, obj(kSquare).faces);
+  EXPECT_EQ(read_mesh(directory.file("a.obj", text), Content::kSurface).polygons.corners(),
+            obj(kSquare).polygons.corners());
 }
 
 TEST(ReadMesh, RefusesWhatIsNoFile) {
@@ -373,7 +440,8 @@ TEST(WriteMesh, EveryBitSurvives) {
   mesh.positions[2] = std::numeric_limits<double>::max();
   mesh.uvs.assign(mesh.positions.rbegin(), mesh.positions.rbegin() + 20000);
   for (std::uint32_t i = 0; i + 2 < 10000; ++i) {
-    mesh.faces.insert(mesh.faces.end(), {i, i + 2, i + 1});
+    for (const std::uint32_t vertex : {i, i + 2, i + 1}) mesh.polygons.add_corner(vertex);
+    mesh.polygons.end_polygon();
   }
   const auto same_bits = [](const Numbers& a, const Numbers& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
@@ -383,7 +451,7 @@ TEST(WriteMesh, EveryBitSurvives) {
   EXPECT_TRUE(same_bits(text.positions, mesh.positions));
   EXPECT_TRUE(same_bits(binary.positions, mesh.positions));
   EXPECT_TRUE(same_bits(binary.uvs, mesh.uvs));
-  EXPECT_EQ(binary.faces, mesh.faces);
+  EXPECT_EQ(binary.polygons.corners(), mesh.polygons.corners());
   EXPECT_TRUE(same_bits(obj(written(mesh, "a.obj"), Content::kUvs).uvs, mesh.uvs));
 }
 

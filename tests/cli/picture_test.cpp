@@ -22,9 +22,14 @@ bool is_white(const std::array<int, 3>& color) {
   return color[0] > 250 && color[1] > 250 && color[2] > 250;
 }
 
+/// Of a mesh of triangles.
+TriangleView view(const MeshFile& mesh) {
+  return {mesh.positions, mesh.polygons.corners(), mesh.uvs};
+}
+
 TEST(Picture, ShowsLayoutAndModelOnWhite) {
   const MeshFile mesh = read_obj(kSquareWithUvs, "a.obj", Content::kUvs);
-  const Image image = render_picture(mesh, {2.0, 2.0});
+  const Image image = render_picture(view(mesh), {2.0, 2.0});
   ASSERT_EQ(image.width, 1600);
   ASSERT_EQ(image.height, 800);
   EXPECT_TRUE(is_white(pixel(image, 2, 2)));
@@ -35,7 +40,7 @@ TEST(Picture, ShowsLayoutAndModelOnWhite) {
 
 TEST(Picture, MarksFlippedFacesRed) {
   const MeshFile mesh = read_obj(kSquareWithFlip, "a.obj", Content::kUvs);
-  const Image image = render_picture(mesh, {2.0, std::numeric_limits<double>::infinity()});
+  const Image image = render_picture(view(mesh), {2.0, std::numeric_limits<double>::infinity()});
   int red = 0;
   for (int y = 0; y < 700; ++y) {
     for (int x = 0; x < 800; ++x) {
@@ -50,9 +55,9 @@ TEST(Picture, SurvivesMapsWithoutExtent) {
   MeshFile mesh = read_obj(kSquareWithUvs, "a.obj", Content::kUvs);
   mesh.uvs.assign(8, 0.5);
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(render_picture(mesh, {infinity, infinity}).width, 1600);
+  EXPECT_EQ(render_picture(view(mesh), {infinity, infinity}).width, 1600);
   mesh.positions.assign(12, 1.0);
-  EXPECT_EQ(render_picture(mesh, {infinity, infinity}).width, 1600);
+  EXPECT_EQ(render_picture(view(mesh), {infinity, infinity}).width, 1600);
 }
 
 TEST(Picture, IsAPng) {
@@ -68,7 +73,7 @@ TEST(View, LooksAtTheFrontOfAnOpenSurface) {
     MeshFile mesh = read_obj(grid(6), "a.obj", Content::kSurface);
     for (std::size_t i = 0; i < mesh.positions.size(); i += 3) mesh.positions[i] *= side;
     // Mirrored, the grid faces -z.
-    EXPECT_GT(side * choose_view(mesh, {}).toward[2], 0.5);
+    EXPECT_GT(side * choose_view(view(mesh), {}).toward[2], 0.5);
   }
 }
 
