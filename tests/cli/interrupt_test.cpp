@@ -71,9 +71,9 @@ beltrami_status run_with_signal(int signal_number, int at, int& calls) {
   beltrami_mesh mesh{};
   mesh.struct_size = sizeof mesh;
   mesh.vertex_count = file.vertex_count();
-  mesh.face_count = file.face_count();
+  mesh.face_count = file.polygons.size();
   mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
-  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  mesh.indices = {file.polygons.corners().data(), 0, BELTRAMI_U32, 0};
   beltrami_context* context = nullptr;
   beltrami_create(&context);
   beltrami_set_mesh(context, &mesh);
