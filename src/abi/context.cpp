@@ -106,7 +106,6 @@ std::uint64_t beltrami_context::estimate_memory() const {
 }
 
 beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
-  using beltrami::Error;
   beltrami::require_within_limit(estimate_memory(), options.memory_limit);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
@@ -119,7 +118,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
       beltrami::flatten(mesh->input.disk, mesh->frame, options, report, cancelled);
   // A request that came after the last look at it still counts, since the run was under way.
   if (mark.take_request() || host.cancelled()) {
-    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled on request");
+    throw beltrami::Cancelled();
   }
   flattening = std::move(result);
   return flattening->status;

@@ -1,18 +1,19 @@
 #include "base/interrupt.h"
 
-#include "base/error.h"
+#include <utility>
 
 namespace beltrami {
 namespace {
 
 /// Of the run that this thread is in. Not a parameter, since it would go through every function
 /// down to the loops; not shared, since a thread is in one run at a time.
-thread_local const std::atomic<bool>* current = nullptr;
+thread_local const InterruptSource* current = nullptr;
 
 }  // namespace
 
-InterruptScope::InterruptScope(const std::atomic<bool>* request) : outer_(current) {
-  current = request;
+InterruptScope::InterruptScope(InterruptSource source)
+    : source_(std::move(source)), outer_(current) {
+  current = &source_;
 }
 
 InterruptScope::~InterruptScope() {
@@ -20,13 +21,14 @@ InterruptScope::~InterruptScope() {
 }
 
 const std::atomic<bool>* interrupt_request() {
-  return current;
+  return current != nullptr ? current->request : nullptr;
 }
 
 void poll_interrupt() {
-  if (current != nullptr && current->load(std::memory_order_relaxed)) {
-    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled");
-  }
+  if (current == nullptr) return;
+  const bool requested =
+      current->request != nullptr && current->request->load(std::memory_order_relaxed);
+  if (requested || (current->ask && current->ask())) throw Cancelled();
 }
 
 }  // namespace beltrami

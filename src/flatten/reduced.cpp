@@ -94,7 +94,7 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   result.meta_vertices = size_of(x);
   result.samples = size_of(problem.rest);
   result.converged = descent.converged;
-  result.simple_boundary = count_crossings(mesh.boundary, result.uvs).count == 0;
+  result.simple_boundary = is_simple(mesh.boundary, result.uvs);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "flatten/dirichlet.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
@@ -33,9 +34,8 @@ constexpr double kHopelessEnergy = 1e3;
 void Run::report(double fraction, const char* name) {
   fraction_ = std::max(fraction_, fraction);
   const bool stop = progress_ && progress_(fraction_, name);
-  if (stop || cancelled_.load(std::memory_order_relaxed)) {
-    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled");
-  }
+  if (stop || cancelled_.load(std::memory_order_relaxed)) throw Cancelled();
+  poll_interrupt();
 }
 
 bool Run::keeps_boundary_simple() const {
@@ -52,7 +52,7 @@ NewtonOptions Run::newton_options(const DiskMesh& mesh) const {
   newton.threads = options_.threads;
   if (keeps_boundary_simple()) {
     newton.admissible = [&mesh](const std::vector<Vec2>& map) {
-      return count_crossings(mesh.boundary, map).count == 0;
+      return is_simple(mesh.boundary, map);
     };
   }
   return newton;

@@ -35,7 +35,7 @@ class Repair {
     std::vector<Index> bad = find_bad();
     result_.flips_before = size_of(bad);
     const bool all_local = mend_locally(bad, 0, kLocalShare);
-    if (!all_local || (options_.simple_boundary && crossings() > 0)) {
+    if (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_))) {
       checkpoint_(kLocalShare);
       mend_globally();
     }
