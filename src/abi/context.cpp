@@ -79,8 +79,9 @@ void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
 
 }  // namespace
 
-LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads) {
+LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads, const std::atomic<bool>& cancelled) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
+  const InterruptScope interruptible({&cancelled, mesh.cancel, {}});
   LoadedMesh loaded;
   loaded.vertex_count = mesh.vertex_count;
   loaded.input = read_disk(mesh, threads);

@@ -22,8 +22,9 @@ struct LoadedMesh {
   Index first_degenerate_face = kNone;  ///< in the input
 };
 
-/// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.
-LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads);
+/// Reads, validates and normalises. `cancelled` may be set from another thread. Throws Error
+/// INVALID_ARGUMENT or a mesh status, or Cancelled.
+LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads, const std::atomic<bool>& cancelled);
 
 }  // namespace beltrami
 

@@ -3,7 +3,9 @@
 // meshes.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <functional>
 
 namespace beltrami {
@@ -12,9 +14,10 @@ namespace beltrami {
 /// for a failure, or puts it in other words, must not take it for one. Only the ABI catches it.
 class Cancelled {};
 
-/// Where poll_interrupt() looks. Either may be missing.
+/// Where poll_interrupt() looks. Each may be missing.
 struct InterruptSource {
   const std::atomic<bool>* request = nullptr;  ///< set from any thread, looked at by all workers
+  const std::int32_t* number = nullptr;        ///< likewise, in the host's memory: 0 to go on
   std::function<bool()> ask;  ///< called on the thread of the scope only; true to cancel
 };
 
@@ -24,7 +27,7 @@ class InterruptScope {
  public:
   explicit InterruptScope(InterruptSource source);
   explicit InterruptScope(const std::atomic<bool>* request)
-      : InterruptScope(InterruptSource{request, {}}) {}
+      : InterruptScope(InterruptSource{request, nullptr, {}}) {}
   ~InterruptScope();
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
@@ -34,8 +37,8 @@ class InterruptScope {
   const InterruptSource* const outer_;
 };
 
-/// What workers are to look at on behalf of this thread; null outside a run.
-const std::atomic<bool>* interrupt_request();
+/// What workers are to look at on behalf of this thread; nothing outside a run.
+InterruptSource interrupt_for_workers();
 
 /// Throws Cancelled if the work on this thread is to end. Costs a few nanoseconds; does nothing
 /// outside a run. parallel_for calls it before each chunk; serial loops of more than some ten
@@ -53,5 +56,15 @@ class PollSometimes {
   static constexpr unsigned kPeriod = 4096;
   unsigned calls_ = 0;
 };
+
+/// std::sort that polls.
+template <class Iterator, class Less>
+void sort_interruptibly(Iterator begin, Iterator end, const Less& less) {
+  PollSometimes poll;
+  std::sort(begin, end, [&](const auto& a, const auto& b) {
+    poll();
+    return less(a, b);
+  });
+}
 
 }  // namespace beltrami

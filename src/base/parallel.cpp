@@ -32,7 +32,7 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   std::atomic<std::int64_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_guard;
-  const std::atomic<bool>* const request = interrupt_request();
+  const InterruptSource request = interrupt_for_workers();
   const auto work = [&] {
     const StandardFloatingPoint standard_mode;
     try {

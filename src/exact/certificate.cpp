@@ -1,5 +1,6 @@
 #include "exact/certificate.h"
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 
 namespace beltrami {
@@ -24,7 +25,9 @@ Orientations count_orientations(const std::vector<Triangle>& faces, const std::v
   const std::vector<Index> bad = non_positive_faces(faces, uvs, threads);
   Orientations counts;
   counts.positive = size_of(faces) - size_of(bad);
+  PollSometimes poll;
   for (const Index f : bad) {
+    poll();
     ++(face_orientation(faces[f], uvs) < 0 ? counts.negative : counts.degenerate);
   }
   if (!bad.empty()) counts.first_bad_face = bad.front();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 
 #include "base/interrupt.h"
 #include "exact/polygon.h"
@@ -90,7 +91,7 @@ std::vector<Pair> find_crossings(const std::vector<Index>& loop, const std::vect
   for (const TakenOut& t : taken) {
     if (!tree.list(t.edge, listed, pairs)) break;
   }
-  std::sort(pairs.begin(), pairs.end());
+  sort_interruptibly(pairs.begin(), pairs.end(), std::less<>());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }

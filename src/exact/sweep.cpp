@@ -34,8 +34,7 @@ class Sweep {
     take_out_folds();
     std::vector<Index> order(count);
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&, poll = PollSometimes()](Index i, Index j) mutable {
-      poll();
+    sort_interruptibly(order.begin(), order.end(), [&](Index i, Index j) {
       const Vec2 &a = polygon_.start(i), &b = polygon_.start(j);
       return is_before(a, b) || (a == b && i < j);
     });

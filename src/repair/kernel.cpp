@@ -2,8 +2,13 @@
 
 #include <cstddef>
 
+#include "base/interrupt.h"
+
 namespace beltrami {
 namespace {
+
+/// Of a region: each of the polygon's edges takes time for each of them.
+constexpr std::size_t kMostCorners = 256;
 
 double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -21,7 +26,15 @@ std::vector<Vec2> clip(const std::vector<Vec2>& polygon, const Vec2& a, const Ve
   return result;
 }
 
-/// The points from which the whole polygon is visible; empty if there are none.
+/// Of a convex polygon: what is left is a part of it.
+void drop_every_second(std::vector<Vec2>& polygon) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < polygon.size(); i += 2) polygon[kept++] = polygon[i];
+  polygon.resize(kept);
+}
+
+/// The points from which the whole polygon is visible, or of a region with very many corners most
+/// of them; empty if there are none.
 std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
   Vec2 low = polygon.front(), high = polygon.front();
   for (const Vec2& p : polygon) {
@@ -29,8 +42,11 @@ std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
     high = high.cwiseMax(p);
   }
   std::vector<Vec2> region = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  PollSometimes poll;
   for (std::size_t i = 0; i < polygon.size() && !region.empty(); ++i) {
+    poll();
     region = clip(region, polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
+    if (region.size() > kMostCorners) drop_every_second(region);
   }
   return region;
 }

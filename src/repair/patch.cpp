@@ -1,15 +1,17 @@
 #include "repair/patch.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 
 #include "base/interrupt.h"
+#include "repair/hub_turns.h"
 
 namespace beltrami {
 namespace {
 
 void sort_unique(std::vector<Index>& items) {
-  std::sort(items.begin(), items.end());
+  sort_interruptibly(items.begin(), items.end(), std::less<>());
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
@@ -42,7 +44,10 @@ void merge_into(std::vector<Index>& known, const std::vector<Index>& items) {
   std::inplace_merge(known.begin(), known.begin() + middle, known.end());
 }
 
-/// Each vertex is gone around once, since one may have as many faces as the mesh.
+/// A hub with more faces is left where it is: a patch with all of them is not small.
+constexpr Index kMostFacesAtVertex = 1000;
+
+/// Each vertex is gone around once.
 std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
   std::vector<Index> faces{face}, front{face}, vertices;
   for (int ring = 0; ring < rings && !front.empty(); ++ring) {
@@ -53,6 +58,7 @@ std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
                                                vertices);
     front = without(gather(corners,
                            [&](Index v, const auto& take) {
+                             if (is_hub(mesh, v, kMostFacesAtVertex)) return;
                              mesh.for_each_outgoing(v, [&](Index h) { take(h / 3); });
                            }),
                     faces);
@@ -93,6 +99,8 @@ Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
     const Index v = patch.mesh_vertices[i];
     patch.uvs.push_back(uvs[v]);
+    patch.fixed[i] = is_hub(mesh, v, kMostFacesAtVertex);
+    if (patch.fixed[i]) continue;
     mesh.for_each_outgoing(v, [&](Index h) {
       poll();
       if (!std::binary_search(patch.mesh_faces.begin(), patch.mesh_faces.end(), h / 3)) {

@@ -5,8 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "exact/certificate.h"
 #include "repair/global_fix.h"
+#include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
 #include "repair/untangle.h"
@@ -54,9 +56,12 @@ class Repair {
   bool mend_locally(std::vector<Index> bad, double from, double until) {
     if (bad.empty()) return true;
     for (const bool neighbours_first : {false, true}) {
+      HubTurns turns(mesh_);
       for (const Index face : bad) {
+        poll_interrupt();
         for (const Index v : mesh_.faces[face]) {
           if (positive(face)) break;
+          if (!turns.take(v)) continue;
           if (neighbours_first) move_ring_to_kernels(v);
           if (move_to_kernel(v)) ++result_.kernel_fixes;
         }
@@ -100,6 +105,9 @@ class Repair {
 
   void move_ring_to_kernels(Index vertex) {
     mesh_.for_each_outgoing(vertex, [&](Index h) {
+      poll_interrupt();
+      // Another hub has its own turn.
+      if (is_hub(mesh_, mesh_.target(h), kManyFaces)) return;
       if (move_to_kernel(mesh_.target(h))) ++result_.kernel_fixes;
     });
   }
