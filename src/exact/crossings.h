@@ -10,7 +10,7 @@
 namespace beltrami {
 
 struct Crossings {
-  std::int64_t count = 0;                            ///< pairs of edges that meet: see find_crossings
+  std::int64_t count = 0;  ///< pairs of edges that meet: see find_crossings
   std::array<Index, 2> first_pair = {kNone, kNone};  ///< start vertices of the first such pair
 };
 

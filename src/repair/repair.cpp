@@ -11,6 +11,7 @@
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
+#include "repair/patch_work.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -70,7 +71,7 @@ class Repair {
       if (bad.empty()) return true;
     }
     if (bad.size() > kMostPatches) return false;
-    crossings_ = crossings();
+    PatchWork work(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       std::size_t done = 0;
       for (const Index face : bad) {
@@ -78,7 +79,7 @@ class Repair {
                               static_cast<double>(done++) / static_cast<double>(bad.size())) /
                              kPatchRings.size();
         checkpoint_(from + (until - from) * share);
-        if (!positive(face) && fix_patch(face, kPatchRings[level])) ++result_.patch_fixes;
+        if (!positive(face) && fix_patch(face, kPatchRings[level], work)) ++result_.patch_fixes;
       }
       bad = find_bad();
     }
@@ -138,18 +139,10 @@ class Repair {
     return true;
   }
 
-  bool fix_patch(Index face, int rings) {
+  bool fix_patch(Index face, int rings, PatchWork& work) {
     Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
     if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return false;
-    patch.exchange(uvs_);
-    if (!patch.moves_boundary) return true;
-    const std::int64_t now = crossings();
-    if (now > crossings_) {
-      patch.exchange(uvs_);
-      return false;
-    }
-    crossings_ = now;
-    return true;
+    return work.take(patch);
   }
 
   const DiskMesh& mesh_;
@@ -158,7 +151,6 @@ class Repair {
   const RepairOptions options_;
   const Checkpoint& checkpoint_;
   RepairResult result_;
-  std::int64_t crossings_ = 0;
 };
 
 }  // namespace
