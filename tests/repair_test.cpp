@@ -15,7 +15,7 @@
 #include "repair/outliers.h"
 #include "repair/patch.h"
 #include "repair/repair.h"
-#include "repair/single_precision.h"
+#include "repair/rounding.h"
 #include "support/disks.h"
 #include "support/polls.h"
 
@@ -318,15 +318,14 @@ TEST(Repair, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
   EXPECT_LE(polls(16000), 3 * polls(8000));
 }
 
-TEST(RoundToSingle, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
+TEST(RoundMap, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
   const auto polls = [](Index faces) {
     const DiskMesh mesh = disks::disk(meshes::fan(faces));
     std::vector<Vec2> uvs;
     // Slivers far from the origin: rounding flips very many.
     for (const Vec2& w : disks::flat_uvs(mesh)) uvs.push_back(w + Vec2(300, 200));
-    const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, 1);
-    EXPECT_TRUE(exact.injective());
-    return count_polls([&] { round_to_single(mesh, uvs, exact, 1); });
+    EXPECT_TRUE(injective(mesh, uvs));
+    return count_polls([&] { round_map(mesh, uvs, uvs, {.single = true}, 1); });
   };
   EXPECT_LE(polls(40000), 3 * polls(20000));
 }

@@ -309,11 +309,12 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
 
 /* Estimates how many bytes of memory the library will hold at the peak of the next beltrami_run,
  * with the mesh and the options as they are set: the stored mesh and the results of the last run
- * included, arrays of the caller and other contexts not. It is told from counts of the mesh, at
- * least 40 MiB, and meant to be enough for all but what few large meshes need: the global fix of
- * the repair, GIF with many bridges. Valid for solver:native. It is the least memory-limit that the
- * run can do with; without a limit the default mode may take four times as much on hard meshes,
- * where Newton steps end a blocked polish. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
+ * included, arrays of the caller and other contexts not. It is told from counts of the mesh (of
+ * the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
+ * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it is
+ * at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do with;
+ * without a limit a run may take four times as much on hard meshes, where Newton steps end a blocked
+ * polish, or the repair embeds the whole layout anew: with one it does without these. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.

@@ -18,7 +18,6 @@ namespace {
 
 /// The paper's 50 to 500 uniform samples underestimate the energy by 5% to 15%.
 constexpr Index kStrata = 2000;
-constexpr Index kMostMetas = 1000;  // beyond, a dense Newton step takes several seconds
 constexpr double kBasisShare = 0.5, kNewtonShare = 0.45;  // of the work
 
 /// On a circle of the area of the mesh, by arc length.

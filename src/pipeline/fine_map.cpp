@@ -165,7 +165,9 @@ std::vector<Vec2> Run::descend_from_circle(const std::vector<RestTriangle>& rest
                                            StageStatistics& statistics,
                                            const Checkpoint& checkpoint) {
   std::vector<Vec2> uvs = tutte_embedding(*disk_);
-  const RepairOptions mend{.simple_boundary = true, .threads = options_.threads};
+  const RepairOptions mend{.simple_boundary = true,
+                           .threads = options_.threads,
+                           .global_fix = affords(*disk_, options_, Extra::kGlobalFix)};
   repair(*disk_, rest, uvs, mend, checkpoint);
   if (!certify(disk_->faces, disk_->boundary, uvs, options_.threads).injective()) {
     uvs = grid_drawing(*disk_);
@@ -226,8 +228,7 @@ std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
 /// it. (The coarse boundary is simple, or there is nothing to hold on to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   const std::vector<Vec2> carried = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
-  const bool global =
-      keeps_boundary_simple() && is_simple(disk_->boundary, carried);
+  const bool global = keeps_boundary_simple() && is_simple(disk_->boundary, carried);
   std::vector<bool> held(disk_->vertex_count(), false);
   held[disk_->boundary.front()] = true;
   std::vector<Vec2> uvs;
@@ -261,7 +262,7 @@ void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach
   for (Index round = 0, i = 0; round < 2 * count; ++round, i = next(i)) {
     apart[next(i)] = std::min(apart[next(i)], apart[i] + lengths[i]);
   }
-  for (Index round = 0, i = count - 1; round < 2 * count; ++round, i = i > 0 ? i - 1 : count - 1) {
+  for (Index round = 0, i = count - 1; round<2 * count; ++round, i = i> 0 ? i - 1 : count - 1) {
     apart[i] = std::min(apart[i], apart[next(i)] + lengths[i]);
   }
   const double most = reach * std::accumulate(lengths.begin(), lengths.end(), 0.0);
@@ -381,7 +382,9 @@ bool Run::mend(const FineProblem& fine, bool simple_boundary, double until,
                std::vector<Vec2>& uvs) {
   bool positive = false;
   stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const RepairOptions options{.simple_boundary = simple_boundary, .threads = options_.threads};
+    const RepairOptions options{.simple_boundary = simple_boundary,
+                                .threads = options_.threads,
+                                .global_fix = affords(*disk_, options_, Extra::kGlobalFix)};
     const RepairResult repaired = repair(*disk_, fine.rest, uvs, options, checkpoint);
     result_.flips_before_repair = repaired.flips_before;
     result_.kernel_fixes += repaired.kernel_fixes;

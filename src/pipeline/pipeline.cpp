@@ -12,6 +12,7 @@
 #include "fullspace/newton.h"
 #include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
@@ -90,7 +91,9 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
 std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const Checkpoint& checkpoint) {
   std::vector<Vec2> uvs = tutte_embedding(mesh);
-  if (repair(mesh, rest, uvs, {.threads = options_.threads}).flips_after == 0) return uvs;
+  const RepairOptions mend{.threads = options_.threads,
+                           .global_fix = affords(mesh, options_, Extra::kGlobalFix)};
+  if (repair(mesh, rest, uvs, mend).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
   return other.empty() ? grid_drawing(mesh) : other;
 }
@@ -122,7 +125,8 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
                    options_.threads);
     const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
-                             .threads = options_.threads};
+                             .threads = options_.threads,
+                             .global_fix = affords(mesh, options_, Extra::kGlobalFix)};
     if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
     if (keeps_boundary_simple() && count_crossings(mesh.boundary, uvs).count > 0) continue;
     clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
@@ -188,7 +192,9 @@ std::vector<Vec2> Run::run_tutte() {
   stage("tutte", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
     uvs = tutte_embedding(input_);
     const auto rest = rest_triangles(input_.positions, input_.faces, options_.threads);
-    const RepairOptions mend{.simple_boundary = true, .threads = options_.threads};
+    const RepairOptions mend{.simple_boundary = true,
+                             .threads = options_.threads,
+                             .global_fix = affords(input_, options_, Extra::kGlobalFix)};
     result_.flips_before_repair = repair(input_, rest, uvs, mend, checkpoint).flips_before;
   });
   return uvs;

@@ -38,7 +38,8 @@ class Repair {
     std::vector<Index> bad = find_bad();
     result_.flips_before = size_of(bad);
     const bool all_local = mend_locally(bad, 0, kLocalShare);
-    if (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_))) {
+    if (options_.global_fix &&
+        (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
       checkpoint_(kLocalShare);
       mend_globally();
     }
