@@ -95,14 +95,14 @@ TEST(ParallelFor, EndsWhereTheRunOfItsThreadIsCancelled) {
   for (const int threads : {1, 3}) {
     cancelled = false;
     const InterruptScope scope(&cancelled);
-    EXPECT_THROW(count_chunks(threads), Error) << threads << " threads";
+    EXPECT_THROW(count_chunks(threads), Cancelled) << threads << " threads";
   }
   cancelled = false;
   const InterruptScope outer(&cancelled);
   std::atomic<bool> always{true};
   {
     const InterruptScope inner(&always);
-    EXPECT_THROW(poll_interrupt(), Error);
+    EXPECT_THROW(poll_interrupt(), Cancelled);
   }
   EXPECT_NO_THROW(poll_interrupt());
 }

@@ -11,6 +11,7 @@
 
 #include "exact/certificate.h"
 #include "support/disks.h"
+#include "support/polls.h"
 
 namespace beltrami {
 namespace {
@@ -266,6 +267,90 @@ TEST(Crossings, AreAsManyAsByForceOnDegenerateRandomPolygons) {
 TEST(Crossings, AreAsManyAsByForceOnLargeRandomPolygons) {
   Random random(4);
   for (int i = 0; i < 10; ++i) expect_as_by_force(random, 200 + random.below(100), 1000);
+}
+
+// ---- What crossings cost ------------------------------------------------------------------
+
+/// Radial teeth: the boxes of most pairs of edges overlap, and no edges meet.
+std::vector<Vec2> star(int vertices) {
+  std::vector<Vec2> polygon;
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * i / vertices, radius = i % 2 == 0 ? 1 : 0.1;
+    polygon.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return polygon;
+}
+
+/// Down diagonals side by side: every box holds the next one, and no edges meet.
+std::vector<Vec2> nested(int vertices) {
+  std::vector<Vec2> polygon;
+  for (int i = 0; i < vertices; ++i) {
+    const double x = i / 2;
+    polygon.push_back((i % 4 == 0 || i % 4 == 3) ? Vec2(x, 0) : Vec2(1e6 + x, 1e6));
+  }
+  polygon.push_back({2e6, -1});
+  polygon.push_back({0, -1});
+  return polygon;
+}
+
+std::vector<Vec2> all_in_one_place(int vertices) {
+  return std::vector<Vec2>(vertices, Vec2(0, 0));
+}
+
+/// All edges share one line.
+std::vector<Vec2> collinear(int vertices) {
+  Random random(5);
+  std::vector<Vec2> polygon;
+  for (int i = 0; i < vertices; ++i) polygon.push_back(random.between(0, 1) * Vec2(3, 1));
+  return polygon;
+}
+
+TEST(Crossings, TakeLittleMoreThanTwiceTheWorkForTwiceTheEdges) {
+  for (const auto& make : {star, nested, all_in_one_place, collinear}) {
+    const auto polls = [&](int vertices) {
+      const std::vector<Vec2> polygon = make(vertices);
+      return count_polls([&] { count_crossings(loop_of(polygon), polygon); });
+    };
+    EXPECT_LE(polls(40000), 2.5 * static_cast<double>(polls(20000)) + 10);
+  }
+}
+
+TEST(Crossings, AreNoneBetweenLongEdgesSideBySide) {
+  EXPECT_EQ(crossings(star(3000)), 0);
+  EXPECT_EQ(crossings(nested(3000)), 0);
+}
+
+TEST(Crossings, ListsABoundedNumberWhereAllVerticesCoincide) {
+  const std::vector<Vec2> polygon = all_in_one_place(50000);
+  const auto pairs = find_crossings(loop_of(polygon), polygon);
+  EXPECT_GE(pairs.size(), polygon.size() - 1);
+  EXPECT_LE(pairs.size(), 6 * polygon.size());
+}
+
+TEST(IsSimple, AgreesWithForceOnDegenerateRandomPolygons) {
+  Random random(6);
+  int simple = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const int vertices = 3 + random.below(6);
+    std::vector<Point> points;
+    std::vector<Vec2> uvs;
+    for (int k = 0; k < vertices; ++k) {
+      points.push_back({random.below(5), random.below(5)});
+      uvs.push_back({static_cast<double>(points.back().x), static_cast<double>(points.back().y)});
+    }
+    const bool expected = crossings_by_force(points) == 0;
+    ASSERT_EQ(is_simple(loop_of(uvs), uvs), expected) << i;
+    simple += expected;
+  }
+  EXPECT_GT(simple, 100);
+}
+
+TEST(Crossings, AreCancelledAtEveryPoll) {
+  const std::vector<Vec2> polygon = star(8000);
+  const auto run = [&] { count_crossings(loop_of(polygon), polygon); };
+  const std::int64_t polls = count_polls(run);
+  ASSERT_GT(polls, 10);
+  for (std::int64_t k = 1; k <= polls; ++k) EXPECT_THROW(count_polls(run, k), Cancelled) << k;
 }
 
 // ---- The certificate ------------------------------------------------------------------------

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <vector>
 
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
 #include "support/disks.h"
+#include "support/polls.h"
 
 namespace beltrami {
 namespace {
@@ -126,6 +128,27 @@ TEST(IntrinsicDelaunay, MakesHarmonicMapsIntoConvexPolygonsInjective) {
   }
   solve_harmonic(flipped, result.cotangents, uvs);
   EXPECT_TRUE(non_positive_faces(flipped.faces, uvs, 1).empty());
+}
+
+/// A hub with flat ears on every edge of its rim: each of these edges must go.
+DiskMesh eared_fan(Index n) {
+  meshes::TriangleList list = meshes::fan(n);
+  const double half = std::numbers::pi / n;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = (2 * i + 1) * half, radius = 1 - half * half / 4;
+    list.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    list.faces.push_back({1 + i, 1 + n + i, 1 + (i + 1) % n});
+  }
+  return disks::disk(std::move(list));
+}
+
+TEST(IntrinsicDelaunay, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
+  const auto polls = [](Index n) {
+    const DiskMesh mesh = eared_fan(n);
+    const auto cotangents = cotangents_of(mesh);
+    return count_polls([&] { EXPECT_GE(intrinsic_delaunay(mesh, cotangents).flips, n); });
+  };
+  EXPECT_LE(polls(16000), 3 * polls(8000) + 10);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "mesh/disk_mesh.h"
 #include "pipeline/pipeline.h"
 #include "support/disks.h"
+#include "support/polls.h"
 
 namespace beltrami {
 namespace {
@@ -157,6 +158,52 @@ TEST(Refine, KeepsToItsLimitsAndReturnsTheBestMapSoFar) {
   EXPECT_EQ(none.status, BELTRAMI_OK);
   EXPECT_TRUE(none.certificate.injective());
   EXPECT_EQ(none.distortion.symmetric_dirichlet, start);
+}
+
+// ---- Cancelling -----------------------------------------------------------------------------
+
+std::vector<Options> all_modes() {
+  std::vector<Options> modes;
+  for (const std::int32_t how :
+       {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET, BELTRAMI_FLATTEN_GIF,
+        BELTRAMI_FLATTEN_FLIM, BELTRAMI_FLATTEN_BFF}) {
+    modes.push_back(coarse_to_fine(how));
+  }
+  for (const std::int32_t which : {BELTRAMI_METHOD_CM, BELTRAMI_METHOD_TUTTE, BELTRAMI_METHOD_GIF,
+                                   BELTRAMI_METHOD_BFF, BELTRAMI_METHOD_UV_PROLONGATION}) {
+    modes.push_back(method(which));
+  }
+  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, BELTRAMI_ENERGY_SYMMETRIC_ARAP));
+  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));
+  modes.back().delaunay = true;
+  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));
+  modes.back().refine = modes.back().float32 = true;
+  for (Options& options : modes) options.coarse_faces = 100;
+  return modes;
+}
+
+/// Where cancels are tried: at each of the first polls, then at some of each stretch, to the last.
+std::vector<std::int64_t> moments(std::int64_t polls) {
+  std::vector<std::int64_t> moments;
+  for (std::int64_t k = 1; k <= polls; k += 1 + k / 12) moments.push_back(k);
+  moments.push_back(polls);
+  return moments;
+}
+
+TEST(Modes, AreCancelledAtAnyPollAndNeverEndInAnotherWay) {
+  // The ramp needs a repair, a scaffold and restarts in some modes.
+  for (const TriangleList& mesh : {meshes::bumps(14, 14), disks::ramp(24, 4)}) {
+    for (const Options& options : all_modes()) {
+      const std::string where = "method " + std::to_string(options.method) + ", flatten " +
+                                std::to_string(options.flatten) + ", " +
+                                std::to_string(mesh.faces.size()) + " faces";
+      const std::int64_t polls = count_polls([&] { run(mesh, options); });
+      for (const std::int64_t k : moments(polls)) {
+        EXPECT_THROW(count_polls([&] { run(mesh, options); }, k), Cancelled)
+            << "poll " << k << " of " << polls << ", " << where;
+      }
+    }
+  }
 }
 
 }  // namespace

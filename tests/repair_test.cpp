@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "distortion/measure.h"
 #include "exact/certificate.h"
 #include "repair/global_fix.h"
+#include "repair/kernel.h"
 #include "repair/outliers.h"
+#include "repair/patch.h"
 #include "repair/repair.h"
+#include "repair/rounding.h"
 #include "support/disks.h"
+#include "support/polls.h"
 
 namespace beltrami {
 namespace {
@@ -269,6 +274,71 @@ TEST(CleanOutliers, LeavesAMapWithoutOutliersBitForBit) {
   EXPECT_EQ(clean_outliers(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, disks::rest_of(mesh), uvs, 1),
             0);
   EXPECT_EQ(uvs, disks::flat_uvs(mesh));
+}
+
+// ---- Hubs -----------------------------------------------------------------------------------
+
+/// A fan whose every second face is flipped by a rim that goes back and forth.
+std::vector<Vec2> folded_fan(Index faces) {
+  std::vector<Vec2> uvs = {{0, 0}};
+  for (Index i = 0; i < faces; ++i) {
+    const double angle = 2 * std::numbers::pi * (i % 2 == 0 ? i : i - 1.5) / faces;
+    uvs.push_back({std::cos(angle), std::sin(angle)});
+  }
+  return uvs;
+}
+
+TEST(CutPatch, GoesAroundEachVertexOnce) {
+  const auto polls = [](Index faces) {
+    const DiskMesh mesh = disks::disk(meshes::fan(faces));
+    const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+    return count_polls([&] { cut_patch(mesh, {}, uvs, 0, 4); });
+  };
+  // A thousand faces at a vertex are the most that it goes around.
+  EXPECT_LE(polls(1000), 40);
+  EXPECT_LE(polls(100000), 2 * polls(1000) + 2);
+}
+
+TEST(CutPatch, LeavesAHubWhereItIs) {
+  const DiskMesh mesh = disks::disk(meshes::fan(3000));
+  const Patch patch = cut_patch(mesh, {}, disks::flat_uvs(mesh), 7, 2);
+  EXPECT_LT(patch.faces.size(), 10u);
+  for (std::size_t v = 0; v < patch.mesh_vertices.size(); ++v) {
+    EXPECT_TRUE(patch.mesh_vertices[v] != 0 || patch.fixed[v]);
+  }
+}
+
+TEST(Repair, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
+  const auto polls = [](Index faces) {
+    const DiskMesh mesh = disks::disk(meshes::fan(faces));
+    std::vector<Vec2> uvs = folded_fan(faces);
+    const auto rest = disks::rest_of(mesh);
+    return count_polls([&] { repair(mesh, rest, uvs, {}); });
+  };
+  EXPECT_LE(polls(16000), 3 * polls(8000));
+}
+
+TEST(RoundMap, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
+  const auto polls = [](Index faces) {
+    const DiskMesh mesh = disks::disk(meshes::fan(faces));
+    std::vector<Vec2> uvs;
+    // Slivers far from the origin: rounding flips very many.
+    for (const Vec2& w : disks::flat_uvs(mesh)) uvs.push_back(w + Vec2(300, 200));
+    EXPECT_TRUE(injective(mesh, uvs));
+    return count_polls([&] { round_map(mesh, uvs, uvs, {.single = true}, 1); });
+  };
+  EXPECT_LE(polls(40000), 3 * polls(20000));
+}
+
+TEST(KernelCentroid, SeesAllOfAPolygonOfVeryManyCorners) {
+  std::vector<Vec2> polygon;
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 20000;
+    polygon.push_back({3 + std::cos(angle), 2 * std::sin(angle)});
+  }
+  const auto centre = kernel_centroid(polygon);
+  ASSERT_TRUE(centre);
+  EXPECT_LT((*centre - Vec2(3, 0)).norm(), 0.1);
 }
 
 }  // namespace

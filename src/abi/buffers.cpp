@@ -116,7 +116,8 @@ std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& 
 }  // namespace
 
 beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
-  const beltrami_mesh mesh = read_sized(theirs, "the mesh");
+  beltrami_mesh mesh = read_sized(theirs, "the mesh");
+  if (mesh.struct_size < sizeof mesh) mesh.cancel = nullptr;  // half a pointer is none
   if (mesh.flags != 0) refuse("the field `flags` of the mesh is not 0");
   if (mesh.vertex_count == 0 || mesh.face_count == 0) {
     throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");

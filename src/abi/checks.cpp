@@ -5,6 +5,7 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/reports.h"
+#include "base/interrupt.h"
 #include "distortion/measure.h"
 #include "exact/certificate.h"
 
@@ -19,6 +20,7 @@ enum class Scope { kTriangles, kBoundary, kInjective };
 beltrami_status judge(Scope scope, const beltrami_mesh* theirs, const beltrami_buffer* uvs,
                       beltrami_certificate& report) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
+  const InterruptScope interruptible({nullptr, mesh.cancel, {}});
   if (scope == Scope::kTriangles) {
     const InputTriangles triangles = read_triangles(mesh);
     const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, triangles.original);
@@ -67,8 +69,7 @@ struct Measured {
 };
 
 /// Throws Error.
-Measured read_measured(const beltrami_mesh* theirs, const beltrami_buffer* uvs) {
-  const beltrami_mesh mesh = read_mesh_header(theirs);
+Measured read_measured(const beltrami_mesh& mesh, const beltrami_buffer* uvs) {
   Measured input{read_triangles(mesh), {}, {}};
   input.positions = read_positions(mesh, input.triangles.original);
   validate_positions(input.positions);
@@ -99,7 +100,9 @@ beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffe
   beltrami::Failure unused;
   return beltrami::guarded(unused, [&] {
     beltrami::require_sized(out, "out");
-    const beltrami::Measured input = beltrami::read_measured(mesh, uvs);
+    const beltrami_mesh header = beltrami::read_mesh_header(mesh);
+    const beltrami::InterruptScope interruptible({nullptr, header.cancel, {}});
+    const beltrami::Measured input = beltrami::read_measured(header, uvs);
     beltrami::write_sized(out, beltrami::describe_distortion(beltrami::measure_distortion(
                                    input.positions, input.triangles.faces, input.uvs,
                                    beltrami::kThreads, face_energies)));
@@ -111,10 +114,14 @@ beltrami_status beltrami_measure_faces(const beltrami_mesh* mesh, const beltrami
                                        void* out, uint64_t stride) {
   beltrami::Failure unused;
   return beltrami::guarded(unused, [&] {
-    const beltrami::Measured input = beltrami::read_measured(mesh, uvs);
+    const beltrami_mesh header = beltrami::read_mesh_header(mesh);
+    const beltrami::InterruptScope interruptible({nullptr, header.cancel, {}});
+    const beltrami::Measured input = beltrami::read_measured(header, uvs);
     const std::vector<beltrami::Triangle>& faces = input.triangles.faces;
     beltrami::Writer writer(out, BELTRAMI_F64, stride, faces.size(), 4);
+    beltrami::PollSometimes poll;
     for (std::size_t f = 0; f < faces.size(); ++f) {
+      poll();
       const auto [a, b, c] = faces[f];
       const beltrami::FaceDistortion found =
           beltrami::measure_face({input.positions[a], input.positions[b], input.positions[c]},

@@ -79,8 +79,9 @@ void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
 
 }  // namespace
 
-LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads) {
+LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads, const std::atomic<bool>& cancelled) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
+  const InterruptScope interruptible({&cancelled, mesh.cancel, {}});
   LoadedMesh loaded;
   loaded.vertex_count = mesh.vertex_count;
   loaded.input = read_disk(mesh, threads);
@@ -106,7 +107,6 @@ std::uint64_t beltrami_context::estimate_memory() const {
 }
 
 beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
-  using beltrami::Error;
   beltrami::require_within_limit(estimate_memory(), options.memory_limit);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
@@ -119,7 +119,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
       beltrami::flatten(mesh->input.disk, mesh->frame, options, report, cancelled);
   // A request that came after the last look at it still counts, since the run was under way.
   if (mark.take_request() || host.cancelled()) {
-    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled on request");
+    throw beltrami::Cancelled();
   }
   flattening = std::move(result);
   return flattening->status;

@@ -22,8 +22,9 @@ struct LoadedMesh {
   Index first_degenerate_face = kNone;  ///< in the input
 };
 
-/// Reads, validates and normalises. Throws Error INVALID_ARGUMENT or a mesh status.
-LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads);
+/// Reads, validates and normalises. `cancelled` may be set from another thread. Throws Error
+/// INVALID_ARGUMENT or a mesh status, or Cancelled.
+LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads, const std::atomic<bool>& cancelled);
 
 }  // namespace beltrami
 
@@ -39,8 +40,8 @@ struct beltrami_context {
   /// Throws Error INVALID_STATE where there is no mesh.
   std::uint64_t estimate_memory() const;
 
-  /// Flattens the mesh. Throws Error INVALID_STATE, OUT_OF_MEMORY, CANCELLED or SOLVER; keeps old
-  /// results then.
+  /// Flattens the mesh. Throws Error INVALID_STATE, OUT_OF_MEMORY or SOLVER, or Cancelled; keeps
+  /// old results then.
   beltrami_status run(beltrami_progress progress, void* user);
 
   /// The results. Throws Error INVALID_STATE where there are none.

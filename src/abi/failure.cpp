@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "abi/status.h"
+#include "base/interrupt.h"
 
 namespace beltrami {
 
@@ -32,6 +33,9 @@ void Failure::set_static(const char* message) noexcept {
 beltrami_status describe_exception(Failure& failure) noexcept {
   try {
     throw;
+  } catch (const Cancelled&) {
+    failure.set_static("The call was cancelled on request.");
+    return BELTRAMI_E_CANCELLED;
   } catch (const Error& error) {
     failure.set(error.status(), error.what(), error.element());
     return error.status();

@@ -32,10 +32,9 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   std::atomic<std::int64_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_guard;
-  const std::atomic<bool>* const request = interrupt_request();
+  const InterruptSource request = interrupt_for_workers();
   const auto work = [&] {
     const StandardFloatingPoint standard_mode;
-    const InterruptScope interruptible(request);
     try {
       for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
         poll_interrupt();
@@ -50,7 +49,11 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   {
     std::vector<std::jthread> pool;
     pool.reserve(static_cast<std::size_t>(workers - 1));
-    for (int i = 1; i < workers; ++i) pool.emplace_back(work);
+    const auto work_aside = [&] {
+      const InterruptScope interruptible(request);
+      work();
+    };
+    for (int i = 1; i < workers; ++i) pool.emplace_back(work_aside);
     work();
   }
   if (failure) std::rethrow_exception(failure);

@@ -12,6 +12,7 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
+constexpr Index kHub = 40;  // faces at a vertex, beyond what a walk crosses
 constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
 
 /// The metric at each corner of a face, in the frame of the face.
@@ -120,9 +121,17 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
   const ClosestPoint tree(coarse.positions, coarse.faces);
   const SurfaceWalk walk(coarse);
+  std::vector<Index> valence(coarse.vertex_count(), 0);
+  for (const Triangle& t : coarse.faces) {
+    for (const Index v : t) ++valence[v];
+  }
   // The face to start at: the last one found where it touches the coarse vertex nearby.
-  const auto start_at = [&](Index fine_vertex, Index last) {
-    const Index home = nearby[fine_vertex];
+  const auto start_at = [&](const Triangle& fine_face, Index last) {
+    Index home = nearby[fine_face[0]];
+    // A walk around a hub would take too long.
+    for (const Index v : fine_face) {
+      if (valence[home] > kHub && valence[nearby[v]] < valence[home]) home = nearby[v];
+    }
     if (last != kNone) {
       const Triangle& t = coarse.faces[last];
       if (t[0] == home || t[1] == home || t[2] == home) return last;
@@ -145,7 +154,7 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
         const Vec3 centroid =
             (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3;
         SurfacePoint hit;
-        if (!nearby.empty()) hit = walk.find(centroid, to.frame.n, start_at(t[0], seed));
+        if (!nearby.empty()) hit = walk.find(centroid, to.frame.n, start_at(t, seed));
         if (hit.face == kNone) hit = tree.find(centroid, to.frame.n, seed);
         seed = hit.face;
         FaceMetric sum = zero_metric();

@@ -8,6 +8,7 @@
 
 #include "atomic_file.h"
 #include "descriptor.h"
+#include "interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -42,6 +43,7 @@ beltrami_mesh view_of(const TriangleView& triangles) {
   mesh.face_count = triangles.face_count();
   mesh.positions = {triangles.positions.data(), 0, BELTRAMI_F64, 0};
   mesh.indices = {triangles.faces.data(), 0, BELTRAMI_U32, 0};
+  mesh.cancel = interrupt_number();
   return mesh;
 }
 

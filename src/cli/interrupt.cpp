@@ -14,6 +14,7 @@ namespace {
 
 // A handler reaches globals only; these are lock-free, which is what makes them safe there.
 std::atomic<int> signals{0};
+alignas(std::atomic_ref<std::int32_t>::required_alignment) std::int32_t number_for_library = 0;
 std::atomic<beltrami_context*> target{nullptr};
 static_assert(std::atomic<beltrami_context*>::is_always_lock_free);
 
@@ -24,6 +25,7 @@ void ask_for_an_end() {
     remove_leftovers();
     std::_Exit(kExitCancelled);
   }
+  std::atomic_ref(number_for_library).store(1);
   beltrami_cancel(target.load());
 }
 
@@ -77,6 +79,10 @@ void install_signal_handlers() {
   }
   for (const int number : {SIGPIPE, SIGXFSZ}) replace_default(number, SIG_IGN, 0);
 #endif
+}
+
+const std::int32_t* interrupt_number() {
+  return &number_for_library;
 }
 
 bool interrupted() {

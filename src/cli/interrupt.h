@@ -3,6 +3,8 @@
 
 #include <beltrami/beltrami.h>
 
+#include <cstdint>
+
 namespace beltrami::cli {
 
 /// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU ask for an end, the third of them ends the
@@ -14,6 +16,9 @@ void install_signal_handlers();
 
 /// Whether a signal has asked for an end.
 bool interrupted();
+
+/// Not 0 once a signal has come: for beltrami_mesh.cancel.
+const std::int32_t* interrupt_number();
 
 /// Throws the Failure of a cancelled command if a signal has asked for an end.
 void throw_if_interrupted();

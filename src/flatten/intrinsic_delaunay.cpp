@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/interrupt.h"
+
 namespace beltrami {
 namespace {
 
@@ -58,23 +60,47 @@ class Flipper {
     return here + there >= -kCocircular * (std::abs(here) + std::abs(there) + 1);
   }
 
-  /// Whether the two vertices opposite to an edge are neighbours.
-  bool joined_already(Index h) const {
-    const Index first = DiskMesh::previous(h);  // leaves the vertex that is opposite here
-    const Index other = origin(DiskMesh::previous(twin_[h]));
-    Index out = first;
-    do {  // counter-clockwise
-      if (origin(DiskMesh::next(out)) == other) return true;
-      const Index in = DiskMesh::previous(out);
-      if (origin(in) == other) return true;
-      out = twin_[in];
-    } while (out != kNone && out != first);
-    if (out == first) return false;
-    for (out = twin_[first]; out != kNone; out = twin_[out]) {  // and clockwise from a boundary
-      out = DiskMesh::next(out);
-      if (origin(DiskMesh::next(out)) == other) return true;
+  /// The faces at a vertex, by the half-edges that leave it: counter-clockwise from the first, and
+  /// where that ends at the boundary clockwise from it.
+  struct Fan {
+    Index first, out;
+    bool clockwise = false;
+  };
+
+  /// False after the last face.
+  bool advance(Fan& fan) const {
+    if (!fan.clockwise) {
+      const Index onward = twin_[DiskMesh::previous(fan.out)];
+      if (onward == fan.first) return false;
+      if (onward != kNone) {
+        fan.out = onward;
+        return true;
+      }
+      fan.clockwise = true;
+      fan.out = fan.first;
     }
-    return false;
+    const Index back = twin_[fan.out];
+    if (back == kNone) return false;
+    fan.out = DiskMesh::next(back);
+    return true;
+  }
+
+  bool at_face(const Fan& fan, Index vertex) const {
+    return origin(DiskMesh::next(fan.out)) == vertex ||
+           origin(DiskMesh::previous(fan.out)) == vertex;
+  }
+
+  /// Whether the two vertices opposite to an edge are neighbours. Goes around both side by side,
+  /// since one may be a hub; either fan has the answer.
+  bool joined_already(Index h) {
+    Fan one{DiskMesh::previous(h), DiskMesh::previous(h)};
+    Fan other{DiskMesh::previous(twin_[h]), DiskMesh::previous(twin_[h])};
+    const Index r = origin(one.first), s = origin(other.first);
+    while (true) {
+      poll_();
+      if (at_face(one, s) || at_face(other, r)) return true;
+      if (!advance(one) || !advance(other)) return false;
+    }
   }
 
   /// Replaces the edge P-Q between the faces PQR and QPS by R-S.
@@ -120,6 +146,7 @@ class Flipper {
   std::vector<Index> twin_;
   std::vector<Cotangents> cotangents_;
   std::vector<Index> pending_;
+  PollSometimes poll_;
 };
 
 }  // namespace

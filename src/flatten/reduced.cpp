@@ -18,7 +18,6 @@ namespace {
 
 /// The paper's 50 to 500 uniform samples underestimate the energy by 5% to 15%.
 constexpr Index kStrata = 2000;
-constexpr Index kMostMetas = 1000;  // beyond, a dense Newton step takes several seconds
 constexpr double kBasisShare = 0.5, kNewtonShare = 0.45;  // of the work
 
 /// On a circle of the area of the mesh, by arc length.
@@ -94,7 +93,7 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   result.meta_vertices = size_of(x);
   result.samples = size_of(problem.rest);
   result.converged = descent.converged;
-  result.simple_boundary = count_crossings(mesh.boundary, result.uvs).count == 0;
+  result.simple_boundary = is_simple(mesh.boundary, result.uvs);
   return result;
 }
 

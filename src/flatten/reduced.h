@@ -13,6 +13,9 @@
 
 namespace beltrami {
 
+/// Meta vertices that dense algebra can serve: beyond, a Newton step takes several seconds.
+inline constexpr Index kMostMetas = 1000;
+
 struct ReducedOptions {
   Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
   bool scaffold = true;     ///< GIF: the boundary may not cross itself. false: FLIM, no flips alone

@@ -304,7 +304,7 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
     }
     if (!(energy(loose, trial) <= before - kArmijo * length * predicted)) continue;
     for (Index m = 0; m < metas_; ++m) places[m] = trial[first_meta() + m];
-    if (scaffold_ && count_crossings(loop_, places).count > 0) continue;
+    if (scaffold_ && !is_simple(loop_, places)) continue;
     x_ = places;
     edges_ += length * edge_direction;
     activate();

@@ -72,7 +72,7 @@ NewtonResult minimise(const DiskMesh& mesh, const std::vector<RestTriangle>& res
     NewtonStepper<Density> stepper(all.faces, all.rest, all.weights, mesh.face_count(), all.fixed,
                                    options.threads);
     stepper.set_accept([&](const std::vector<Vec2>& trial) {
-      return count_crossings(mesh.boundary, trial).count == 0;
+      return is_simple(mesh.boundary, trial);
     });
     const NewtonStep step = stepper.step(all.uvs, stepper.mean_energy(all.uvs));
     if (step.length == 0) break;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "base/bucket_sort.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 
 namespace beltrami {
@@ -58,7 +60,7 @@ struct Spoke {
 
 /// False if more than two half-edges run along an edge, or two in the same direction.
 bool pair_spokes(std::vector<Spoke>& spokes, std::vector<Index>& twin) {
-  std::sort(spokes.begin(), spokes.end());
+  sort_interruptibly(spokes.begin(), spokes.end(), std::less<>());
   for (std::size_t i = 0; i + 1 < spokes.size(); ++i) {
     const Spoke &one = spokes[i], &other = spokes[i + 1];
     if (one.far != other.far) continue;
@@ -160,7 +162,12 @@ void link_vertices(DiskMesh& mesh, const std::vector<Index>& boundary, int threa
 
   const auto fan = [&](Index v) {
     Index faces = 0;
-    if (mesh.outgoing[v] != kNone) mesh.for_each_outgoing(v, [&](Index) { ++faces; });
+    if (mesh.outgoing[v] == kNone) return faces;
+    PollSometimes poll;  // a hub may have all faces
+    mesh.for_each_outgoing(v, [&](Index) {
+      poll();
+      ++faces;
+    });
     return faces;
   };
   std::atomic<Index> in_fans{0};
@@ -218,12 +225,19 @@ void require_one_component(const DiskMesh& mesh, int threads) {
       }
     }
   });
+  PollSometimes poll;
   for (const auto& pairs : across) {
-    for (const auto& [one, other] : pairs) components.unite(one, other);
+    for (const auto& [one, other] : pairs) {
+      poll();
+      components.unite(one, other);
+    }
   }
   // Each other component shows at its least face, its root.
   Index outside = 1;
-  while (outside < mesh.face_count() && components.root(outside) == 0) ++outside;
+  while (outside < mesh.face_count() && components.root(outside) == 0) {
+    poll();
+    ++outside;
+  }
   if (outside == mesh.face_count()) return;
   throw Error(
       BELTRAMI_E_COMPONENTS,
@@ -242,7 +256,9 @@ void trace_boundary(DiskMesh& mesh, const std::vector<Index>& halfedges) {
   }
   std::vector<bool> visited(mesh.vertex_count(), false);
   Index v = mesh.origin(halfedges.front());
+  PollSometimes poll;
   do {
+    poll();
     mesh.boundary.push_back(v);
     visited[v] = true;
     v = mesh.target(mesh.outgoing[v]);
@@ -322,7 +338,9 @@ std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& 
   });
   std::vector<Index> original;
   original.reserve(vertex_count);
+  PollSometimes poll;
   for (Index v = 0; v < vertex_count; ++v) {
+    poll();
     if (renumbered[v] == kNone) continue;
     renumbered[v] = size_of(original);
     original.push_back(v);
@@ -362,7 +380,9 @@ double surface_area(const DiskMesh& mesh, int threads) {
 Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         int threads) {
   Vec3 low = positions.front(), high = positions.front();
+  PollSometimes poll;
   for (const Vec3& p : positions) {
+    poll();
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }

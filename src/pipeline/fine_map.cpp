@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "flatten/boundary_first.h"
@@ -164,7 +165,9 @@ std::vector<Vec2> Run::descend_from_circle(const std::vector<RestTriangle>& rest
                                            StageStatistics& statistics,
                                            const Checkpoint& checkpoint) {
   std::vector<Vec2> uvs = tutte_embedding(*disk_);
-  const RepairOptions mend{.simple_boundary = true, .threads = options_.threads};
+  const RepairOptions mend{.simple_boundary = true,
+                           .threads = options_.threads,
+                           .global_fix = affords(*disk_, options_, Extra::kGlobalFix)};
   repair(*disk_, rest, uvs, mend, checkpoint);
   if (!certify(disk_->faces, disk_->boundary, uvs, options_.threads).injective()) {
     uvs = grid_drawing(*disk_);
@@ -225,8 +228,7 @@ std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
 /// it. (The coarse boundary is simple, or there is nothing to hold on to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   const std::vector<Vec2> carried = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
-  const bool global =
-      keeps_boundary_simple() && count_crossings(disk_->boundary, carried).count == 0;
+  const bool global = keeps_boundary_simple() && is_simple(disk_->boundary, carried);
   std::vector<bool> held(disk_->vertex_count(), false);
   held[disk_->boundary.front()] = true;
   std::vector<Vec2> uvs;
@@ -246,21 +248,26 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
 /// Holds the boundary vertices within `reach` times the boundary length of the given edges.
 void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                     std::vector<bool>& held) const {
-  const Index count = size_of(disk_->boundary);
-  std::vector<double> along(count + 1, 0);
+  const std::vector<Index>& loop = disk_->boundary;
+  const Index count = size_of(loop);
+  const auto next = [count](Index i) { return i + 1 == count ? 0 : i + 1; };
+  std::vector<double> lengths(count), apart(count, std::numeric_limits<double>::infinity());
   for (Index i = 0; i < count; ++i) {
-    const Index a = disk_->boundary[i], b = disk_->boundary[i + 1 == count ? 0 : i + 1];
-    along[i + 1] = along[i] + (disk_->positions[b] - disk_->positions[a]).norm();
+    lengths[i] = (disk_->positions[loop[next(i)]] - disk_->positions[loop[i]]).norm();
   }
-  const double length = along[count];
   for (const auto& pair : edges) {
-    for (const Index edge : pair) {
-      for (Index i = 0; i < count; ++i) {
-        const double apart = std::abs(along[i] - along[edge]);
-        if (std::min(apart, length - apart) <= reach * length) held[disk_->boundary[i]] = true;
-      }
-      held[disk_->boundary[edge]] = held[disk_->boundary[edge + 1 == count ? 0 : edge + 1]] = true;
-    }
+    for (const Index edge : pair) apart[edge] = apart[next(edge)] = 0;
+  }
+  // Twice around, so that the way across the start of the loop counts, too.
+  for (Index round = 0, i = 0; round < 2 * count; ++round, i = next(i)) {
+    apart[next(i)] = std::min(apart[next(i)], apart[i] + lengths[i]);
+  }
+  for (Index round = 0, i = count - 1; round<2 * count; ++round, i = i> 0 ? i - 1 : count - 1) {
+    apart[i] = std::min(apart[i], apart[next(i)] + lengths[i]);
+  }
+  const double most = reach * std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  for (Index i = 0; i < count; ++i) {
+    if (apart[i] <= most) held[loop[i]] = true;
   }
 }
 
@@ -296,7 +303,7 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
   });
   if (!mend(fine, false, 0.66, uvs)) return uvs;
   // Polishing a map that crosses itself already would be in vain.
-  if (global && count_crossings(disk_->boundary, uvs).count > 0) return uvs;
+  if (global && !is_simple(disk_->boundary, uvs)) return uvs;
 
   polish_map(fine, held, *laplacian, uvs);
   return uvs;
@@ -375,7 +382,9 @@ bool Run::mend(const FineProblem& fine, bool simple_boundary, double until,
                std::vector<Vec2>& uvs) {
   bool positive = false;
   stage("repair", until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    const RepairOptions options{.simple_boundary = simple_boundary, .threads = options_.threads};
+    const RepairOptions options{.simple_boundary = simple_boundary,
+                                .threads = options_.threads,
+                                .global_fix = affords(*disk_, options_, Extra::kGlobalFix)};
     const RepairResult repaired = repair(*disk_, fine.rest, uvs, options, checkpoint);
     result_.flips_before_repair = repaired.flips_before;
     result_.kernel_fixes += repaired.kernel_fixes;

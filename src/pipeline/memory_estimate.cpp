@@ -2,8 +2,8 @@
 // counted from the types of their items; what cannot be counted is in the table below, to be
 // measured again with `./dev bench memory` whenever a kernel changes.
 //
-// Left out are the global fix of the repair, which few meshes need, and what takes less than the
-// stage after it: orderings, repairs of patches, the certificate.
+// Left out are the extras, which few meshes need and a memory limit forbids, and what takes less
+// than the stage after it: orderings, repairs of patches, the certificate.
 #include "pipeline/memory_estimate.h"
 
 #include <algorithm>
@@ -13,7 +13,9 @@
 
 #include "beltrami/prolongation.h"
 #include "flatten/laplacian.h"
+#include "flatten/meta_vertices.h"
 #include "flatten/metric.h"
+#include "flatten/reduced.h"
 #include "mesh/rest_shape.h"
 #include "pipeline/run.h"
 #include "sparse/native_solver.h"
@@ -37,9 +39,12 @@ constexpr double kFronts = 12, kFrontsOfThread = 6.5;
 constexpr double kMostTasks = 96;
 /// Bytes per fine vertex of the simplifier's surface and its candidates.
 constexpr double kSimplify = 225;
-/// GIF and FLIM: metas by stride, and of the others per boundary edge; bridges bring more. Samples
-/// besides the metas' own, each with rows of three vertices and two edges.
-constexpr double kMetas = 260, kCurvedMetas = 0.001, kSamples = 2000, kRowsOfSample = 5;
+/// GIF and FLIM: samples besides the metas' own, each with rows of three vertices and two edges; of
+/// the Newton systems, which are dense, the matrix and its factor.
+constexpr double kSamples = 2000, kRowsOfSample = 5, kNewtonCopies = 2;
+/// The global fix, per face: the corners' entries twice, as they come and scaled; and the factors,
+/// left and right, with their indices, in numbers of a factor by minimum degree.
+constexpr double kEntriesOfFace = 2 * 6 * 16, kBothFactors = 2 * (8 + 4);
 /// What the allocator holds beyond what is in use, what does not depend on the mesh, and what small
 /// meshes may take that need the global fix.
 constexpr double kAllocator = 1.08, kConstant = 8 << 20, kLeast = 40 << 20;
@@ -60,17 +65,27 @@ constexpr double kSolveFields = 2, kSolveFieldsOfSingle = 3 + 3 + 0.5;
 struct Counts {
   double vertices, faces, boundary;
   double regular;  ///< share of the vertices that have six faces
+  double metas;    ///< of the reduced flattening
 };
 
-Counts counts_of(const DiskMesh& mesh) {
+bool is_reduced(const Options& options) {
+  const bool flattens =
+      options.method == BELTRAMI_METHOD_BELTRAMI &&
+      (options.flatten == BELTRAMI_FLATTEN_GIF || options.flatten == BELTRAMI_FLATTEN_FLIM);
+  return flattens || options.method == BELTRAMI_METHOD_GIF;
+}
+
+Counts counts_of(const DiskMesh& mesh, const Options& options) {
   std::vector<std::uint8_t> faces_at(mesh.positions.size(), 0);
   for (const Triangle& face : mesh.faces) {
     for (const Index v : face) ++faces_at[v];
   }
   const auto regular = static_cast<double>(std::count(faces_at.begin(), faces_at.end(), 6));
   const double vertices = mesh.vertex_count();
+  const Index metas = is_reduced(options) ? choose_meta_vertices(mesh).count() : 0;
   return {vertices, static_cast<double>(mesh.face_count()),
-          static_cast<double>(mesh.boundary.size()), regular / vertices};
+          static_cast<double>(mesh.boundary.size()), regular / vertices,
+          static_cast<double>(std::min(metas, kMostMetas))};
 }
 
 double disk_bytes(const Counts& n) {
@@ -176,8 +191,20 @@ double metric_bytes(const Counts& n, int threads) {
   return metric_problem_bytes(n) + std::max(solve, polish);
 }
 
+/// Beside what the repair was given: the ring makes it a few faces and vertices more.
+double global_fix_bytes(const Counts& n) {
+  const double entries =
+      (kFillByDegree + kFillOfRegular * n.regular) * n.vertices * std::log2(n.vertices + 2);
+  return (n.faces + 2 * n.boundary) * (sizeof(Triangle) + kEntriesOfFace) + 8 * n.vertices * kUv +
+         kBothFactors * entries;
+}
+
 /// An extra beside the factor of the metric solve.
 double extra_bytes(const Counts& n, Extra extra, int threads) {
+  if (extra == Extra::kGlobalFix) {
+    return metric_problem_bytes(n) + system_bytes(n, 1, Precision::kSingle, threads).kept +
+           global_fix_bytes(n);
+  }
   const double factor = system_bytes(n, 1, Precision::kSingle, threads).kept;
   const double work = extra == Extra::kNewtonSteps
                           ? newton_bytes(n, threads)
@@ -187,8 +214,9 @@ double extra_bytes(const Counts& n, Extra extra, int threads) {
 
 /// GIF and FLIM: a factor in double precision, then rows of the basis, which is dense.
 double reduced_bytes(const Counts& n) {
-  const double metas = std::min(kMetas + kCurvedMetas * n.boundary, n.boundary);
-  const double basis = kRowsOfSample * std::min(kSamples + metas, n.faces) * metas * kReal;
+  const double metas = n.metas;
+  const double basis = kRowsOfSample * std::min(kSamples + metas, n.faces) * metas * kReal +
+                       kNewtonCopies * 4 * metas * metas * kReal;
   const System system = system_bytes(n, 1, Precision::kDouble, 1);
   return fine_bytes(n) + n.faces * sizeof(Cotangents) + n.vertices * kUv +
          std::max(system.peak, system.kept + basis);
@@ -203,7 +231,7 @@ double boundary_first_bytes(const Counts& n) {
 Counts coarse_counts(const Counts& n, const Options& options) {
   const auto faces = static_cast<double>(coarse_faces(static_cast<Index>(n.faces), options));
   const double share = faces / n.faces;
-  return {share * n.vertices, share * n.faces, share * n.boundary, n.regular};
+  return {share * n.vertices, share * n.faces, share * n.boundary, n.regular, n.metas};
 }
 
 /// Whether there is a coarse mesh; smaller meshes are left to composite majorization.
@@ -264,13 +292,13 @@ std::uint64_t run_bytes(const Counts& n, const Options& options, double stage) {
 
 bool affords(const DiskMesh& mesh, const Options& options, Extra extra) {
   if (options.memory_limit == 0) return true;
-  const Counts n = counts_of(mesh);
+  const Counts n = counts_of(mesh, options);
   return run_bytes(n, options, extra_bytes(n, extra, options.threads)) <=
          static_cast<std::uint64_t>(options.memory_limit);
 }
 
 std::uint64_t estimate_memory(const DiskMesh& mesh, const Options& options) {
-  const Counts n = counts_of(mesh);
+  const Counts n = counts_of(mesh, options);
   double stage = method_bytes(n, options);
   if (options.refine) stage = std::max(stage, cm_bytes(n, options.threads, true));
   return run_bytes(n, options, stage);

@@ -7,11 +7,12 @@
 
 namespace beltrami {
 
-/// What a run in the metric mode does on hard meshes only, beyond its estimate, and does without
-/// where its memory limit is too low for it.
+/// What a run does on hard meshes only, beyond its estimate, and does without where its memory
+/// limit is too low for it.
 enum class Extra {
   kHarmonicMap,  ///< beside the metric one, where that flips many faces
   kNewtonSteps,  ///< after a polish that nearly singular faces block: several times the memory
+  kGlobalFix,    ///< of the repair
 };
 
 /// Bytes at the peak of a run with these options, the context's mesh and results included, extras

@@ -6,11 +6,13 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "flatten/dirichlet.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
 #include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
@@ -33,9 +35,8 @@ constexpr double kHopelessEnergy = 1e3;
 void Run::report(double fraction, const char* name) {
   fraction_ = std::max(fraction_, fraction);
   const bool stop = progress_ && progress_(fraction_, name);
-  if (stop || cancelled_.load(std::memory_order_relaxed)) {
-    throw Error(BELTRAMI_E_CANCELLED, "the run was cancelled");
-  }
+  if (stop || cancelled_.load(std::memory_order_relaxed)) throw Cancelled();
+  poll_interrupt();
 }
 
 bool Run::keeps_boundary_simple() const {
@@ -52,7 +53,7 @@ NewtonOptions Run::newton_options(const DiskMesh& mesh) const {
   newton.threads = options_.threads;
   if (keeps_boundary_simple()) {
     newton.admissible = [&mesh](const std::vector<Vec2>& map) {
-      return count_crossings(mesh.boundary, map).count == 0;
+      return is_simple(mesh.boundary, map);
     };
   }
   return newton;
@@ -90,7 +91,9 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
 std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                  const Checkpoint& checkpoint) {
   std::vector<Vec2> uvs = tutte_embedding(mesh);
-  if (repair(mesh, rest, uvs, {.threads = options_.threads}).flips_after == 0) return uvs;
+  const RepairOptions mend{.threads = options_.threads,
+                           .global_fix = affords(mesh, options_, Extra::kGlobalFix)};
+  if (repair(mesh, rest, uvs, mend).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
   return other.empty() ? grid_drawing(mesh) : other;
 }
@@ -122,7 +125,8 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
                    options_.threads);
     const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
-                             .threads = options_.threads};
+                             .threads = options_.threads,
+                             .global_fix = affords(mesh, options_, Extra::kGlobalFix)};
     if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
     if (keeps_boundary_simple() && count_crossings(mesh.boundary, uvs).count > 0) continue;
     clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
@@ -188,7 +192,9 @@ std::vector<Vec2> Run::run_tutte() {
   stage("tutte", 0.9, [&](StageStatistics&, const Checkpoint& checkpoint) {
     uvs = tutte_embedding(input_);
     const auto rest = rest_triangles(input_.positions, input_.faces, options_.threads);
-    const RepairOptions mend{.simple_boundary = true, .threads = options_.threads};
+    const RepairOptions mend{.simple_boundary = true,
+                             .threads = options_.threads,
+                             .global_fix = affords(input_, options_, Extra::kGlobalFix)};
     result_.flips_before_repair = repair(input_, rest, uvs, mend, checkpoint).flips_before;
   });
   return uvs;

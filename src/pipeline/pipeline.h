@@ -71,7 +71,7 @@ struct Flattening {
 using Progress = std::function<bool(double fraction, const char* stage)>;
 
 /// Flattens a disk that `normalise` has brought to about unit area; `frame` is what it returned.
-/// `cancelled` may be set from another thread. Throws Error (CANCELLED, SOLVER) or std::bad_alloc.
+/// `cancelled` may be set from another thread. Throws Cancelled, Error SOLVER or std::bad_alloc.
 Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Options& options,
                    const Progress& progress, const std::atomic<bool>& cancelled);
 

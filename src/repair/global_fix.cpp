@@ -58,8 +58,7 @@ struct Glued {
 
 Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
-  const bool simple =
-      count_crossings(mesh.boundary, uvs).count == 0 && is_counter_clockwise(polygon);
+  const bool simple = is_simple(mesh.boundary, uvs) && is_counter_clockwise(polygon);
   const std::vector<Vec2> inner = simple ? polygon : boundary_on_circle(mesh);
   const RingTriangulation ring =
       triangulate_ring(inner, circle_around(inner, kCircleFactor, kCirclePoints));

@@ -12,6 +12,7 @@
 #include "fullspace/assembly.h"
 #include "fullspace/newton.h"
 #include "repair/patch.h"
+#include "repair/patch_work.h"
 
 namespace beltrami {
 namespace {
@@ -91,32 +92,6 @@ class FaceEnergies {
   const std::vector<RestTriangle>& rest_;
   const std::vector<Vec2>& uvs_;
   double limit_ = 0;
-};
-
-/// Puts optimised patches back, unless the boundary would cross itself more often.
-class PatchWork {
- public:
-  PatchWork(const DiskMesh& mesh, std::vector<Vec2>& uvs) : mesh_(mesh), uvs_(uvs) {}
-
-  bool take(Patch& patch) {
-    if (patch.moves_boundary && crossings_ < 0) crossings_ = count();
-    patch.exchange(uvs_);
-    if (!patch.moves_boundary) return true;
-    const std::int64_t now = count();
-    if (now > crossings_) {
-      patch.exchange(uvs_);
-      return false;
-    }
-    crossings_ = now;
-    return true;
-  }
-
- private:
-  std::int64_t count() const { return count_crossings(mesh_.boundary, uvs_).count; }
-
-  const DiskMesh& mesh_;
-  std::vector<Vec2>& uvs_;
-  std::int64_t crossings_ = -1;  // not counted yet
 };
 
 template <class Density>

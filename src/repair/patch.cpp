@@ -1,33 +1,71 @@
 #include "repair/patch.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
+
+#include "base/interrupt.h"
+#include "repair/hub_turns.h"
 
 namespace beltrami {
 namespace {
 
 void sort_unique(std::vector<Index>& items) {
-  std::sort(items.begin(), items.end());
+  sort_interruptibly(items.begin(), items.end(), std::less<>());
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
-std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
-  std::vector<Index> found{face}, front{face};
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<Index> reached;
-    for (const Index f : front) {
-      for (const Index v : mesh.faces[f]) {
-        mesh.for_each_outgoing(v, [&](Index h) { reached.push_back(h / 3); });
-      }
-    }
-    sort_unique(reached);
-    front.clear();
-    std::set_difference(reached.begin(), reached.end(), found.begin(), found.end(),
-                        std::back_inserter(front));
-    found.insert(found.end(), front.begin(), front.end());
-    std::sort(found.begin(), found.end());
+/// What `of` gives to the items, each once.
+template <class Visit>
+std::vector<Index> gather(const std::vector<Index>& items, const Visit& of) {
+  std::vector<Index> found;
+  PollSometimes poll;
+  for (const Index item : items) {
+    of(item, [&](Index i) {
+      poll();
+      found.push_back(i);
+    });
   }
+  sort_unique(found);
   return found;
+}
+
+/// The items that are not in `known`; both increasing.
+std::vector<Index> without(const std::vector<Index>& items, const std::vector<Index>& known) {
+  std::vector<Index> rest;
+  std::set_difference(items.begin(), items.end(), known.begin(), known.end(),
+                      std::back_inserter(rest));
+  return rest;
+}
+
+void merge_into(std::vector<Index>& known, const std::vector<Index>& items) {
+  const auto middle = static_cast<std::ptrdiff_t>(known.size());
+  known.insert(known.end(), items.begin(), items.end());
+  std::inplace_merge(known.begin(), known.begin() + middle, known.end());
+}
+
+/// A hub with more faces is left where it is: a patch with all of them is not small.
+constexpr Index kMostFacesAtVertex = 1000;
+
+/// Each vertex is gone around once.
+std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
+  std::vector<Index> faces{face}, front{face}, vertices;
+  for (int ring = 0; ring < rings && !front.empty(); ++ring) {
+    const std::vector<Index> corners = without(gather(front,
+                                                      [&](Index f, const auto& take) {
+                                                        for (const Index v : mesh.faces[f]) take(v);
+                                                      }),
+                                               vertices);
+    front = without(gather(corners,
+                           [&](Index v, const auto& take) {
+                             if (is_hub(mesh, v, kMostFacesAtVertex)) return;
+                             mesh.for_each_outgoing(v, [&](Index h) { take(h / 3); });
+                           }),
+                    faces);
+    merge_into(vertices, corners);
+    merge_into(faces, front);
+  }
+  return faces;
 }
 
 }  // namespace
@@ -57,10 +95,14 @@ Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
   }
   patch.fixed.assign(patch.mesh_vertices.size(), false);
+  PollSometimes poll;
   for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
     const Index v = patch.mesh_vertices[i];
     patch.uvs.push_back(uvs[v]);
+    patch.fixed[i] = is_hub(mesh, v, kMostFacesAtVertex);
+    if (patch.fixed[i]) continue;
     mesh.for_each_outgoing(v, [&](Index h) {
+      poll();
       if (!std::binary_search(patch.mesh_faces.begin(), patch.mesh_faces.end(), h / 3)) {
         patch.fixed[i] = true;
       }

@@ -24,8 +24,8 @@ struct Patch {
   void exchange(std::vector<Vec2>& mesh_uvs);
 };
 
-/// Cuts out the faces within `rings` vertex rings of `face`. `rest` may be empty, and the patch's
-/// then is.
+/// Cuts out the faces within `rings` vertex rings of `face`; the rings of hubs, vertices with more
+/// than 1000 faces, are left out, and hubs are fixed. `rest` may be empty, and the patch's then is.
 Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const std::vector<Vec2>& uvs, Index face, int rings);
 

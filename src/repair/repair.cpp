@@ -5,10 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "exact/certificate.h"
 #include "repair/global_fix.h"
+#include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
+#include "repair/patch_work.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -35,7 +38,8 @@ class Repair {
     std::vector<Index> bad = find_bad();
     result_.flips_before = size_of(bad);
     const bool all_local = mend_locally(bad, 0, kLocalShare);
-    if (!all_local || (options_.simple_boundary && crossings() > 0)) {
+    if (options_.global_fix &&
+        (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
       checkpoint_(kLocalShare);
       mend_globally();
     }
@@ -54,9 +58,12 @@ class Repair {
   bool mend_locally(std::vector<Index> bad, double from, double until) {
     if (bad.empty()) return true;
     for (const bool neighbours_first : {false, true}) {
+      HubTurns turns(mesh_);
       for (const Index face : bad) {
+        poll_interrupt();
         for (const Index v : mesh_.faces[face]) {
           if (positive(face)) break;
+          if (!turns.take(v)) continue;
           if (neighbours_first) move_ring_to_kernels(v);
           if (move_to_kernel(v)) ++result_.kernel_fixes;
         }
@@ -65,7 +72,7 @@ class Repair {
       if (bad.empty()) return true;
     }
     if (bad.size() > kMostPatches) return false;
-    crossings_ = crossings();
+    PatchWork work(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       std::size_t done = 0;
       for (const Index face : bad) {
@@ -73,7 +80,7 @@ class Repair {
                               static_cast<double>(done++) / static_cast<double>(bad.size())) /
                              kPatchRings.size();
         checkpoint_(from + (until - from) * share);
-        if (!positive(face) && fix_patch(face, kPatchRings[level])) ++result_.patch_fixes;
+        if (!positive(face) && fix_patch(face, kPatchRings[level], work)) ++result_.patch_fixes;
       }
       bad = find_bad();
     }
@@ -100,6 +107,9 @@ class Repair {
 
   void move_ring_to_kernels(Index vertex) {
     mesh_.for_each_outgoing(vertex, [&](Index h) {
+      poll_interrupt();
+      // Another hub has its own turn.
+      if (is_hub(mesh_, mesh_.target(h), kManyFaces)) return;
       if (move_to_kernel(mesh_.target(h))) ++result_.kernel_fixes;
     });
   }
@@ -130,18 +140,10 @@ class Repair {
     return true;
   }
 
-  bool fix_patch(Index face, int rings) {
+  bool fix_patch(Index face, int rings, PatchWork& work) {
     Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
     if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return false;
-    patch.exchange(uvs_);
-    if (!patch.moves_boundary) return true;
-    const std::int64_t now = crossings();
-    if (now > crossings_) {
-      patch.exchange(uvs_);
-      return false;
-    }
-    crossings_ = now;
-    return true;
+    return work.take(patch);
   }
 
   const DiskMesh& mesh_;
@@ -150,7 +152,6 @@ class Repair {
   const RepairOptions options_;
   const Checkpoint& checkpoint_;
   RepairResult result_;
-  std::int64_t crossings_ = 0;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct RepairOptions {
   /// Whether a boundary that crosses itself is to be mended too.
   bool simple_boundary = false;
   int threads = 1;
+  bool global_fix = true;  ///< rung 3; it takes more memory than the others
 };
 
 struct RepairResult {

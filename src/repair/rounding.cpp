@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "mesh/boundary.h"
+#include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
 #include "repair/untangle.h"
@@ -37,9 +40,11 @@ class Rounding {
   /// Tries to make `faces` positive, and never makes another face worse.
   void mend(std::vector<Index> faces, const Checkpoint& checkpoint) {
     for (const int spacing : kSpacings) {
+      HubTurns turns(mesh_);
       for (const Index face : faces) {
+        poll_interrupt();
         for (const Index v : mesh_.faces[face]) {
-          if (!positive(face)) improve(v, spacing);
+          if (!positive(face) && turns.take(v)) improve(v, spacing);
         }
       }
       keep_bad(faces);
@@ -80,7 +85,9 @@ class Rounding {
 
   Quality quality_at(Index vertex) const {
     Quality quality;
+    PollSometimes poll;
     mesh_.for_each_outgoing(vertex, [&](Index h) {
+      poll();
       const Triangle& t = mesh_.faces[h / 3];
       if (orientation(uvs_[t[0]], uvs_[t[1]], uvs_[t[2]]) <= 0) ++quality.bad;
       const Vec2 a = uvs_[t[1]] - uvs_[t[0]], b = uvs_[t[2]] - uvs_[t[0]];
@@ -166,22 +173,29 @@ std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& 
   return build_disk(std::vector<Vec3>(uvs.size() + kCirclePoints, Vec3::Zero()), std::move(faces));
 }
 
+void sort_unique(std::vector<Index>& items) {
+  sort_interruptibly(items.begin(), items.end(), std::less<>());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
 /// The ring's faces at the edges that cross.
 std::vector<Index> faces_at_crossings(const DiskMesh& mesh, const DiskMesh& surrounded,
                                       const std::vector<Vec2>& uvs) {
-  std::vector<Index> faces;
   const Index count = size_of(mesh.boundary);
+  std::vector<Index> vertices, faces;
   for (const auto& pair : find_crossings(mesh.boundary, uvs)) {
     for (const Index edge : pair) {
-      for (const Index v : {mesh.boundary[edge], mesh.boundary[(edge + 1) % count]}) {
-        surrounded.for_each_outgoing(v, [&](Index h) {
-          if (h / 3 >= mesh.face_count()) faces.push_back(h / 3);
-        });
-      }
+      vertices.push_back(mesh.boundary[edge]);
+      vertices.push_back(mesh.boundary[(edge + 1) % count]);
     }
   }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  sort_unique(vertices);
+  for (const Index v : vertices) {
+    surrounded.for_each_outgoing(v, [&](Index h) {
+      if (h / 3 >= mesh.face_count()) faces.push_back(h / 3);
+    });
+  }
+  sort_unique(faces);
   return faces;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -555,6 +556,21 @@ class Dissection {
     }
   }
 
+  /// By insertion where they are few, as they are but for the hubs of huge fans.
+  static void sort_descending(std::span<int> items) {
+    constexpr std::size_t kFew = 32;
+    if (items.size() > kFew) {
+      std::sort(items.begin(), items.end(), std::greater<>());
+      return;
+    }
+    for (std::size_t i = 1; i < items.size(); ++i) {
+      const int item = items[i];
+      std::size_t at = i;
+      for (; at > 0 && items[at - 1] < item; --at) items[at] = items[at - 1];
+      items[at] = item;
+    }
+  }
+
   /// The band and what its members touch, for the search of the smallest separator.
   template <class LabelOf>
   static void describe_band(const Graph& graph, const LabelOf& label_of, Scratch& scratch) {
@@ -568,19 +584,15 @@ class Dissection {
       for (const int w : graph.neighbours(v)) {
         const int label = label_of(w);
         if (label >= 0) {
-          // The band is numbered from the sources to the sinks: onward first, by insertion.
-          std::size_t at = cut.neighbour.size();
           cut.neighbour.push_back(label);
-          for (; at > first && cut.neighbour[at - 1] < label; --at) {
-            cut.neighbour[at] = cut.neighbour[at - 1];
-          }
-          cut.neighbour[at] = label;
         } else if (label == kFirstCore) {
           terminal |= VertexSeparator::kSource;
         } else if (label == kSecondCore) {
           terminal |= VertexSeparator::kSink;
         }
       }
+      // The band is numbered from the sources to the sinks: onward first.
+      sort_descending(std::span(cut.neighbour).subspan(first));
       cut.start.push_back(static_cast<int>(cut.neighbour.size()));
       if (static_cast<int>(cut.terminal.size()) >= scratch.own)
         terminal |= VertexSeparator::kSource;

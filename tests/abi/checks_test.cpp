@@ -1,5 +1,6 @@
 // The checks and the measure of the caller's own arrays.
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "abi/host.h"
@@ -258,6 +259,39 @@ TEST(Measure, AgreesWithTheRun) {
   EXPECT_NEAR(measured.symmetric_dirichlet / reported.symmetric_dirichlet, 1, 1e-12);
   EXPECT_NEAR(measured.symmetric_arap / reported.symmetric_arap, 1, 1e-12);
   EXPECT_EQ(measured.worst_face, reported.worst_face);
+}
+
+// ---- Cancelling -----------------------------------------------------------------------------
+
+TEST(Checks, EndWhereTheCallerAsksForIt) {
+  const TriangleList mesh = meshes::grid(10, 10);
+  const Uvs uvs = flat_uvs(mesh);
+  const beltrami_buffer uv_view = view(uvs);
+  beltrami_mesh mesh_view = view(mesh);
+  int32_t number = 0;
+  mesh_view.cancel = &number;
+  std::vector<double> values(4 * mesh.faces.size());
+  const Context context = create();
+  const auto statuses = [&] {
+    std::vector<beltrami_status> all;
+    beltrami_certificate certificate = sized<beltrami_certificate>();
+    for (Check* check :
+         {beltrami_check_triangles, beltrami_check_boundary, beltrami_check_injective}) {
+      all.push_back(check(&mesh_view, &uv_view, &certificate));
+    }
+    beltrami_energy energy = sized<beltrami_energy>();
+    all.push_back(beltrami_measure(&mesh_view, &uv_view, &energy, nullptr));
+    all.push_back(beltrami_measure_faces(&mesh_view, &uv_view, values.data(), 0));
+    all.push_back(beltrami_set_mesh(context.get(), &mesh_view));
+    return all;
+  };
+  EXPECT_EQ(statuses(), std::vector<beltrami_status>(6, BELTRAMI_OK));
+  number = 1;
+  EXPECT_EQ(statuses(), std::vector<beltrami_status>(6, BELTRAMI_E_CANCELLED));
+  EXPECT_EQ(run(context), BELTRAMI_OK) << "the mesh of before is still there";
+  // A caller that does not know the field.
+  mesh_view.struct_size = offsetof(beltrami_mesh, cancel);
+  EXPECT_EQ(statuses(), std::vector<beltrami_status>(6, BELTRAMI_OK));
 }
 
 }  // namespace

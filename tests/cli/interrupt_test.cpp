@@ -7,6 +7,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "command.h"
 #include "mesh_file.h"
 #include "run_program.h"
 #include "tiny_meshes.h"
@@ -111,6 +112,28 @@ TEST_P(Interrupt, IsHeardByARunAtAnyCallOfItsProgress) {
         },
         testing::ExitedWithCode(0), "");
   }
+}
+
+TEST_P(Interrupt, IsHeardByAChecksWork) {
+  const TemporaryDirectory directory;
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  const MeshFile file = read_mesh(directory.file("in.obj", text), Content::kUvs);
+  const auto check = [&] {
+    const beltrami_mesh mesh = view_of(file);
+    const beltrami_buffer uvs = uv_view(file.uvs);
+    beltrami_certificate certificate{};
+    certificate.struct_size = sizeof certificate;
+    return beltrami_check_injective(&mesh, &uvs, &certificate);
+  };
+  ASSERT_EQ(check(), BELTRAMI_OK);
+  EXPECT_EXIT(
+      {
+        std::signal(GetParam(), SIG_DFL);
+        install_signal_handlers();
+        raise(GetParam());
+        _exit(check() == BELTRAMI_E_CANCELLED ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST_P(Interrupt, IsNotHeardWhereTheParentIgnoresIt) {

@@ -129,6 +129,29 @@ def _mesh(vertices: Array | None, faces: Array, vertex_count: int) -> Any:
     return mesh
 
 
+_LEAST_WATCHED = 10_000  # faces: what is done with fewer is over before Ctrl-C could end it
+
+
+def _cancellable(mesh: Any, call: Callable[[], int]) -> int:
+    """Return the status of a `call` on `mesh`, which Ctrl-C ends. Raises KeyboardInterrupt."""
+    if mesh.face_count < _LEAST_WATCHED:
+        return call()
+    number = ffi.new("int32_t*")
+    mesh.cancel = number
+
+    def cancel() -> None:
+        number[0] = 1
+
+    try:
+        with _interrupt.watched(cancel) as interrupt:
+            status = call()
+    finally:
+        mesh.cancel = ffi.NULL
+    if interrupt.came:
+        raise KeyboardInterrupt
+    return status
+
+
 # ---- Options ------------------------------------------------------------------------------
 
 
@@ -283,7 +306,7 @@ class Context:
         """Copy and validate a mesh in arrays of `_arrays`. Raises MeshError."""
         try:
             mesh = _mesh(vertices, faces, len(vertices))
-            self._check(lib.beltrami_set_mesh(self._context, mesh))
+            self._check(_cancellable(mesh, lambda: lib.beltrami_set_mesh(self._context, mesh)))
         except BeltramiError as error:
             _name_index(error, faces, len(vertices), "vertices")
             raise
@@ -388,7 +411,8 @@ class Context:
 def _judge(function: Any, vertices: Array | None, faces: Array, uv: Array, out: Any) -> None:
     """Call a check. Raises BeltramiError where the status says that there is no verdict."""
     mesh = _mesh(vertices, faces, len(uv))
-    status = function(mesh, ffi.new("beltrami_buffer*", _buffer(uv)), out)
+    uvs = ffi.new("beltrami_buffer*", _buffer(uv))
+    status = _cancellable(mesh, lambda: function(mesh, uvs, out))
     if status >= 0:
         return
     try:
@@ -410,10 +434,10 @@ def measure(vertices: Array, faces: Array, uv: Array) -> tuple[Energy, Array]:
     out = _sized("beltrami_energy")
     values = np.empty((len(faces), 4))
     mesh, uvs = _mesh(vertices, faces, len(uv)), ffi.new("beltrami_buffer*", _buffer(uv))
-    status = lib.beltrami_measure(mesh, uvs, out, ffi.NULL)
+    status = _cancellable(mesh, lambda: lib.beltrami_measure(mesh, uvs, out, ffi.NULL))
     if status >= 0:
         pointer = ffi.cast("double*", values.ctypes.data)
-        status = lib.beltrami_measure_faces(mesh, uvs, pointer, 0)
+        status = _cancellable(mesh, lambda: lib.beltrami_measure_faces(mesh, uvs, pointer, 0))
     if status < 0:
         check("triangles", uv, faces)  # the measures name no element, this does
         _fail(status, "", _first_odd_vertex(vertices, faces), lib.BELTRAMI_ELEMENT_VERTEX)

@@ -4,6 +4,7 @@ use std::mem::size_of;
 
 use beltrami_sys as sys;
 
+use crate::control::CancelToken;
 use crate::error::{Element, Error};
 use crate::mesh::{topology, Faces, Mesh, Uvs};
 use crate::verdict::{Certificate, Crossings, Distortion, Orientations};
@@ -29,8 +30,13 @@ type Check = unsafe extern "C" fn(
 ) -> sys::beltrami_status;
 
 /// Judges UVs, one per vertex, by one of the library's checks.
-fn judge(check: Check, faces: Faces<'_>, uvs: Uvs<'_>) -> Result<Certificate, Error> {
-    let mesh = topology(faces, uvs.len());
+fn judge(
+    check: Check,
+    faces: Faces<'_>,
+    uvs: Uvs<'_>,
+    token: &CancelToken,
+) -> Result<Certificate, Error> {
+    let mesh = sys::beltrami_mesh { cancel: token.number(), ..topology(faces, uvs.len()) };
     let mut raw = Certificate::raw();
     // SAFETY: the views are borrowed, all their items are there; `raw` has the size that it says.
     let status = unsafe { check(&mesh, &uvs.0.raw(), &mut raw) };
@@ -67,7 +73,20 @@ pub fn check_injective<'a>(
     faces: impl Into<Faces<'a>>,
     uvs: impl Into<Uvs<'a>>,
 ) -> Result<Certificate, Error> {
-    judge(sys::beltrami_check_injective, faces.into(), uvs.into())
+    check_injective_with(faces, uvs, &CancelToken::new())
+}
+
+/// [`check_injective`] that `token` ends.
+///
+/// # Errors
+///
+/// As of [`check_injective`], and [`Cancelled`](crate::ErrorKind::Cancelled).
+pub fn check_injective_with<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+    token: &CancelToken,
+) -> Result<Certificate, Error> {
+    judge(sys::beltrami_check_injective, faces.into(), uvs.into(), token)
 }
 
 /// Judges the orientation of every face. Any list of triangles will do: it needs no topology.
@@ -81,7 +100,20 @@ pub fn check_triangles<'a>(
     faces: impl Into<Faces<'a>>,
     uvs: impl Into<Uvs<'a>>,
 ) -> Result<Orientations, Error> {
-    Ok(judge(sys::beltrami_check_triangles, faces.into(), uvs.into())?.orientations)
+    check_triangles_with(faces, uvs, &CancelToken::new())
+}
+
+/// [`check_triangles`] that `token` ends.
+///
+/// # Errors
+///
+/// As of [`check_triangles`], and [`Cancelled`](crate::ErrorKind::Cancelled).
+pub fn check_triangles_with<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+    token: &CancelToken,
+) -> Result<Orientations, Error> {
+    Ok(judge(sys::beltrami_check_triangles, faces.into(), uvs.into(), token)?.orientations)
 }
 
 /// Judges whether the boundary loop is simple, and verifies that the faces form one oriented disk.
@@ -93,13 +125,31 @@ pub fn check_boundary<'a>(
     faces: impl Into<Faces<'a>>,
     uvs: impl Into<Uvs<'a>>,
 ) -> Result<Crossings, Error> {
-    Ok(judge(sys::beltrami_check_boundary, faces.into(), uvs.into())?.crossings)
+    check_boundary_with(faces, uvs, &CancelToken::new())
+}
+
+/// [`check_boundary`] that `token` ends.
+///
+/// # Errors
+///
+/// As of [`check_boundary`], and [`Cancelled`](crate::ErrorKind::Cancelled).
+pub fn check_boundary_with<'a>(
+    faces: impl Into<Faces<'a>>,
+    uvs: impl Into<Uvs<'a>>,
+    token: &CancelToken,
+) -> Result<Crossings, Error> {
+    Ok(judge(sys::beltrami_check_boundary, faces.into(), uvs.into(), token)?.crossings)
 }
 
 /// Why a measure failed, with the element where it is one of the faces or the UVs: a measure does not
 /// name it, but the check that reads the same does.
-fn measure_failure(status: sys::beltrami_status, mesh: &Mesh<'_>, uvs: Uvs<'_>) -> Error {
-    match judge(sys::beltrami_check_triangles, mesh.faces, uvs) {
+fn measure_failure(
+    status: sys::beltrami_status,
+    mesh: &Mesh<'_>,
+    uvs: Uvs<'_>,
+    token: &CancelToken,
+) -> Error {
+    match judge(sys::beltrami_check_triangles, mesh.faces, uvs, token) {
         Err(error) if error.kind.status() == status => error,
         _ => Error::from_status(status, None),
     }
@@ -114,15 +164,29 @@ fn measure_failure(status: sys::beltrami_status, mesh: &Mesh<'_>, uvs: Uvs<'_>) 
 /// [`NonFinite`](crate::ErrorKind::NonFinite) with the vertex where it is a UV, [`Empty`](crate::ErrorKind::Empty),
 /// [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
 pub fn measure<'a>(mesh: &Mesh<'_>, uvs: impl Into<Uvs<'a>>) -> Result<Distortion, Error> {
+    measure_with(mesh, uvs, &CancelToken::new())
+}
+
+/// [`measure`] that `token` ends.
+///
+/// # Errors
+///
+/// As of [`measure`], and [`Cancelled`](crate::ErrorKind::Cancelled).
+pub fn measure_with<'a>(
+    mesh: &Mesh<'_>,
+    uvs: impl Into<Uvs<'a>>,
+    token: &CancelToken,
+) -> Result<Distortion, Error> {
     let uvs = uvs.into();
     mesh.require_one_uv_per_vertex(&uvs)?;
     let mut raw = Distortion::raw();
+    let view = sys::beltrami_mesh { cancel: token.number(), ..mesh.raw() };
     // SAFETY: the views are borrowed, all their items are there; `raw` has the size that it says;
     // no energies of faces are asked for.
     let status =
-        unsafe { sys::beltrami_measure(&mesh.raw(), &uvs.0.raw(), &mut raw, std::ptr::null_mut()) };
+        unsafe { sys::beltrami_measure(&view, &uvs.0.raw(), &mut raw, std::ptr::null_mut()) };
     if status < 0 {
-        return Err(measure_failure(status, mesh, uvs));
+        return Err(measure_failure(status, mesh, uvs, token));
     }
     Ok(Distortion::new(&raw))
 }
@@ -137,21 +201,35 @@ pub fn measure_faces<'a>(
     mesh: &Mesh<'_>,
     uvs: impl Into<Uvs<'a>>,
 ) -> Result<Vec<FaceDistortion>, Error> {
+    measure_faces_with(mesh, uvs, &CancelToken::new())
+}
+
+/// [`measure_faces`] that `token` ends.
+///
+/// # Errors
+///
+/// As of [`measure_faces`], and [`Cancelled`](crate::ErrorKind::Cancelled).
+pub fn measure_faces_with<'a>(
+    mesh: &Mesh<'_>,
+    uvs: impl Into<Uvs<'a>>,
+    token: &CancelToken,
+) -> Result<Vec<FaceDistortion>, Error> {
     let uvs = uvs.into();
     mesh.require_one_uv_per_vertex(&uvs)?;
     let mut faces = vec![FaceDistortion::default(); mesh.faces.len()];
+    let view = sys::beltrami_mesh { cancel: token.number(), ..mesh.raw() };
     // SAFETY: the views are borrowed, all their items are there; a FaceDistortion is the four
     // numbers that the library writes per face.
     let status = unsafe {
         sys::beltrami_measure_faces(
-            &mesh.raw(),
+            &view,
             &uvs.0.raw(),
             faces.as_mut_ptr().cast(),
             size_of::<FaceDistortion>() as u64,
         )
     };
     if status < 0 {
-        return Err(measure_failure(status, mesh, uvs));
+        return Err(measure_failure(status, mesh, uvs, token));
     }
     Ok(faces)
 }

@@ -6,6 +6,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::ptr::NonNull;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use beltrami_sys as sys;
@@ -80,7 +81,8 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// Ends runs from any thread.
+/// Ends runs, and checks such as [`check_injective_with`](crate::check_injective_with), from any
+/// thread.
 ///
 /// A token is cancelled once and stays so: it ends the runs that have it now, and every later run
 /// that gets it before it has begun. So no request is lost, and none reaches a run that it was not
@@ -93,14 +95,15 @@ impl fmt::Debug for Control<'_> {
 /// Not for signal handlers, since it takes a lock.
 #[derive(Clone, Default)]
 pub struct CancelToken {
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Shared>,
 }
 
 #[derive(Default)]
 struct Shared {
-    cancelled: bool,
+    /// 1 once it is cancelled; what checks look at.
+    number: AtomicI32,
     /// The contexts whose runs are under way with this token.
-    runs: Vec<RunningContext>,
+    runs: Mutex<Vec<RunningContext>>,
 }
 
 /// A context whose run is under way, so that it is alive.
@@ -118,9 +121,9 @@ impl CancelToken {
 
     /// Asks every run that has this token, now or later, to end. Returns at once.
     pub fn cancel(&self) {
-        let mut shared = self.lock();
-        shared.cancelled = true;
-        for run in &shared.runs {
+        let runs = self.lock();
+        self.shared.number.store(1, Ordering::SeqCst);
+        for run in runs.iter() {
             // SAFETY: a run takes its context from the list before the context can go away, and
             // waits for this lock to do so.
             unsafe { sys::beltrami_cancel(run.0.as_ptr()) };
@@ -129,7 +132,12 @@ impl CancelToken {
 
     /// Whether [`cancel`](Self::cancel) was called.
     pub fn is_cancelled(&self) -> bool {
-        self.lock().cancelled
+        self.shared.number.load(Ordering::SeqCst) != 0
+    }
+
+    /// Where the library looks for a request, as long as the token lives: `beltrami_mesh.cancel`.
+    pub(crate) fn number(&self) -> *const i32 {
+        self.shared.number.as_ptr()
     }
 
     /// Makes the token one that ends the run on `context`, until the guard goes; `None` where the
@@ -142,17 +150,17 @@ impl CancelToken {
         &self,
         context: NonNull<sys::beltrami_context>,
     ) -> Option<Watch<'_>> {
-        let mut shared = self.lock();
-        if shared.cancelled {
+        let mut runs = self.lock();
+        if self.is_cancelled() {
             return None;
         }
-        shared.runs.push(RunningContext(context));
+        runs.push(RunningContext(context));
         Some(Watch { token: self, context })
     }
 
-    fn lock(&self) -> MutexGuard<'_, Shared> {
+    fn lock(&self) -> MutexGuard<'_, Vec<RunningContext>> {
         // Nothing that holds the lock can panic half-way.
-        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+        self.shared.runs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -170,10 +178,10 @@ pub(crate) struct Watch<'a> {
 
 impl Drop for Watch<'_> {
     fn drop(&mut self) {
-        let mut shared = self.token.lock();
+        let mut runs = self.token.lock();
         let run = RunningContext(self.context);
-        if let Some(place) = shared.runs.iter().position(|other| *other == run) {
-            shared.runs.swap_remove(place);
+        if let Some(place) = runs.iter().position(|other| *other == run) {
+            runs.swap_remove(place);
         }
     }
 }

@@ -17,7 +17,8 @@ mod verdict;
 mod view;
 
 pub use check::{
-    check_boundary, check_injective, check_triangles, measure, measure_faces, FaceDistortion,
+    check_boundary, check_boundary_with, check_injective, check_injective_with, check_triangles,
+    check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,
 };
 pub use control::{CancelToken, Control, Progress};
 pub use error::{Element, Error, ErrorKind};
