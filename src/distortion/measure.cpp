@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 
 namespace beltrami {
 namespace {
@@ -32,8 +33,8 @@ FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2,
   const Vec2 du = (w[k1] - w[k]) / length;
   const Vec2 dv = ((w[k2] - w[k]) - along * du) / height;
   const double det = du.x() * dv.y() - du.y() * dv.x();
-  const double a = 0.5 * std::hypot(du.x() + dv.y(), du.y() - dv.x());
-  const double b = 0.5 * std::hypot(du.x() - dv.y(), du.y() + dv.x());
+  const double a = 0.5 * portable::hypot(du.x() + dv.y(), du.y() - dv.x());
+  const double b = 0.5 * portable::hypot(du.x() - dv.y(), du.y() + dv.x());
   const double s1 = a + b;
   const double s2 = s1 > 0 ? det / s1 : 0;  // a - b would cancel on stretched faces
   FaceDistortion result{area, s1, s2, kInfinity, kInfinity};
