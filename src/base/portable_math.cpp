@@ -146,6 +146,7 @@ double log(double x) {
 }
 
 double sin(double x) {
+  if (std::abs(x) < 0x1p-27) return x;  // and keeps the sign of zero
   const auto [quarter, angle] = reduce(x);
   const double value = quarter % 2 == 0 ? sin_of_reduced(angle) : cos_of_reduced(angle);
   return quarter < 2 ? value : -value;
