@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "base/portable_math.h"
 #include "sparse/ordering.h"
 #include "sparse/symbolic.h"
 #include "sparse/vertex_separator.h"
@@ -48,7 +47,7 @@ PlacedGraph surface(int nx, int ny) {
       if (y + 1 < ny) edges.emplace_back(v, v + nx);
       if (x + 1 < nx && y + 1 < ny) edges.emplace_back(v, v + nx + 1);
       const float a = 0.02F * static_cast<float>(x), b = 0.02F * static_cast<float>(y);
-      result.places.push_back({a, b, portable::sin(3 * a) * portable::cos(2 * b)});
+      result.places.push_back({a, b, std::sin(3 * a) * std::cos(2 * b)});
     }
   }
   result.graph = from_edges(nx * ny, edges);

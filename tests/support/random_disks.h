@@ -15,7 +15,8 @@ namespace beltrami::disks {
 
 inline void scale_axes(Random& random, double most, meshes::TriangleList& mesh) {
   const double range = portable::log(most);
-  const Vec3 factor(portable::exp(range * random.unit()), portable::exp(range * random.unit()), 1);
+  const double y = portable::exp(range * random.unit()), x = portable::exp(range * random.unit());
+  const Vec3 factor(x, y, 1);
   for (Vec3& p : mesh.positions) p = p.cwiseProduct(factor);
 }
 
@@ -80,6 +81,7 @@ inline void collapse_some_positions(Random& random, meshes::TriangleList& mesh) 
   }
 }
 
+/// Numbers are drawn one by one: compilers take the arguments of a call in any order.
 inline meshes::TriangleList random_base(Random& random) {
   switch (random.below(11)) {
     case 0:
@@ -90,16 +92,26 @@ inline meshes::TriangleList random_base(Random& random) {
       return meshes::fan(3 + random.below(40));
     case 3:
       return meshes::strip(1 + random.below(60));
-    case 4:
-      return meshes::bumps(2 + random.below(20), 2 + random.below(20));
-    case 5:
-      return meshes::cap(2 + random.below(12), 3 + random.below(30), random.between(0.2, 3.1));
+    case 4: {
+      const int ny = 2 + random.below(20), nx = 2 + random.below(20);
+      return meshes::bumps(nx, ny);
+    }
+    case 5: {
+      const double angle = random.between(0.2, 3.1);
+      const int sectors = 3 + random.below(30), rings = 2 + random.below(12);
+      return meshes::cap(rings, sectors, angle);
+    }
     case 6:
       return dumbbell(3 + random.below(7));
-    case 7:
-      return tube(2 + random.below(25), 3 + random.below(14), random.between(0.02, 2));
-    case 8:
-      return ramp(10 + random.below(40), 2 + random.below(5));
+    case 7: {
+      const double height = random.between(0.02, 2);
+      const int sectors = 3 + random.below(14), rings = 2 + random.below(25);
+      return tube(rings, sectors, height);
+    }
+    case 8: {
+      const int across = 2 + random.below(5), along = 10 + random.below(40);
+      return ramp(along, across);
+    }
     case 9:
       return punctured(1 + random.below(3));
     default:
