@@ -1,6 +1,7 @@
 // Boundary first flattening: exact where the metric is flat, conformal where it is not, closed
 // always.
 #include "flatten/boundary_first.h"
+#include "base/portable_math.h"
 
 #include <gtest/gtest.h>
 
@@ -69,8 +70,8 @@ TriangleList crooked_disk() {
   TriangleList list = meshes::grid(9, 7);
   for (Vec3& p : list.positions) {
     const double x = p.x(), y = p.y();
-    p.x() += 0.2 * y * y + 0.02 * std::sin(9 * x + 4 * y);
-    p.y() += 0.3 * std::sin(3 * x);
+    p.x() += 0.2 * y * y + 0.02 * portable::sin(9 * x + 4 * y);
+    p.y() += 0.3 * portable::sin(3 * x);
   }
   return list;
 }
@@ -90,8 +91,8 @@ TEST(BoundaryFirst, UnrollsADevelopableSurface) {
   const std::vector<Vec2> plane = drop_height(list.positions);
   // Chords of a polygonal cylinder: the cells stay rectangles of their own width.
   for (Vec3& p : list.positions) {
-    const double angle = 4 * p.x(), width = 0.5 / (8 * std::sin(0.25));
-    p = {width * std::cos(angle) / 2, p.y(), -width * std::sin(angle) / 2};
+    const double angle = 4 * p.x(), width = 0.5 / (8 * portable::sin(0.25));
+    p = {width * portable::cos(angle) / 2, p.y(), -width * portable::sin(angle) / 2};
   }
   const Problem problem(list);
   const BoundaryFirstResult result = problem.flatten();
@@ -161,7 +162,7 @@ TEST(BoundaryFirst, ClosesAnyCurveWithPositiveLengths) {
     const Problem problem(list);
     auto lengths = metric_boundary_lengths(problem.mesh, problem.rest, problem.metric);
     for (std::size_t i = 0; i < lengths.size(); ++i) {
-      lengths[i] *= std::exp(0.5 * std::sin(static_cast<double>(i)));
+      lengths[i] *= portable::exp(0.5 * portable::sin(static_cast<double>(i)));
     }
     const BoundaryFirstResult result = problem.flatten(lengths);
     // Closed by factors exp(-slope . tangent): were the curve left open, the last edge, which takes
@@ -238,7 +239,7 @@ TEST(BoundaryFirst, ReproducesAMapFromItsOwnMetric) {
   const TriangleList list = meshes::bumps(30, 30);
   Problem problem(list);
   std::vector<Vec2> uvs = drop_height(list.positions);
-  for (Vec2& w : uvs) w = {w.x() + 0.2 * w.y() * w.y(), w.y() + 0.1 * std::sin(3 * w.x())};
+  for (Vec2& w : uvs) w = {w.x() + 0.2 * w.y() * w.y(), w.y() + 0.1 * portable::sin(3 * w.x())};
   problem.metric = face_metrics(problem.mesh.faces, problem.rest, uvs);
   const BoundaryFirstResult result = problem.flatten();
   EXPECT_LT(result.closure_defect, 1e-10);
@@ -251,7 +252,7 @@ double error_without_area_factors(Index n) {
   const TriangleList list = meshes::bumps(n, n);
   Problem problem(list);
   std::vector<Vec2> uvs = drop_height(list.positions);
-  for (Vec2& w : uvs) w = {w.x() + 0.2 * w.y() * w.y(), w.y() + 0.1 * std::sin(3 * w.x())};
+  for (Vec2& w : uvs) w = {w.x() + 0.2 * w.y() * w.y(), w.y() + 0.1 * portable::sin(3 * w.x())};
   problem.metric = face_metrics(problem.mesh.faces, problem.rest, uvs);
   const auto lengths = metric_boundary_lengths(problem.mesh, problem.rest, problem.metric);
   for (FaceMetric& m : problem.metric) m.log_area = 0;

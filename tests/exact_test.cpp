@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "exact/certificate.h"
 #include "support/disks.h"
 #include "support/polls.h"
@@ -116,7 +117,7 @@ TEST(Crossings, AreNoneOnConvexLoops) {
   std::vector<Vec2> circle;
   for (int i = 0; i < 100; ++i) {
     const double angle = 2 * std::numbers::pi * i / 100;
-    circle.push_back({std::cos(angle), std::sin(angle)});
+    circle.push_back({portable::cos(angle), portable::sin(angle)});
   }
   EXPECT_EQ(crossings(circle), 0);
 }
@@ -188,7 +189,7 @@ std::vector<Vec2> spiral(int half) {
   const auto at = [&](int i, double inset) {
     const double angle = 40 * std::numbers::pi * i / half;
     const double radius = 1 + angle - inset;
-    polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    polygon.push_back({radius * portable::cos(angle), radius * portable::sin(angle)});
   };
   for (int i = 0; i < half; ++i) at(i, 0);
   for (int i = half - 1; i >= 0; --i) at(i, 0.9);
@@ -376,7 +377,7 @@ TEST(Certificate, SeesAnOverlapWhoseFacesAreAllPositive) {
   std::vector<Vec2> uvs;
   for (const Vec3& p : mesh.positions) {
     const double angle = -2.5 * std::numbers::pi * p.x(), radius = 1 + p.y();
-    uvs.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    uvs.push_back({radius * portable::cos(angle), radius * portable::sin(angle)});
   }
   const Certificate found = certify(mesh.faces, mesh.boundary, uvs, 1);
   EXPECT_EQ(found.orientations.positive, 60);

@@ -1,5 +1,6 @@
 // Intrinsic flips against plane geometry, where everything can be checked.
 #include "flatten/intrinsic_delaunay.h"
+#include "base/portable_math.h"
 
 #include <gtest/gtest.h>
 
@@ -124,7 +125,7 @@ TEST(IntrinsicDelaunay, MakesHarmonicMapsIntoConvexPolygonsInjective) {
   std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
   for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
     const double angle = 6.283185307179586 * static_cast<double>(i) / mesh.boundary.size();
-    uvs[flipped.boundary[i]] = {std::cos(angle), std::sin(angle)};
+    uvs[flipped.boundary[i]] = {portable::cos(angle), portable::sin(angle)};
   }
   solve_harmonic(flipped, result.cotangents, uvs);
   EXPECT_TRUE(non_positive_faces(flipped.faces, uvs, 1).empty());

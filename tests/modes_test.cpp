@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "mesh/disk_mesh.h"
 #include "pipeline/pipeline.h"
 #include "support/disks.h"
@@ -87,8 +88,9 @@ TEST(Modes, ThatPromiseNothingReportTheirFlips) {
 }
 
 TEST(Modes, UvProlongationFlipsWhereThePipelineDoesNot) {
-  const TriangleList mesh = meshes::height_field(
-      50, 50, [](double x, double y) { return 0.3 * std::sin(25 * x) * std::sin(25 * y); });
+  const TriangleList mesh = meshes::height_field(50, 50, [](double x, double y) {
+    return 0.3 * portable::sin(25 * x) * portable::sin(25 * y);
+  });
   EXPECT_GT(flips(run(mesh, method(BELTRAMI_METHOD_UV_PROLONGATION))), 0);
   EXPECT_TRUE(run(mesh, coarse_to_fine(BELTRAMI_FLATTEN_METRIC)).certificate.injective());
 }

@@ -1,5 +1,6 @@
 // The reduced harmonic subspace: meta vertices, samples, rows of the basis, GIF and FLIM.
 #include "flatten/reduced.h"
+#include "base/portable_math.h"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +68,7 @@ meshes::TriangleList coil(Index turns_in_cells) {
   meshes::TriangleList list = meshes::grid(turns_in_cells, 3);
   for (Vec3& p : list.positions) {
     const double angle = 4 * std::numbers::pi * p.x(), radius = 1 + p.x();
-    p = {radius * std::cos(angle), radius * std::sin(angle), 0.5 * p.y()};
+    p = {radius * portable::cos(angle), radius * portable::sin(angle), 0.5 * p.y()};
   }
   return list;
 }
@@ -190,7 +191,7 @@ TEST(ReducedBasis, RowsExpandToTheWholeMap) {
   std::vector<Vec2> x;
   DenseMatrix places(basis.metas().count(), 2);
   for (Index m = 0; m < basis.metas().count(); ++m) {
-    x.push_back({std::sin(m), std::cos(2 * m)});
+    x.push_back({portable::sin(m), portable::cos(2 * m)});
     places.row(m) = x.back().transpose();
   }
   const std::vector<Vec2> uvs = basis.expand(x);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "distortion/measure.h"
 #include "exact/certificate.h"
 #include "repair/global_fix.h"
@@ -207,7 +208,7 @@ TEST(GlobalFix, IsTheRungAfterPatches) {
   const DiskMesh mesh = disks::disk(meshes::grid(40, 40));
   // More folds than patches are tried for.
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
-  for (Vec2& w : uvs) w = {std::cos(9 * w.x()) + 0.3 * w.y(), w.y() - 0.2 * w.x()};
+  for (Vec2& w : uvs) w = {portable::cos(9 * w.x()) + 0.3 * w.y(), w.y() - 0.2 * w.x()};
   const RepairResult result = mend(mesh, uvs);
   EXPECT_GT(result.flips_before, 1000);
   EXPECT_EQ(result.global_fixes, 1);
@@ -222,7 +223,7 @@ TEST(GlobalFix, OpensABoundaryThatCrossesItselfOnDemandOnly) {
   std::vector<Vec2> bent = disks::flat_uvs(mesh);
   for (Vec2& w : bent) {
     const double angle = -7.5 * w.x(), radius = 1 + 0.5 * w.y();
-    w = {radius * std::sin(angle), -radius * std::cos(angle)};
+    w = {radius * portable::sin(angle), -radius * portable::cos(angle)};
   }
   std::vector<Vec2> uvs = bent;
   EXPECT_EQ(mend(mesh, uvs).flips_before, 0);

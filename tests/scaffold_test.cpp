@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "exact/certificate.h"
 #include "scaffold/ring_faces.h"
 #include "scaffold/triangulate_ring.h"
@@ -46,7 +47,7 @@ Polygon polar(int count, std::uint32_t seed) {
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * kPi * (i + 0.9 * random()) / count;
     const double radius = 0.05 + random();
-    polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    polygon.emplace_back(radius * portable::cos(angle), radius * portable::sin(angle));
   }
   return polygon;
 }
@@ -56,7 +57,7 @@ Polygon star(int spikes) {
   for (int i = 0; i < 2 * spikes; ++i) {
     const double angle = kPi * i / spikes;
     const double radius = i % 2 == 0 ? 1 : 1e-3;
-    polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    polygon.emplace_back(radius * portable::cos(angle), radius * portable::sin(angle));
   }
   return polygon;
 }
@@ -67,7 +68,7 @@ Polygon spiral(int turns, int per_turn) {
   const auto at = [&](int i, double shift) {
     const double angle = 2 * kPi * i / per_turn;
     const double radius = 1 + angle / (2 * kPi) + shift;
-    return Vec2(radius * std::cos(angle), radius * std::sin(angle));
+    return Vec2(radius * portable::cos(angle), radius * portable::sin(angle));
   };
   Polygon polygon;
   for (int i = 0; i <= count; ++i) polygon.push_back(at(i, 0.5));
@@ -407,7 +408,11 @@ TEST(Ring, is_the_same_each_time) {
   EXPECT_EQ(triangulate_ring(inner, outer).faces, triangulate_ring(inner, outer).faces);
 }
 
+<<<<<<< HEAD
 TEST(Ring, of_large_polygons_is_complete) {
+=======
+TEST(Ring, of_large_polygons_has_them_too) {
+>>>>>>> bits
   for (const Polygon& inner :
        {polar(50'000, 1), spiral(50, 500), comb(12'500, 0.5, 4000, 4000), skyline(12'000, 2)}) {
     expect_all(inner, circle_around(inner, 1.5, 100));

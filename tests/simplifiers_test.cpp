@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "beltrami/closest_point.h"
 #include "beltrami/prolongation.h"
 #include "distortion/measure.h"
@@ -44,7 +45,8 @@ std::vector<Comparison> comparisons() {
   disks::Random random(7);
   for (Vec3& p : noisy.positions) p += 0.004 * random.vec3();
   meshes::TriangleList dumbbell = disks::dumbbell(24);
-  for (Vec3& p : dumbbell.positions) p.z() += 2 * std::sin(0.3 * p.x()) * std::cos(0.4 * p.y());
+  for (Vec3& p : dumbbell.positions)
+    p.z() += 2 * portable::sin(0.3 * p.x()) * portable::cos(0.4 * p.y());
   std::vector<Comparison> all;
   all.emplace_back("bumps", meshes::bumps(60, 60), 700);
   all.emplace_back("noisy bumps", noisy, 500);

@@ -1,6 +1,7 @@
 // The coarse disk: a subset of the fine vertices, the boundary in its order, and what must stay.
 // Every simplifier that this build has keeps the same contract.
 #include "simplify/simplify.h"
+#include "base/portable_math.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ Vec3 flat(double x, double y) {
 }
 
 Vec3 wavy(double x, double y) {
-  return {x, y, 2 * std::sin(0.3 * x) * std::cos(0.4 * y)};
+  return {x, y, 2 * portable::sin(0.3 * x) * portable::cos(0.4 * y)};
 }
 
 bool every_cell(int, int) {
@@ -66,8 +67,8 @@ DiskMesh spherical_cap(int rings, int spokes, double angle) {
     const double polar = angle * r / rings;
     for (int s = 0; s < spokes; ++s) {
       const double turn = 2 * 3.14159265358979 * s / spokes;
-      positions.push_back(
-          {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)});
+      positions.push_back({portable::sin(polar) * portable::cos(turn),
+                           portable::sin(polar) * portable::sin(turn), portable::cos(polar)});
     }
   }
   std::vector<Triangle> faces;
@@ -87,7 +88,7 @@ DiskMesh fan(int rim) {
   std::vector<Triangle> faces;
   for (int i = 0; i < rim; ++i) {
     const double turn = 2 * 3.14159265358979 * i / rim;
-    positions.push_back({std::cos(turn), std::sin(turn), 0});
+    positions.push_back({portable::cos(turn), portable::sin(turn), 0});
     faces.push_back({0, 1 + i, 1 + (i + 1) % rim});
   }
   return build_disk(std::move(positions), std::move(faces));
@@ -229,7 +230,7 @@ TEST_P(Simplify, SphericalCapStaysCloseToTheSphere) {
 
 TEST_P(Simplify, LongStripKeepsItsEndsAndReachesTheTarget) {
   const DiskMesh fine =
-      grid(400, 4, [](double x, double y) { return Vec3(x, y, 5 * std::sin(0.05 * x)); });
+      grid(400, 4, [](double x, double y) { return Vec3(x, y, 5 * portable::sin(0.05 * x)); });
   const CoarseDisk coarse = simplify(fine, 300);
   expect_sound(fine, coarse);
   EXPECT_LE(coarse.mesh.face_count(), 300);
@@ -336,7 +337,7 @@ TEST_P(Simplify, SurvivesZeroAreaFacesAndDuplicatePositions) {
   // Every third column of the grid coincides with the one before it, and one row is a point.
   const DiskMesh fine = grid(45, 45, [](double x, double y) {
     const double snapped = 3 * std::floor(x / 3) + std::min(std::fmod(x, 3), 1.0);
-    return y == 20 ? Vec3(22, 20, 0) : Vec3(snapped, y, 0.1 * std::sin(0.5 * y));
+    return y == 20 ? Vec3(22, 20, 0) : Vec3(snapped, y, 0.1 * portable::sin(0.5 * y));
   });
   const CoarseDisk coarse = simplify(fine, 400);
   expect_sound(fine, coarse);
@@ -360,8 +361,8 @@ TEST_P(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
   for (Index i = 1; i < size_of(positions); ++i) {
     const Index spoke = (i - 1) % 120, ring = std::min<Index>((i - 1) / 120, 28);
     const double turn = 0.05235987755983 * spoke;
-    const double radius = ring * (1 + 0.4 * std::cos(5 * turn));
-    positions[i] = {radius * std::cos(turn), radius * std::sin(turn), 0};
+    const double radius = ring * (1 + 0.4 * portable::cos(5 * turn));
+    positions[i] = {radius * portable::cos(turn), radius * portable::sin(turn), 0};
   }
   const DiskMesh fine = build_disk(std::move(positions), cap.faces);
   const CoarseDisk coarse = simplify(fine, 400);

@@ -25,6 +25,12 @@ inline double modulus(Complex z) {
   return std::sqrt(z.real() * z.real() + z.imag() * z.imag());
 }
 
+/// a / b without the care that compilers take, or do not, of numbers near the ends of the range:
+/// the same bits from each of them.
+inline Complex quotient(Complex a, Complex b) {
+  return a * std::conj(b) / std::norm(b);
+}
+
 /// Corner vertices of a face, counter-clockwise.
 using Triangle = std::array<Index, 3>;
 

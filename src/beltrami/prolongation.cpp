@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "beltrami/closest_point.h"
 #include "beltrami/frame.h"
 #include "beltrami/surface_walk.h"
@@ -107,7 +108,8 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
     const LinearMap map = linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]);
     const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
     if (!(area_factor > 0)) continue;
-    metrics[f] = {map.fzbar / map.fz, std::log(area_factor), map.fz / modulus(map.fz)};
+    metrics[f] = {quotient(map.fzbar, map.fz), portable::log(area_factor),
+                  map.fz / modulus(map.fz)};
   }
   return metrics;
 }

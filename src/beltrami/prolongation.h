@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/checkpoint.h"
+#include "base/portable_math.h"
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -18,7 +19,9 @@ struct FaceMetric {
   double log_area = 0;  ///< logarithm of the area factor |fz|^2 - |fzbar|^2
   Complex phase = 1;    ///< fz / |fz|
 
-  Complex fz() const { return phase * std::exp(0.5 * log_area) / std::sqrt(1 - std::norm(mu)); }
+  Complex fz() const {
+    return phase * portable::exp(0.5 * log_area) / std::sqrt(1 - std::norm(mu));
+  }
 };
 
 /// The metric of every face under `uvs`; the identity's where a face is not positively oriented.

@@ -1,5 +1,5 @@
 // beltrami check: judge the UVs that a file carries.
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -8,9 +8,17 @@
 #include "interrupt.h"
 #include "picture.h"
 #include "progress_bar.h"
+#include "vector3.h"
 
 namespace beltrami::cli {
 namespace {
+
+/// Over the whole range of numbers, and not std::hypot, whose last bit depends on the processor.
+double safe_norm(const Vector3& a) {
+  const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
+  if (!(largest > 0) || !std::isfinite(largest)) return largest;
+  return largest * norm({a[0] / largest, a[1] / largest, a[2] / largest});
+}
 
 double area_of(const TriangleView& mesh) {
   double area = 0;
@@ -18,13 +26,12 @@ double area_of(const TriangleView& mesh) {
     const double* a = &mesh.positions[3 * std::size_t{mesh.faces[i]}];
     const double* b = &mesh.positions[3 * std::size_t{mesh.faces[i + 1]}];
     const double* c = &mesh.positions[3 * std::size_t{mesh.faces[i + 2]}];
-    std::array<double, 3> p, q;
+    Vector3 p, q;
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = b[k] - a[k];
       q[k] = c[k] - a[k];
     }
-    area += 0.5 * std::hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
-                             p[0] * q[1] - p[1] * q[0]);
+    area += 0.5 * safe_norm(cross(p, q));
   }
   return area;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 
 namespace beltrami {
 namespace {
@@ -76,8 +77,8 @@ FaceDistortion measure(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& 
   const Vec2 du = plane.edge[k] / length;
   const Vec2 dv = (-plane.edge[previous_corner(k)] - along * du) / height;
   const double det = du.x() * dv.y() - du.y() * dv.x();
-  const double a = 0.5 * std::hypot(du.x() + dv.y(), du.y() - dv.x());
-  const double b = 0.5 * std::hypot(du.x() - dv.y(), du.y() + dv.x());
+  const double a = 0.5 * portable::hypot(du.x() + dv.y(), du.y() - dv.x());
+  const double b = 0.5 * portable::hypot(du.x() - dv.y(), du.y() + dv.x());
   const double sum = a + b;
   // a - b would cancel on stretched faces; the quotient may round to more than the greater one.
   const double quotient = sum > 0 ? std::clamp(det / sum, -sum, sum) : 0;

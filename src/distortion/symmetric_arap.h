@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "distortion/density.h"
 
 namespace beltrami {
@@ -58,12 +59,12 @@ struct SymmetricArap {
   static double best_scale(const ScaleMoments& sum) {
     double low = -60, high = 60;
     for (int i = 0; i < 100; ++i) {
-      const double middle = 0.5 * (low + high), s = std::exp(middle);
+      const double middle = 0.5 * (low + high), s = portable::exp(middle);
       const double slope =
           s * sum.s1_sq - sum.s1 - sum.inverse_s2_sq / (s * s * s) + sum.inverse_s2 / (s * s);
       (slope > 0 ? high : low) = middle;
     }
-    return std::exp(0.5 * (low + high));
+    return portable::exp(0.5 * (low + high));
   }
 
  private:

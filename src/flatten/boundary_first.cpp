@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 
@@ -29,7 +30,7 @@ double mapped_length_sq(const std::vector<RestTriangle>& rest,
   const RestTriangle& face = rest[halfedge / 3];
   const FaceMetric& m = metric[halfedge / 3];
   const Complex z = face.corner(next_corner(halfedge % 3)) - face.corner(halfedge % 3);
-  return std::norm(z + m.mu * std::conj(z)) * std::exp(m.log_area) / (1 - std::norm(m.mu));
+  return std::norm(z + m.mu * std::conj(z)) * portable::exp(m.log_area) / (1 - std::norm(m.mu));
 }
 
 /// The one squared length of an edge: the geometric mean over its faces, since a prolonged metric
@@ -103,7 +104,7 @@ std::array<double, 3> angles(const DiskMesh& mesh, const std::vector<RestTriangl
   std::array<double, 3> result;
   for (int k = 0; k < 3; ++k) {
     const int next = next_corner(k), previous = previous_corner(k);
-    result[k] = std::atan2(area_4, length_sq[k] + length_sq[previous] - length_sq[next]);
+    result[k] = portable::atan2(area_4, length_sq[k] + length_sq[previous] - length_sq[next]);
   }
   return result;
 }
@@ -133,8 +134,8 @@ DenseMatrix boundary_factors(const DiskMesh& mesh, const std::vector<double>& ba
   DenseMatrix factors = DenseMatrix::Zero(mesh.vertex_count(), 1);
   for (std::size_t i = 0; i < base.size(); ++i) {
     const std::size_t before = i == 0 ? base.size() - 1 : i - 1;
-    factors(mesh.boundary[i], 0) = (base[before] * std::log(lengths[before] / base[before]) +
-                                    base[i] * std::log(lengths[i] / base[i])) /
+    factors(mesh.boundary[i], 0) = (base[before] * portable::log(lengths[before] / base[before]) +
+                                    base[i] * portable::log(lengths[i] / base[i])) /
                                    (base[before] + base[i]);
   }
   return factors;
@@ -149,7 +150,7 @@ std::vector<Vec2> integrate_tangents(const std::vector<double>& exterior_angles)
   double direction = 0;
   for (std::size_t i = 0; i < tangents.size(); ++i) {
     if (i > 0) direction += exterior_angles[i] + spread;
-    tangents[i] = {std::cos(direction), std::sin(direction)};
+    tangents[i] = {portable::cos(direction), portable::sin(direction)};
   }
   return tangents;
 }
@@ -170,7 +171,7 @@ struct ClosingEnergy {
                 const Vec2& slope) {
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const Vec2& t = tangents[i];
-      const double length = lengths[i] * std::exp(-slope.dot(t));
+      const double length = lengths[i] * portable::exp(-slope.dot(t));
       value += length;
       gradient -= length * t;
       hessian += length * t * t.transpose();
@@ -204,7 +205,7 @@ void close_lengths(const std::vector<Vec2>& tangents, std::vector<double>& lengt
     if (slope.norm() > kGreatestSlope) return;
   }
   for (std::size_t i = 0; i < lengths.size(); ++i) {
-    lengths[i] *= std::exp(-slope.dot(tangents[i]));
+    lengths[i] *= portable::exp(-slope.dot(tangents[i]));
   }
 }
 

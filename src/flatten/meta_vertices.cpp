@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "mesh/boundary.h"
 
 namespace beltrami {
@@ -39,7 +40,7 @@ double boundary_curvature(const DiskMesh& mesh, Index vertex) {
     const Vec3& centre = mesh.positions[vertex];
     const Vec3 a = mesh.positions[mesh.target(h)] - centre;
     const Vec3 b = mesh.positions[mesh.origin(DiskMesh::previous(h))] - centre;
-    curvature -= std::atan2(a.cross(b).norm(), a.dot(b));
+    curvature -= portable::atan2(a.cross(b).norm(), a.dot(b));
   });
   return curvature;
 }

@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "flatten/laplacian.h"
 #include "mesh/vertex_sums.h"
 
@@ -89,7 +90,7 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestT
       energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) {
         const double k = modulus(metric[f].mu);
         const Complex direction = k > 0 ? metric[f].mu / k : Complex(1);
-        const double a = std::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
+        const double a = portable::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
         return stiffness_at<Density>(rest[f], a, k * a, direction);
       });
 }
@@ -103,7 +104,7 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
         const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
         const double a = modulus(map.fz), b = modulus(map.fzbar);
         if (!(a > b)) return modified_cotangents(rest[f], 0);
-        const Complex direction = b > 0 ? map.fzbar / map.fz * (a / b) : Complex(1);
+        const Complex direction = b > 0 ? quotient(map.fzbar, map.fz) * (a / b) : Complex(1);
         return stiffness_at<Density>(rest[f], a, b, direction);
       });
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "exact/certificate.h"
 #include "flatten/meta_vertices.h"
 #include "flatten/reduced_basis.h"
@@ -29,7 +30,7 @@ std::vector<Vec2> metas_on_circle(const MetaVertices& metas, double area) {
   double along = 0;
   for (const double arc : metas.arc) {
     const double angle = 2 * std::numbers::pi * along / length;
-    x.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+    x.push_back(radius * Vec2(portable::cos(angle), portable::sin(angle)));
     along += arc;
   }
   return x;

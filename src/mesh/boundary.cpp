@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/portable_math.h"
+
 namespace beltrami {
 namespace {
 
@@ -37,7 +39,7 @@ std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh) {
   double along = 0;
   for (const double length : lengths) {
     const double angle = 2 * std::numbers::pi * along / total;
-    places.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
+    places.push_back(radius * Vec2(portable::cos(angle), portable::sin(angle)));
     along += length;
   }
   return places;

@@ -413,7 +413,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
                 "the surface has no area: every face is degenerate (check the vertex positions)");
   }
   // Nearest power of two to 1/sqrt(area).
-  rescale(std::min(kMostGrowth, -static_cast<int>(std::lround(0.5 * std::log2(area)))));
+  rescale(std::min(kMostGrowth, -((std::ilogb(area) + 1) >> 1)));
   return frame;
 }
 

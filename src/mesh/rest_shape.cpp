@@ -28,7 +28,7 @@ RestTriangle mollified(const std::array<Vec3, 3>& p, double mean_edge) {
   flat[next_corner(k)] = longest;
   flat[previous_corner(k)] = Complex(along * longest, kMollifiedHeight * longest);
   const Complex e1 = flat[1] - flat[0], e2 = flat[2] - flat[0];
-  const double x1 = std::abs(e1);
+  const double x1 = modulus(e1);
   const Complex turned = e2 * std::conj(e1) / x1;
   return {x1, turned.real(), turned.imag()};
 }

@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "beltrami/prolongation.h"
 #include "flatten/laplacian.h"
 #include "flatten/meta_vertices.h"
@@ -107,14 +109,18 @@ struct System {
   double kept, peak;
 };
 
+double log2_of(double x) {
+  return std::numbers::log2e * portable::log(x);
+}
+
 /// Entries of the factor, or blocks of it; `fill` is that of a dissection. It never has fewer for
 /// more rows, though dissection is better than minimum degree, and left to large systems.
 double factor_entries(double rows, double regular, double fill) {
   const auto by_degree = [regular](double count) {
-    return (kFillByDegree + kFillOfRegular * regular) * count * std::log2(count + 2);
+    return (kFillByDegree + kFillOfRegular * regular) * count * log2_of(count + 2);
   };
   if (rows < kLeastDissected) return by_degree(rows);
-  return std::max(fill * rows * std::log2(rows), by_degree(kLeastDissected));
+  return std::max(fill * rows * log2_of(rows), by_degree(kLeastDissected));
 }
 
 /// With blocks of one. Small systems have it in double precision anyway.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "distortion/density.h"
 #include "exact/certificate.h"
 #include "fullspace/newton.h"
@@ -28,7 +29,7 @@ struct RegularisedDirichlet {
 
   DensityModel model(double s1, double s2) const {
     const double d = s1 * s2, n = s1 * s1 + s2 * s2;
-    const double root = std::hypot(epsilon, d), x = chi(d);
+    const double root = portable::hypot(epsilon, d), x = chi(d);
     const double x1 = x / root, x2 = epsilon * epsilon / (2 * root * root * root);
     // g(d) = (1 + chi^-2) / 2, so that the density is n g(d).
     const double g = 0.5 * (1 + 1 / (x * x));
@@ -50,14 +51,14 @@ struct RegularisedDirichlet {
  private:
   /// For negative d the sum would cancel.
   double chi(double d) const {
-    const double root = std::hypot(epsilon, d);
+    const double root = portable::hypot(epsilon, d);
     return d >= 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d);
   }
 
   /// Replaces the radial block by its nearest positive semi-definite one.
   static void project(DensityModel& m) {
     const double mean = 0.5 * (m.h11 + m.h22), half = 0.5 * (m.h11 - m.h22);
-    const double radius = std::hypot(half, m.h12);
+    const double radius = portable::hypot(half, m.h12);
     const double low = mean - radius, high = mean + radius;
     if (low >= 0) return;
     const double c = radius > 0 ? half / radius : 1, s = radius > 0 ? m.h12 / radius : 0;

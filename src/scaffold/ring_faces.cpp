@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/portable_math.h"
 #include "scaffold/triangulate_ring.h"
 
 namespace beltrami {
@@ -39,7 +40,7 @@ std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, i
   circle.reserve(count);
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * i / count;
-    circle.push_back(box.center() + radius * Vec2(std::cos(angle), std::sin(angle)));
+    circle.push_back(box.center() + radius * Vec2(portable::cos(angle), portable::sin(angle)));
   }
   return circle;
 }
@@ -58,7 +59,8 @@ RingFaces ring_faces(const std::vector<Vec2>& polygon, double mesh_area) {
     ring_area += r.area();
   }
   for (const RestTriangle& r : result.rest) {
-    const double longest = std::max({r.x1, std::abs(r.corner(2)), std::abs(r.corner(2) - r.x1)});
+    const double longest =
+        std::max({r.x1, portable::hypot(r.x2, r.y2), portable::hypot(r.x2 - r.x1, r.y2)});
     const double flatness = 2 * r.area() / (longest * longest);
     result.weights.push_back(kScaffoldWeight * mesh_area * r.area() / ring_area *
                              std::min(1.0, flatness / kSliver));

@@ -50,7 +50,8 @@ class NativeSolver final : public SpdSolver {
     }
     options_.poll();
     symbolic_ = analyze_pattern(graph, order, block, options_.threads, options_.poll);
-    if (doubtful && symbolic_.work > kMostWork * std::pow(graph.count(), 1.5)) {
+    const double count = graph.count();
+    if (doubtful && symbolic_.work > kMostWork * count * std::sqrt(count)) {
       const std::vector<int> other = minimum_degree_order(graph);
       if (factor_work(graph, other) < symbolic_.work) {
         symbolic_ = analyze_pattern(graph, other, block, options_.threads, options_.poll);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -93,7 +94,7 @@ inline meshes::TriangleList tube(Index rings, Index sectors, double height) {
   for (Index v = 1; v < size_of(mesh.positions); ++v) {
     const double azimuth = 2 * std::numbers::pi * ((v - 1) % sectors) / sectors;
     const double depth = height * (1 + (v - 1) / sectors);
-    mesh.positions[v] = {std::cos(azimuth), std::sin(azimuth), -depth};
+    mesh.positions[v] = {portable::cos(azimuth), portable::sin(azimuth), -depth};
   }
   return mesh;
 }
@@ -103,7 +104,7 @@ inline meshes::TriangleList ramp(Index along, Index across) {
   meshes::TriangleList mesh = meshes::grid(along, across);
   for (Vec3& p : mesh.positions) {
     const double angle = -3 * std::numbers::pi * p.x(), radius = 1 + p.y();
-    p = {radius * std::sin(angle), -radius * std::cos(angle), 0.1 * angle};
+    p = {radius * portable::sin(angle), -radius * portable::cos(angle), 0.1 * angle};
   }
   return mesh;
 }
@@ -119,7 +120,7 @@ inline meshes::TriangleList spike(Index n) {
 inline meshes::TriangleList slivers(Index nx, Index ny) {
   meshes::TriangleList mesh = meshes::grid(nx, ny);
   for (Vec3& p : mesh.positions) {
-    p = {200 * p.x() * nx, p.y() * ny, 10 * std::sin(3 * p.x() + 2 * p.y())};
+    p = {200 * p.x() * nx, p.y() * ny, 10 * portable::sin(3 * p.x() + 2 * p.y())};
   }
   return mesh;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "base/types.h"
 
 namespace beltrami::meshes {
@@ -30,7 +31,7 @@ inline TriangleList fan(Index n) {
   TriangleList mesh{{{0, 0, 0}}, {}};
   for (Index i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
-    mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    mesh.positions.push_back({portable::cos(angle), portable::sin(angle), 0});
     mesh.faces.push_back({0, 1 + i, 1 + (i + 1) % n});
   }
   return mesh;
@@ -62,8 +63,9 @@ inline TriangleList grid(Index nx, Index ny) {
 
 /// Curved both ways and not developable.
 inline TriangleList bumps(Index nx, Index ny) {
-  return height_field(
-      nx, ny, [](double x, double y) { return 0.3 * std::sin(7 * x) * std::cos(5 * y + x); });
+  return height_field(nx, ny, [](double x, double y) {
+    return 0.3 * portable::sin(7 * x) * portable::cos(5 * y + x);
+  });
 }
 
 /// A strip of n cells: every vertex lies on the boundary.
@@ -79,8 +81,9 @@ inline TriangleList cap(Index rings, Index sectors, double angle) {
     const double polar = angle * r / rings;
     for (Index s = 0; s < sectors; ++s) {
       const double azimuth = 2 * std::numbers::pi * s / sectors;
-      mesh.positions.push_back({std::sin(polar) * std::cos(azimuth),
-                                std::sin(polar) * std::sin(azimuth), std::cos(polar)});
+      mesh.positions.push_back({portable::sin(polar) * portable::cos(azimuth),
+                                portable::sin(polar) * portable::sin(azimuth),
+                                portable::cos(polar)});
     }
   }
   for (Index r = 1; r < rings; ++r) {
@@ -113,7 +116,7 @@ inline TriangleList annulus(Index n) {
   for (const double radius : {2.0, 1.0}) {
     for (Index i = 0; i < n; ++i) {
       const double angle = 2 * std::numbers::pi * i / n;
-      mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+      mesh.positions.push_back({radius * portable::cos(angle), radius * portable::sin(angle), 0});
     }
   }
   for (Index i = 0; i < n; ++i) {
@@ -130,8 +133,8 @@ inline TriangleList torus_with_hole(Index n) {
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) {
       const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / n;
-      mesh.positions.push_back(
-          {(2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v)});
+      mesh.positions.push_back({(2 + portable::cos(v)) * portable::cos(u),
+                                (2 + portable::cos(v)) * portable::sin(u), portable::sin(v)});
       const Index a = j * n + i, b = j * n + (i + 1) % n;
       const Index c = (j + 1) % n * n + (i + 1) % n, d = (j + 1) % n * n + i;
       mesh.faces.push_back({a, b, c});

@@ -95,6 +95,11 @@ CASES = {
         "source": lambda text: "#include <cstdlib>\n" + text.replace(
             "/* after beltrami_version */", 'if (getenv("BELTRAMI_DEBUG")) return 0;'),
         "says": "imports getenv"},
+    "takes-the-sine-of-the-system": {
+        "gates": ["imports"],
+        "source": lambda text: "#include <cmath>\n" + text.replace(
+            "/* after beltrami_set_float */", "if (std::sin(value) > 2) return result;"),
+        "says": "imports sin"},
     "global-state": {
         "gates": ["state"],
         "source": lambda text: "static int calls;\n" + text.replace(
