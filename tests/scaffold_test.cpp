@@ -408,11 +408,7 @@ TEST(Ring, is_the_same_each_time) {
   EXPECT_EQ(triangulate_ring(inner, outer).faces, triangulate_ring(inner, outer).faces);
 }
 
-<<<<<<< HEAD
 TEST(Ring, of_large_polygons_is_complete) {
-=======
-TEST(Ring, of_large_polygons_has_them_too) {
->>>>>>> bits
   for (const Polygon& inner :
        {polar(50'000, 1), spiral(50, 500), comb(12'500, 0.5, 4000, 4000), skyline(12'000, 2)}) {
     expect_all(inner, circle_around(inner, 1.5, 100));

@@ -298,7 +298,6 @@ TEST(Cancel, IsDroppedByANewMesh) {
   EXPECT_EQ(run(context), BELTRAMI_OK);
 }
 
-<<<<<<< HEAD
 /// Holds a run up in its first call of progress until somebody lets go.
 struct Gate {
   std::atomic<bool> reached{false}, open{false};
@@ -307,22 +306,10 @@ struct Gate {
     auto& self = *static_cast<Gate*>(user);
     self.reached = true;
     while (!self.open) std::this_thread::yield();
-=======
-/// A run that has begun and does not go on before somebody has asked it to end: on no machine is it
-/// over by then.
-struct Held {
-  std::atomic<bool> begun{false}, asked{false};
-
-  static int32_t progress(void* user, double, const char*) {
-    auto& self = *static_cast<Held*>(user);
-    self.begun = true;
-    while (!self.asked) std::this_thread::yield();
->>>>>>> bits
     return 0;
   }
 };
 
-<<<<<<< HEAD
 TEST(Cancel, FromAnotherThreadEndsTheRun) {
   const Context context = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
   Gate gate;
@@ -332,17 +319,6 @@ TEST(Cancel, FromAnotherThreadEndsTheRun) {
     gate.open = true;
   });
   EXPECT_EQ(beltrami_run(context.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED);
-=======
-TEST(Cancel, FromAnotherThreadEndsARun) {
-  const Context context = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
-  Held held;
-  std::thread other([&] {
-    while (!held.begun) std::this_thread::yield();
-    beltrami_cancel(context.get());
-    held.asked = true;
-  });
-  EXPECT_EQ(beltrami_run(context.get(), Held::progress, &held), BELTRAMI_E_CANCELLED);
->>>>>>> bits
   other.join();
 }
 
@@ -378,34 +354,17 @@ TEST(Cancel, OfOneContextLeavesAnotherOnTheSameThreadAlone) {
 
 TEST(Cancel, OfOneContextLeavesAnotherOnAnotherThreadAlone) {
   const Context cancelled = loaded_with(meshes::bumps(30, 30), BELTRAMI_METHOD_CM);
-<<<<<<< HEAD
   Gate gate;
   std::thread other(
       [&] { EXPECT_EQ(beltrami_run(cancelled.get(), Gate::pass, &gate), BELTRAMI_E_CANCELLED); });
   while (!gate.reached) std::this_thread::yield();
-=======
-  struct {
-    Held held;
-    beltrami_context* context;
-  } other_run{{}, cancelled.get()};
-  std::thread other([&] {
-    EXPECT_EQ(beltrami_run(cancelled.get(), Held::progress, &other_run.held), BELTRAMI_E_CANCELLED);
-  });
-  while (!other_run.held.begun) std::this_thread::yield();
->>>>>>> bits
   const Context undisturbed = whole_pipeline(meshes::bumps(40, 40));
   const auto cancel = [](void* user, double, const char*) -> int32_t {
-    auto& run = *static_cast<decltype(other_run)*>(user);
-    beltrami_cancel(run.context);
-    run.held.asked = true;
+    beltrami_cancel(static_cast<beltrami_context*>(user));
     return 0;
   };
-<<<<<<< HEAD
   EXPECT_EQ(beltrami_run(undisturbed.get(), cancel, cancelled.get()), BELTRAMI_OK);
   gate.open = true;
-=======
-  EXPECT_EQ(beltrami_run(undisturbed.get(), cancel, &other_run), BELTRAMI_OK);
->>>>>>> bits
   other.join();
 }
 
