@@ -11,6 +11,10 @@
 namespace beltrami {
 namespace {
 
+using disks::Random;
+using disks::random_disk;
+using meshes::TriangleList;
+
 /// Ten seeds a test, so that they run side by side.
 class RandomDisks : public testing::TestWithParam<int> {};
 
