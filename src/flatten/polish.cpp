@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -49,13 +51,13 @@ void add_multiple(double factor, const Field& a, int threads, Field& sum) {
   });
 }
 
-/// The mean energy and its gradient.
+/// The mean energy with the barrier of the contact, and its gradient.
 template <class Density>
 class Objective {
  public:
   Objective(Index vertex_count, const std::vector<Triangle>& faces,
-            const std::vector<RestTriangle>& rest, int threads)
-      : faces_(faces), rest_(rest), sums_(vertex_count, faces, threads) {
+            const std::vector<RestTriangle>& rest, const BoundaryContact* contact, int threads)
+      : faces_(faces), rest_(rest), contact_(contact), sums_(vertex_count, faces, threads) {
     const auto area = [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
       for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
@@ -64,7 +66,13 @@ class Objective {
     inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
   }
 
-  /// Infinite where a face is not positive; the gradient is of no use then.
+  /// How much the contact counts at a map of this energy: nothing at first.
+  void set_contact_strength(double energy) {
+    strength_ = contact_strength<Density>(energy) * inverse_area_;
+  }
+
+  /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
+  /// use then.
   double evaluate(const Field& uvs, Field& gradient) {
     const auto give = [&](Index f, VertexSums::Terms& terms) {
       const Triangle& t = faces_[f];
@@ -85,13 +93,17 @@ class Objective {
       const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
       return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
     };
-    return sums_.add_up(give, gradient);
+    const double sum = sums_.add_up(give, gradient);
+    if (!contact_ || !std::isfinite(sum)) return sum;
+    return sum + strength_ * contact_->add_gradient(uvs, strength_, gradient);
   }
 
  private:
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
+  const BoundaryContact* contact_;
   double inverse_area_;
+  double strength_ = 0;
   VertexSums sums_;
 };
 
@@ -185,15 +197,17 @@ struct Fields {
 };
 
 /// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
-/// is low enough for its slope, and shortens `length` accordingly. Infinite if there is none.
+/// is low enough for its slope and the boundary simple, and shortens `length` accordingly. Infinite
+/// if there is none.
 template <class Density>
 double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
-                   int threads, Fields& fields, double& length) {
+                   const PolishOptions& options, Fields& fields, double& length) {
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     fields.trial = uvs;
-    add_multiple(length, fields.direction, threads, fields.trial);
+    add_multiple(length, fields.direction, options.threads, fields.trial);
     const double after = objective.evaluate(fields.trial, fields.next_gradient);
-    if (after < before && after <= before + kArmijo * length * slope) return after;
+    const bool low = after < before && after <= before + kArmijo * length * slope;
+    if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -203,14 +217,19 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
                      const Checkpoint& checkpoint) {
   const int threads = options.threads;
-  Objective<Density> objective(size_of(uvs), faces, rest, threads);
+  Objective<Density> objective(size_of(uvs), faces, rest, options.contact, threads);
   PolishResult result;
   Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
   Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
   Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
-  result.energies.push_back(objective.evaluate(uvs, gradient));
-  if (!std::isfinite(result.energies.front())) return result;
+  double start = objective.evaluate(uvs, gradient);
+  if (options.contact && std::isfinite(start)) {
+    objective.set_contact_strength(start);
+    start = objective.evaluate(uvs, gradient);
+  }
+  result.energies.push_back(start);
+  if (!std::isfinite(start)) return result;
   History history(threads);
   bool rigidly = true;  // whether faces may be held back alone
   while (result.iterations() < options.max_iterations) {
@@ -224,8 +243,12 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       result.blocked = true;
       break;
     }
+    if (options.contact) {
+      const double limit = length / kSingularShare;
+      length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
+    }
     const double after = slope < 0
-                             ? search_line(objective, uvs, before, slope, threads, fields, length)
+                             ? search_line(objective, uvs, before, slope, options, fields, length)
                              : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
@@ -235,6 +258,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       rigidly = false;
       continue;
     }
+    if (std::getenv("TRACE")) std::fprintf(stderr, "pol %d E %.6f -> %.6f length %.3g predicted %.3g blocking %zu\n", result.iterations(), before, after, length, result.predicted, result.blocking.size());
     rigidly = true;
     result.energies.push_back(after);
     parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -7,6 +7,7 @@
 #include "base/checkpoint.h"
 #include "base/types.h"
 #include "distortion/energy.h"
+#include "fullspace/contact.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -16,11 +17,15 @@ struct PolishOptions {
   double tolerance = 1e-5;  ///< relative energy decrease of a step that ends it
   int max_iterations = 20;
   bool force_first = true;  ///< whether the first step is taken however short it has to be
+  /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before
+  /// the first touch. The boundary must be simple at the start. Null: it may cross itself.
+  const BoundaryContact* contact = nullptr;
   int threads = 1;
 };
 
 struct PolishResult {
-  std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
+  std::vector<double> energies;  ///< mean energy, with contact the barrier's share included, at
+                                 ///< the start and after each step, never rising
   bool converged = false;        ///< a step of at least 1/2 decreased the energy by less than that
   bool blocked = false;          ///< the next step would have had to be shorter than that
   std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular

@@ -1,6 +1,8 @@
 #include "fullspace/newton.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "fullspace/newton_step.h"
 
@@ -16,6 +18,9 @@ constexpr double kFullStep = 0.5;
 constexpr int kPatience = 5;
 constexpr double kNothing = 1e-3;  // share of the tolerance that is no gain, however short the step
 constexpr double kLittleLeft = 0.05;  // predicted decrease, relative to the energy
+
+/// Relative gain of a step below which a map that is not admissible is not going to be.
+constexpr double kSettled = 1e-2;
 
 /// Steps below this length are blocked by faces that are nearly singular.
 constexpr double kBlockedStep = 0.02;
@@ -33,23 +38,32 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
-  int proxy_steps = options.proxy_steps;
-  std::vector<Vec2> admitted;
+  // Their long steps take no heed of parts that turn towards each other, which then jam.
+  const int all_proxy_steps = options.contact ? 0 : options.proxy_steps;
+  int proxy_steps = all_proxy_steps;
   int little_gains = 0;
+  const auto judge = [&] {
+    if (!options.admissible) return;
+    result.refused = !options.admissible(uvs);
+    if (!result.refused) result.admitted = uvs;
+  };
+  judge();
   while (!result.converged && result.iterations() < options.max_iterations) {
     if (options.out_of_time && options.out_of_time()) break;
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
-    if (options.admissible) admitted = uvs;
+    if (options.contact) {
+      stepper.set_contact(options.contact,
+                          contact_strength<Density>(before));
+    }
     const NewtonStep step = proxy ? stepper.step_with(typename Density::Proxy{}, uvs, before)
                                   : stepper.step(uvs, before);
-    if (step.length > 0 && options.admissible && !options.admissible(uvs)) {
-      uvs.swap(admitted);
-      result.refused = true;
-      break;
+    if (std::getenv("TRACE")) std::fprintf(stderr, "it %d proxy %d E %.6f gain %.3g predicted %.3g length %.3g contact %d\n", result.iterations(), (int)proxy, before, step.gain, step.predicted, step.length, options.contact != nullptr);
+    if (step.length > 0) {
+      result.energies.push_back(step.energy);
+      judge();
     }
-    if (step.length > 0) result.energies.push_back(step.energy);
     if (proxy) {
       proxy_steps = step.length > 0 ? proxy_steps - 1 : 0;
       continue;
@@ -60,8 +74,9 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
       result.converged = step.predicted <= kLittleLeft * std::max(before, kLeastEnergy);
       break;
     }
-    if (step.length < kBlockedStep) proxy_steps = options.proxy_steps;
-    const double gain = (before - step.energy) / comparable_energy<Density>(before);
+    if (step.length < kBlockedStep) proxy_steps = all_proxy_steps;
+    const double gain = step.gain / comparable_energy<Density>(before);
+    if (result.refused && step.length >= kFullStep && gain <= kSettled) break;
     const bool little = gain <= options.tolerance;
     little_gains = little && (step.length >= kBlockedStep || gain <= kNothing * options.tolerance)
                        ? little_gains + 1
@@ -71,6 +86,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     result.converged = (little && step.length >= kFullStep) || (stalled && little_left);
     if (stalled) break;
   }
+  if (!result.refused) result.admitted.clear();
   return result;
 }
 

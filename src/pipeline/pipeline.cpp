@@ -9,8 +9,9 @@
 #include "flatten/dirichlet.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
-#include "fullspace/scaffold.h"
+#include "fullspace/contact.h"
 #include "fullspace/tutte.h"
+#include "mesh/boundary.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
@@ -44,45 +45,63 @@ bool Run::keeps_boundary_simple() const {
          (options_.injectivity == BELTRAMI_INJECTIVITY_AUTO && !reference);
 }
 
-NewtonOptions Run::newton_options(const DiskMesh& mesh) const {
+NewtonOptions Run::newton_options() const {
   NewtonOptions newton;
   newton.energy = options_.energy;
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
   newton.threads = options_.threads;
-  if (keeps_boundary_simple()) {
-    newton.admissible = [&mesh](const std::vector<Vec2>& map) {
-      return count_crossings(mesh.boundary, map).count == 0;
-    };
-  }
   return newton;
 }
 
-/// Composite majorization; with a scaffold from the first step on that would make the boundary
-/// cross itself. Far from the minimum the symmetric Dirichlet energy leads the way: it is smooth,
-/// and its minimum is near that of the others (symmetric ARAP alone takes 1.5 times the steps).
-NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                          NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
-                          const Checkpoint& checkpoint) {
-  std::vector<bool> fixed(mesh.vertex_count(), false);
-  fixed[mesh.boundary.front()] = true;
+/// Composite majorization. Far from the minimum the symmetric Dirichlet energy leads the way: it is
+/// smooth, and its minimum is near that of the others (symmetric ARAP alone takes 1.5 times the
+/// steps).
+NewtonResult Run::descend_to(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                             NewtonOptions newton, std::vector<Vec2>& uvs,
+                             StageStatistics& statistics, const Checkpoint& checkpoint) {
+  const std::vector<bool> fixed = only_first_of_boundary(mesh);
+  int lead_steps = 0;
+  NewtonResult led;
   if (newton.proxy_steps > 0 && newton.energy != BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
     NewtonOptions lead = newton;
     lead.energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
     lead.tolerance = std::max(lead.tolerance, kLeadTolerance);
-    statistics.iterations =
-        minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint).iterations();
-    newton.max_iterations -= statistics.iterations;
+    led = minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint);
+    lead_steps = led.iterations();
+    newton.max_iterations -= lead_steps;
     newton.proxy_steps = 0;
   }
   NewtonResult done = minimise_energy(mesh.faces, rest, fixed, uvs, newton, checkpoint);
-  statistics.iterations += done.iterations();
-  if (done.refused) {
-    newton.max_iterations -= done.iterations();
-    done = minimise_with_scaffold(mesh, rest, uvs, newton, checkpoint);
-    statistics.iterations += done.iterations();
-  }
+  if (done.refused && done.admitted.empty()) done.admitted.swap(led.admitted);
+  statistics.iterations += lead_steps + done.iterations();
   return done;
+}
+
+/// The free minimum first; where its boundary crosses itself, and that is not wanted, the minimum
+/// with contact, from the last map on the way whose boundary was simple. A map whose boundary parts
+/// press on each other already needs no try without contact.
+NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                          NewtonOptions newton, bool simple, std::vector<Vec2>& uvs,
+                          StageStatistics& statistics, const Checkpoint& checkpoint) {
+  if (!simple) {
+    return descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+  }
+  const std::vector<double> lengths = boundary_lengths(mesh);
+  const BoundaryContact contact(mesh.boundary, lengths, lengths);
+  if (contact.find(uvs).empty() || !contact.is_simple(uvs)) {
+    newton.admissible = [&](const std::vector<Vec2>& map) { return contact.is_simple(map); };
+    NewtonResult free = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+    if (!free.refused || free.admitted.empty()) return free;
+    newton.admissible = nullptr;
+    newton.max_iterations -= free.iterations();
+    uvs.swap(free.admitted);
+  }
+  newton.contact = &contact;
+  newton.tolerance = std::max(newton.tolerance, options_.tolerance);
+  NewtonResult pressed = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+  pressed.in_contact = !contact.find(uvs).empty();
+  return pressed;
 }
 
 /// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
@@ -113,7 +132,7 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     std::vector<Vec2> map = start_map(coarse.mesh, coarse_rest, checkpoint);
     if (!non_positive_faces(coarse.mesh.faces, map, 1).empty()) continue;
     StageStatistics unused{"coarse"};
-    descend(coarse.mesh, coarse_rest, newton_options(coarse.mesh), map, unused,
+    descend(coarse.mesh, coarse_rest, newton_options(), keeps_boundary_simple(), map, unused,
             [&](double) { checkpoint(0.05); });
     const auto metric =
         prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh,
@@ -131,9 +150,10 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
   return {};
 }
 
-/// A start, then composite majorization; with a scaffold from the first step on that would make the
-/// boundary cross itself. Where it crawls at an enormous energy, again from a coarser mesh.
-std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until) {
+/// A start, then composite majorization. Where it crawls at an enormous energy, again from a
+/// coarser mesh.
+std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until,
+                              bool* in_contact) {
   std::vector<Vec2> uvs;
   stage(name, until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
@@ -142,14 +162,16 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     if (!non_positive_faces(mesh.faces, uvs, options_.threads).empty()) return;
     const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
     for (Vec2& w : uvs) w *= scale;
-    NewtonOptions newton = newton_options(mesh);
+    NewtonOptions newton = newton_options();
     if (&mesh != &input_) newton.tolerance *= kCoarseTolerance;
-    NewtonResult done = descend(mesh, rest, newton, uvs, statistics, checkpoint);
+    const bool simple = keeps_boundary_simple();
+    NewtonResult done = descend(mesh, rest, newton, simple, uvs, statistics, checkpoint);
     if (done.energies.back() > kHopelessEnergy) {
       std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
       if (!other.empty()) {
         StageStatistics second{name};
-        const NewtonResult again = descend(mesh, rest, newton, other, second, checkpoint);
+        const NewtonResult again =
+            descend(mesh, rest, newton, simple, other, second, checkpoint);
         statistics.iterations += second.iterations;
         if (again.energies.back() < done.energies.back()) {
           uvs.swap(other);
@@ -158,6 +180,7 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
       }
     }
     result_.coarse_energy = done.energies.back();
+    if (in_contact) *in_contact = done.in_contact;
     if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   });
   return uvs;
@@ -171,13 +194,14 @@ void Run::refine(std::vector<Vec2>& uvs) {
   if (keeps_boundary_simple() && certificate.crossings.count > 0) return;
   stage("refine", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
-    NewtonOptions newton = newton_options(*disk_);
+    NewtonOptions newton = newton_options();
     newton.proxy_steps = 0;  // they pay far from the minimum
     if (options_.refine_iterations > 0) newton.max_iterations = options_.refine_iterations;
     if (options_.time_limit > 0) {
       newton.out_of_time = [&] { return wall_seconds() - started_ > options_.time_limit; };
     }
-    const NewtonResult done = descend(*disk_, rest, newton, uvs, statistics, checkpoint);
+    const NewtonResult done = descend(*disk_, rest, newton, keeps_boundary_simple(), uvs,
+                                      statistics, checkpoint);
     const bool limited = options_.refine_iterations > 0 || options_.time_limit > 0;
     if (!done.converged && !limited) result_.status = BELTRAMI_NOT_CONVERGED;
   });
