@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -27,9 +25,6 @@ constexpr int kHoldRounds = 4;          // after which a few faces hold back the
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
-/// Nor do those that promised more than so many times what is little: nearly singular faces, which
-/// are held back, are in their way.
-constexpr double kMisjudged = 10;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -56,8 +51,8 @@ template <class Density>
 class Objective {
  public:
   Objective(Index vertex_count, const std::vector<Triangle>& faces,
-            const std::vector<RestTriangle>& rest, const BoundaryContact* contact, int threads)
-      : faces_(faces), rest_(rest), contact_(contact), sums_(vertex_count, faces, threads) {
+            const std::vector<RestTriangle>& rest, int threads)
+      : faces_(faces), rest_(rest), sums_(vertex_count, faces, threads) {
     const auto area = [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
       for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
@@ -66,10 +61,8 @@ class Objective {
     inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
   }
 
-  /// How much the contact counts at a map of this energy: nothing at first.
-  void set_contact_strength(double energy) {
-    strength_ = contact_strength<Density>(energy) * inverse_area_;
-  }
+  /// From now on with contact. Keeps the pointer.
+  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
 
   /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
   /// use then.
@@ -95,15 +88,15 @@ class Objective {
     };
     const double sum = sums_.add_up(give, gradient);
     if (!contact_ || !std::isfinite(sum)) return sum;
-    return sum + strength_ * contact_->add_gradient(uvs, strength_, gradient);
+    const double strength = contact_->strength() * inverse_area_;
+    return sum + strength * contact_->add_gradient(uvs, strength, gradient);
   }
 
  private:
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
-  const BoundaryContact* contact_;
+  const BoundaryContact* contact_ = nullptr;
   double inverse_area_;
-  double strength_ = 0;
   VertexSums sums_;
 };
 
@@ -217,7 +210,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
                      const Checkpoint& checkpoint) {
   const int threads = options.threads;
-  Objective<Density> objective(size_of(uvs), faces, rest, options.contact, threads);
+  Objective<Density> objective(size_of(uvs), faces, rest, threads);
   PolishResult result;
   Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
@@ -225,13 +218,14 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
   double start = objective.evaluate(uvs, gradient);
   if (options.contact && std::isfinite(start)) {
-    objective.set_contact_strength(start);
+    objective.set_contact(options.contact);
     start = objective.evaluate(uvs, gradient);
   }
   result.energies.push_back(start);
   if (!std::isfinite(start)) return result;
   History history(threads);
-  bool rigidly = true;  // whether faces may be held back alone
+  bool rigidly = true;   // whether faces may be held back alone
+  bool settled = false;  // the last step was a full one with little gain
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back();
@@ -239,6 +233,10 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
     const double slope = dot(gradient, direction, threads);
     result.predicted = -slope;
+    result.converged =
+        settled &&
+        0.5 * result.predicted <= options.stationary * comparable_energy<Density>(before);
+    if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;
       break;
@@ -258,7 +256,6 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       rigidly = false;
       continue;
     }
-    if (std::getenv("TRACE")) std::fprintf(stderr, "pol %d E %.6f -> %.6f length %.3g predicted %.3g blocking %zu\n", result.iterations(), before, after, length, result.predicted, result.blocking.size());
     rigidly = true;
     result.energies.push_back(after);
     parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -272,9 +269,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
     gradient.swap(next_gradient);
     const double little = options.tolerance * comparable_energy<Density>(before);
-    result.converged =
-        length >= kFullStep && before - after <= little && result.predicted <= kMisjudged * little;
-    if (result.converged) break;
+    settled = length >= kFullStep && before - after <= little;
   }
   return result;
 }

@@ -16,6 +16,11 @@ using Box = Eigen::AlignedBox2d;
 /// How far the barrier reaches, in edges: far enough for a Newton step to see what it runs into.
 /// With half an edge the steps become twice as many; with three the map ends higher.
 constexpr double kReach = 2;
+/// More contacts than so many for each vertex tell a step nothing new.
+constexpr int kMostContacts = 32;
+/// Of the barrier in an objective, times half the energy: at the end it raises the energy by a
+/// thousandth.
+constexpr double kStrength = 0.01;
 /// Points of one boundary part are near each other: of the way between them along the boundary.
 constexpr double kReachAlong = 0.25;
 
@@ -92,7 +97,7 @@ BoundaryContact::BoundaryContact(const std::vector<Index>& loop, const std::vect
 }
 
 double BoundaryContact::reach_of_vertex(Index i) const {
-  return kReach * std::min(scales_[before(i)], scales_[i]);
+  return scale_ * kReach * std::min(scales_[before(i)], scales_[i]);
 }
 
 double BoundaryContact::reach(Index i, Index e) const {
@@ -100,7 +105,7 @@ double BoundaryContact::reach(Index i, Index e) const {
     const double way = std::abs(along_[k] - along_[i]);
     return std::min(way, along_.back() - way);
   };
-  return std::min({reach_of_vertex(i), kReach * scales_[e],
+  return std::min({reach_of_vertex(i), scale_ * kReach * scales_[e],
                    kReachAlong * std::min(way_to(e), way_to(after(e)))});
 }
 
@@ -137,6 +142,13 @@ void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_e
       }
     }
   }
+}
+
+void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
+  strength_ = 0.5 * kStrength * energy;
+  scale_ = std::min(1.0, std::sqrt(2 / energy));
+  const std::size_t most = kMostContacts * loop_.size();
+  while (scale_ > std::numeric_limits<double>::min() && find(uvs).size() > most) scale_ *= 0.5;
 }
 
 std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin) const {

@@ -28,6 +28,7 @@ struct Touch {
 /// integral over pairs of its points, so to say, of (1 - x)^3 / x, where x is their distance over
 /// its reach: infinite at contact, 0 from the reach on, twice differentiable. The reach is a few
 /// edges, but for points that are near each other along the boundary, and so by nature, less.
+/// Copies are cheap beside a map.
 class BoundaryContact {
  public:
   /// `lengths`: on the surface, of the edges from loop[i] to loop[i + 1]; `scales`: per edge, the
@@ -35,6 +36,15 @@ class BoundaryContact {
   /// All > 0. Keeps a reference to `loop`.
   BoundaryContact(const std::vector<Index>& loop, const std::vector<double>& lengths,
                   std::vector<double> scales);
+
+  /// Scales the reach, and the contact's weight in an objective, to a map: `energy` is its mean
+  /// energy, counted from 2 at the isometries. A map far too small gets a reach as much smaller, and
+  /// one with more parts near each other than the barrier needs, too.
+  void fit(const std::vector<Vec2>& uvs, double energy);
+
+  /// What the barrier's energy counts in an objective, times the inverse area of the surface: it
+  /// must hold against what presses.
+  double strength() const { return strength_; }
 
   /// Pairs nearer than `margin` times their reach, in the order of the vertices along the loop,
   /// then of the edges. O(n log n) for n edges if each is near to a few others.
@@ -72,6 +82,8 @@ class BoundaryContact {
 
   const std::vector<Index>& loop_;
   std::vector<double> lengths_, scales_;
+  double scale_ = 1;  // of all reaches
+  double strength_ = 1;
   std::vector<double> along_;  // of each vertex along the loop, and the whole length at the end
 };
 

@@ -1,8 +1,7 @@
 #include "fullspace/newton.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
+#include <optional>
 
 #include "fullspace/newton_step.h"
 
@@ -17,7 +16,15 @@ constexpr double kFullStep = 0.5;
 /// not smooth (symmetric ARAP at s1 = s2) creep towards their minimum in shortened steps.
 constexpr int kPatience = 5;
 constexpr double kNothing = 1e-3;  // share of the tolerance that is no gain, however short the step
-constexpr double kLittleLeft = 0.05;  // predicted decrease, relative to the energy
+constexpr double kLittleLeft = 0.05;  // predicted decrease, relative to the energy, then
+
+/// Whether a Newton step would gain less than the tolerance by its own model; of an energy that is
+/// not smooth the model knows less than that.
+template <class Density>
+bool is_stationary(const NewtonStep& step, double energy, double tolerance) {
+  const double share = Density::kSmooth ? tolerance : kLittleLeft;
+  return 0.5 * step.predicted <= share * comparable_energy<Density>(energy);
+}
 
 /// Relative gain of a step below which a map that is not admissible is not going to be.
 constexpr double kSettled = 1e-2;
@@ -38,6 +45,8 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
+  std::optional<BoundaryContact> contact;
+  if (options.contact) stepper.set_contact(&contact.emplace(*options.contact));
   // Their long steps take no heed of parts that turn towards each other, which then jam.
   const int all_proxy_steps = options.contact ? 0 : options.proxy_steps;
   int proxy_steps = all_proxy_steps;
@@ -53,13 +62,9 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
-    if (options.contact) {
-      stepper.set_contact(options.contact,
-                          contact_strength<Density>(before));
-    }
+    if (contact) contact->fit(uvs, comparable_energy<Density>(before));
     const NewtonStep step = proxy ? stepper.step_with(typename Density::Proxy{}, uvs, before)
                                   : stepper.step(uvs, before);
-    if (std::getenv("TRACE")) std::fprintf(stderr, "it %d proxy %d E %.6f gain %.3g predicted %.3g length %.3g contact %d\n", result.iterations(), (int)proxy, before, step.gain, step.predicted, step.length, options.contact != nullptr);
     if (step.length > 0) {
       result.energies.push_back(step.energy);
       judge();
@@ -71,7 +76,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     if (step.length == 0) {
       // No representable decrease: at the minimum (or on a ridge) if little was predicted, stuck
       // otherwise.
-      result.converged = step.predicted <= kLittleLeft * std::max(before, kLeastEnergy);
+      result.converged = is_stationary<Density>(step, before, options.tolerance);
       break;
     }
     if (step.length < kBlockedStep) proxy_steps = all_proxy_steps;
@@ -82,8 +87,8 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
                        ? little_gains + 1
                        : 0;
     const bool stalled = little_gains >= kPatience;
-    const bool little_left = step.predicted <= kLittleLeft * std::max(before, kLeastEnergy);
-    result.converged = (little && step.length >= kFullStep) || (stalled && little_left);
+    result.converged = (little && step.length >= kFullStep) ||
+                       (stalled && is_stationary<Density>(step, before, options.tolerance));
     if (stalled) break;
   }
   if (!result.refused) result.admitted.clear();

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "distortion/energy.h"
 #include "fullspace/assembly.h"
 #include "fullspace/contact.h"
 #include "fullspace/line_search.h"
@@ -29,19 +28,6 @@ inline constexpr double kLeastEnergy = 0.01;
 template <class Density>
 constexpr double comparable_energy(double energy) {
   return energy + 2 - Density::kMinimum;
-}
-
-/// The contact's energy joins the mean energy with this weight, times half the energy: at the end
-/// it raises the energy by a thousandth.
-inline constexpr double kContactStrength = 0.01;
-
-/// Strength of the contact for a map of this mean energy: it must hold against what presses.
-template <class Density>
-constexpr double contact_strength(double energy) {
-  return 0.5 * kContactStrength * comparable_energy<Density>(energy);
-}
-inline double contact_strength(Energy energy, double mean) {
-  return with_density(energy, [&]<class Density>(Density) { return contact_strength<Density>(mean); });
 }
 
 /// What a step did.
@@ -75,12 +61,9 @@ class NewtonStepper {
 
   Index free_count() const { return hessian_.free_count(); }
   void set_density(const Density& density) { density_ = density; }
-  /// From now on the objective has `strength` times the contact's energy over the area of the faces
-  /// in it, and no step lets the boundary touch itself. Null: no contact.
-  void set_contact(const BoundaryContact* contact, double strength) {
-    contact_ = contact;
-    strength_ = strength / area_;
-  }
+  /// From now on the contact's energy joins the objective, and no step lets the boundary touch
+  /// itself. Null: no contact. Keeps the pointer.
+  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
 
   /// Infinite if a face is not positive under a barrier density.
   double mean_energy(const std::vector<Vec2>& uvs) const;
@@ -108,6 +91,7 @@ class NewtonStepper {
   static constexpr double kFreed = 0.2;  // of the reach, beyond which it is no more
   static constexpr double kPatternMargin = 1.5;  // of the reach, up to which pairs have entries
 
+  double strength() const { return contact_->strength() / area_; }
   void meet_contacts(const std::vector<Vec2>& uvs);
   double stop_before_touch(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,
                            double length);
@@ -123,7 +107,6 @@ class NewtonStepper {
   const int threads_;
   Density density_;
   const BoundaryContact* contact_ = nullptr;
-  double strength_ = 0;
   std::vector<Contact> contacts_;      // that the matrix has entries for
   std::set<std::pair<Index, Index>> stuck_;  // of them, by vertex and first vertex of the edge
   std::vector<Triangle> with_contacts_;  // the faces, then the vertices of each contact; or empty
@@ -209,8 +192,8 @@ void NewtonStepper<Density>::assemble_model(const Model& model, const std::vecto
     if (f >= size_of(faces_)) {
       const Contact& contact = contacts_[f - size_of(faces_)];
       FaceModel pair = contact_model(contact, uvs, stuck_.contains({contact.vertex, contact.from}));
-      pair.gradient *= strength_;
-      pair.hessian *= strength_;
+      pair.gradient *= strength();
+      pair.hessian *= strength();
       return pair;
     }
     const Triangle& t = faces_[f];
@@ -252,7 +235,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
         std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
   }
   const auto pressure = [&](const std::vector<Vec2>& map) {
-    return contact_ ? strength_ * contact_->energy(map) : 0.0;
+    return contact_ ? strength() * contact_->energy(map) : 0.0;
   };
   if (contact_) length = stop_before_touch(uvs, direction, length);
   const double before = energy + pressure(uvs);

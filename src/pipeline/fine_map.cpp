@@ -12,7 +12,6 @@
 #include "flatten/reduced.h"
 #include "flatten/uv_prolongation.h"
 #include "fullspace/contact.h"
-#include "fullspace/newton_step.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/tutte.h"
 #include "mesh/boundary.h"
@@ -33,6 +32,7 @@ constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
 constexpr int kRotations = 2;              // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
 constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
+constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
 constexpr int kPolishIterations = 30;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
@@ -62,6 +62,7 @@ void Run::simplify_fine(FineProblem& fine) {
 void Run::solve_coarse(FineProblem& fine) {
   result_.coarse_faces = fine.coarse.mesh.face_count();
   fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22, &fine.in_contact);
+  fine.coarse_energy = result_.coarse_energy;
 }
 
 /// The metric of the fine faces: the coarse map's, or that of the surface where there is no coarse
@@ -251,14 +252,15 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   }
   const bool pressed = !anchored.empty();
   if (!global || pressed) {
-    polish_map(fine, pressed ? &contact : nullptr, *laplacian, uvs);
+    polish_map(fine, pressed ? std::optional(contact) : std::nullopt, *laplacian, uvs);
     return uvs;
   }
   const std::vector<Vec2> before = uvs;
-  polish_map(fine, nullptr, *laplacian, uvs);
+  polish_map(fine, std::nullopt, *laplacian, uvs);
   if (contact.is_simple(uvs)) return uvs;
   uvs = before;
-  polish_map(fine, &contact, *laplacian, uvs);
+  result_.status = BELTRAMI_OK;
+  polish_map(fine, contact, *laplacian, uvs);
   return uvs;
 }
 
@@ -326,8 +328,8 @@ bool Run::solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
 }
 
 /// A few steps of composite majorization: they cost most, and are not held up by nearly singular
-/// faces. Returns their number.
-int Run::take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
+/// faces.
+NewtonResult Run::take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                            std::vector<Vec2>& uvs, const Checkpoint& checkpoint) {
   NewtonOptions newton = newton_options();
   newton.proxy_steps = 0;
@@ -335,18 +337,18 @@ int Run::take_newton_steps(const FineProblem& fine, const BoundaryContact* conta
   newton.max_iterations = kNewtonSteps;
   newton.tolerance = std::max(newton.tolerance, kNewtonTolerance);
   const std::vector<bool> fixed = only_first_of_boundary(*disk_);
-  const NewtonResult done = minimise_energy(disk_->faces, fine.rest, fixed, uvs, newton,
-                                            [&](double) { checkpoint(0.9); });
-  return done.iterations();
+  return minimise_energy(disk_->faces, fine.rest, fixed, uvs, newton,
+                         [&](double) { checkpoint(0.9); });
 }
 
 /// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, if
 /// that one gets through; the others with one that is fitted to the map by then. Where nearly
 /// singular faces block the steps, patches around these are optimised and the factor is fitted
 /// anew; where that does not help either, and much is left to gain, Newton steps end it.
-void Run::polish_map(const FineProblem& fine, const BoundaryContact* contact,
+void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    if (contact) contact->fit(uvs, fine.coarse_energy);
     // The objective is a mean, the stiffness that of a sum.
     const double area = surface_area(*disk_, options_.threads);
     const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
@@ -360,7 +362,7 @@ void Run::polish_map(const FineProblem& fine, const BoundaryContact* contact,
       options.tolerance = kPolishTolerance;
       options.max_iterations = steps;
       options.force_first = force_first;
-      options.contact = contact;
+      options.contact = contact ? &*contact : nullptr;
       const int before = statistics.iterations;
       PolishResult polished =
           polish(disk_->faces, fine.rest, precondition, uvs, options,
@@ -379,8 +381,7 @@ void Run::polish_map(const FineProblem& fine, const BoundaryContact* contact,
       std::vector<double> springs;
       if (contact) {
         springs = contact->stiffness(uvs);
-        const double strength = contact_strength(options_.energy, polished.energies.back());
-        for (double& spring : springs) spring *= strength;
+        for (double& spring : springs) spring *= contact->strength();
       }
       laplacian.refit(
           *disk_,
@@ -395,10 +396,16 @@ void Run::polish_map(const FineProblem& fine, const BoundaryContact* contact,
       before_last_round = polished.energies.front();
       if (gained <= kLittleGain * energy) break;
     }
+    bool converged = polished.converged ||
+                     0.5 * polished.predicted <= kStationary * polished.energies.back();
     if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
         affords(*disk_, options_, Extra::kNewtonSteps)) {
-      statistics.iterations += take_newton_steps(fine, contact, uvs, checkpoint);
+      const NewtonResult ended =
+          take_newton_steps(fine, contact ? &*contact : nullptr, uvs, checkpoint);
+      statistics.iterations += ended.iterations();
+      converged = ended.converged;
     }
+    if (!converged) result_.status = BELTRAMI_NOT_CONVERGED;
     clean({});
   });
 }

@@ -28,6 +28,7 @@ namespace beltrami {
 struct FineProblem {
   CoarseDisk coarse;
   std::vector<Vec2> coarse_uvs;
+  double coarse_energy = 2;
   bool in_contact = false;  ///< parts of the coarse boundary press on each other
   std::vector<RestTriangle> rest;
   std::vector<FaceMetric> metric;
@@ -117,9 +118,9 @@ class Run {
   bool solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
                   const std::vector<bool>& anchored, std::unique_ptr<MetricLaplacian>& laplacian,
                   std::vector<Vec2>& uvs);
-  void polish_map(const FineProblem& fine, const BoundaryContact* contact,
+  void polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                   MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
-  int take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
+  NewtonResult take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                         std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
   void anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                    std::vector<bool>& anchored) const;
