@@ -33,14 +33,21 @@ struct Nearest {
   double share;  ///< of the edge, up to there
   Vec2 apart;    ///< from there to the vertex
   double distance;
+  /// Sine of the angle between the edge and `apart`, positive outside, where the edge has the
+  /// surface on its left: 1 or -1 but beyond the ends of the edge.
+  double outside;
 };
 
 Nearest nearest_on_edge(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 edge = b - a, away = p - a;
   const double length_sq = edge.squaredNorm();
-  const double share = length_sq > 0 ? std::clamp(away.dot(edge) / length_sq, 0.0, 1.0) : 0.0;
+  const double along = length_sq > 0 ? away.dot(edge) / length_sq : 0.0;
+  const double share = std::clamp(along, 0.0, 1.0);
   const Vec2 apart = away - share * edge;
-  return {share, apart, apart.norm()};
+  const double distance = apart.norm(), turn = cross(edge, away);
+  if (share == along) return {share, apart, distance, turn < 0 ? 1.0 : -1.0};
+  const double product = std::sqrt(length_sq) * distance;
+  return {share, apart, distance, product > 0 ? std::clamp(-turn / product, -1.0, 1.0) : 1.0};
 }
 
 double barrier(double x) {
@@ -65,6 +72,35 @@ Vector6 distance_gradient(const Nearest& near) {
   Vector6 gradient;
   gradient << normal, -(1 - near.share) * normal, -near.share * normal;
   return gradient;
+}
+
+/// The derivative of Nearest::outside, where the vertex is beyond the ends of the edge.
+Vector6 outside_gradient(const Nearest& near, const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 edge = b - a, away = p - a;
+  const double length = edge.norm(), turn = cross(edge, away);
+  const Vec2 by_vertex = Vec2(edge.y(), -edge.x()) / length;
+  const Vec2 by_to = Vec2(-away.y(), away.x()) / length + turn / (length * length * length) * edge;
+  Vector6 by_height;
+  by_height << by_vertex, -by_vertex - by_to, by_to;
+  return (by_height - near.outside * distance_gradient(near)) / near.distance;
+}
+
+/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the vertex
+/// gets behind it, where the next edge takes over.
+struct Term {
+  double value;
+  Vector6 gradient;
+};
+
+Term contact_term(const Contact& c, const Nearest& near, const std::vector<Vec2>& uvs) {
+  const double x = near.distance / c.reach, share = near.outside * near.outside;
+  Term term{c.weight * share * barrier(x),
+            (c.weight * share * barrier_slope(x) / c.reach) * distance_gradient(near)};
+  if (share < 1) {
+    term.gradient += (2 * c.weight * near.outside * barrier(x)) *
+                     outside_gradient(near, uvs[c.vertex], uvs[c.from], uvs[c.to]);
+  }
+  return term;
 }
 
 /// The first t in (0, limit) at which p and the edge a-b, all moving straight, become collinear
@@ -163,7 +199,9 @@ std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double 
   for_each_near(around_vertex, at_vertex, [&](Index i, Index e) {
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double limit = reach(i, e);
-    if (nearest_on_edge(uvs[p], uvs[a], uvs[b]).distance >= margin * limit) return;
+    const Nearest near = nearest_on_edge(uvs[p], uvs[a], uvs[b]);
+    // Behind the edge is the surface, and no contact.
+    if (near.distance >= margin * limit || near.outside <= (margin > 1 ? -0.5 : 0.0)) return;
     contacts.push_back({p, a, b, limit, (lengths_[before(i)] + lengths_[i]) * lengths_[e]});
   });
   return contacts;
@@ -173,7 +211,7 @@ double BoundaryContact::energy(const std::vector<Vec2>& uvs) const {
   double sum = 0;
   for (const Contact& c : find(uvs)) {
     const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
-    sum += c.weight * barrier(near.distance / c.reach);
+    sum += c.weight * near.outside * near.outside * barrier(near.distance / c.reach);
   }
   return sum;
 }
@@ -183,13 +221,11 @@ double BoundaryContact::add_gradient(const std::vector<Vec2>& uvs, double streng
   double sum = 0;
   for (const Contact& c : find(uvs)) {
     const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
-    const double x = near.distance / c.reach;
-    sum += c.weight * barrier(x);
-    const Vector6 term =
-        (strength * c.weight * barrier_slope(x) / c.reach) * distance_gradient(near);
-    gradient[c.vertex] += term.segment<2>(0);
-    gradient[c.from] += term.segment<2>(2);
-    gradient[c.to] += term.segment<2>(4);
+    const Term term = contact_term(c, near, uvs);
+    sum += term.value;
+    gradient[c.vertex] += strength * term.gradient.segment<2>(0);
+    gradient[c.from] += strength * term.gradient.segment<2>(2);
+    gradient[c.to] += strength * term.gradient.segment<2>(4);
   }
   return sum;
 }
@@ -198,7 +234,8 @@ std::vector<double> BoundaryContact::stiffness(const std::vector<Vec2>& uvs) con
   std::vector<double> result(uvs.size(), 0);
   for (const Contact& c : find(uvs)) {
     const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
-    const double across = c.weight * barrier_curvature(near.distance / c.reach) / (c.reach * c.reach);
+    const double across = c.weight * near.outside * near.outside *
+                          barrier_curvature(near.distance / c.reach) / (c.reach * c.reach);
     result[c.vertex] += across;
     result[c.from] += (1 - near.share) * across;
     result[c.to] += near.share * across;
@@ -242,11 +279,12 @@ FaceModel contact_model(const Contact& c, const std::vector<Vec2>& uvs, bool stu
   const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
   const double x = near.distance / c.reach;
   FaceModel model{Vector6::Zero(), Matrix6::Zero()};
-  if (!(x < 1)) return model;
+  if (!(x < 1 && near.outside > 0)) return model;
   // The curvature of the distance itself is left out: it is not positive.
   const Vector6 by_distance = distance_gradient(near);
-  model.gradient = (c.weight * barrier_slope(x) / c.reach) * by_distance;
-  const double across = c.weight * barrier_curvature(x) / (c.reach * c.reach);
+  model.gradient = contact_term(c, near, uvs).gradient;
+  const double across =
+      c.weight * near.outside * near.outside * barrier_curvature(x) / (c.reach * c.reach);
   model.hessian.noalias() = (across * by_distance) * by_distance.transpose();
   if (stuck) {
     const Vec2 tangent(-near.apart.y() / near.distance, near.apart.x() / near.distance);

@@ -173,8 +173,8 @@ std::vector<Vec2> Run::descend_from_circle(const std::vector<RestTriangle>& rest
   if (!certify(disk_->faces, disk_->boundary, uvs, options_.threads).injective()) {
     uvs = grid_drawing(*disk_);
   }
-  const double scale = best_scale(options_.energy, disk_->faces, rest, uvs);
-  for (Vec2& w : uvs) w *= scale;
+  scale_best(*disk_, rest, uvs);
+  start_flat(*disk_, rest, uvs);
   const NewtonResult done =
       descend(*disk_, rest, newton_options(), simple, uvs, statistics, checkpoint);
   if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;

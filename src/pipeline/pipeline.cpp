@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "base/error.h"
 #include "flatten/dirichlet.h"
+#include "fullspace/contact.h"
+#include "fullspace/flat_start.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
-#include "fullspace/contact.h"
 #include "fullspace/tutte.h"
 #include "mesh/boundary.h"
 #include "pipeline/run.h"
@@ -26,6 +28,8 @@ constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one 
 /// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
 constexpr std::array<Index, 2> kFallbacks = {1000, 100};
 constexpr Index kFewestFaces = 20;
+/// Scales nearer to each other than that differ by 1e-11 of the energy: not worth a rounding.
+constexpr double kSameScale = 1e-6;
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
 constexpr double kHopelessEnergy = 1e3;
 
@@ -114,6 +118,26 @@ std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTri
   return other.empty() ? grid_drawing(mesh) : other;
 }
 
+void Run::scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                     std::vector<Vec2>& uvs) const {
+  const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
+  if (std::abs(scale - 1) < kSameScale) return;
+  for (Vec2& w : uvs) w *= scale;
+}
+
+/// Takes a flat start instead where it is injective and has less energy.
+void Run::start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                     std::vector<Vec2>& uvs) const {
+  double least = mean_energy(options_.energy, mesh.faces, rest, uvs);
+  for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
+    scale_best(mesh, rest, start);
+    const double energy = mean_energy(options_.energy, mesh.faces, rest, start);
+    if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, 1).injective()) continue;
+    uvs.swap(start);
+    least = energy;
+  }
+}
+
 /// The pipeline in small: a mesh of a tenth of the faces, or 1,000, or 100, is flattened and its
 /// metric prolonged. Empty if every size leaves faces flipped.
 std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
@@ -160,8 +184,8 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
     uvs = start_map(mesh, rest, checkpoint);
     checkpoint(0.02);
     if (!non_positive_faces(mesh.faces, uvs, options_.threads).empty()) return;
-    const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
-    for (Vec2& w : uvs) w *= scale;
+    scale_best(mesh, rest, uvs);
+    start_flat(mesh, rest, uvs);
     NewtonOptions newton = newton_options();
     if (&mesh != &input_) newton.tolerance *= kCoarseTolerance;
     const bool simple = keeps_boundary_simple();
@@ -238,6 +262,8 @@ Delivery Run::run_with_fallback() {
     try {
       uvs = run();
       if (options_.refine) refine(uvs);
+      const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
+      scale_best(*disk_, rest, uvs);
     } catch (const Error& error) {
       // GIF's only one asks for another method, with the reason.
       if (error.status() != BELTRAMI_E_SOLVER || options_.method == BELTRAMI_METHOD_GIF) throw;

@@ -84,6 +84,10 @@ class Run {
                                        const Checkpoint& checkpoint);
   void refine(std::vector<Vec2>& uvs);
   NewtonOptions newton_options() const;
+  void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  std::vector<Vec2>& uvs) const;
+  void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  std::vector<Vec2>& uvs) const;
   NewtonResult descend_to(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                           NewtonOptions newton, std::vector<Vec2>& uvs,
                           StageStatistics& statistics, const Checkpoint& checkpoint);
