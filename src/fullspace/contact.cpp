@@ -45,7 +45,7 @@ Nearest nearest_on_edge(const Vec2& p, const Vec2& a, const Vec2& b) {
   const double share = std::clamp(along, 0.0, 1.0);
   const Vec2 apart = away - share * edge;
   const double distance = apart.norm(), turn = cross(edge, away);
-  if (share == along) return {share, apart, distance, turn < 0 ? 1.0 : -1.0};
+  if (share == along) return {share, apart, distance, turn > 0 ? -1.0 : 1.0};
   const double product = std::sqrt(length_sq) * distance;
   return {share, apart, distance, product > 0 ? std::clamp(-turn / product, -1.0, 1.0) : 1.0};
 }
@@ -142,7 +142,7 @@ double BoundaryContact::reach(Index i, Index e) const {
     return std::min(way, along_.back() - way);
   };
   return std::min({reach_of_vertex(i), scale_ * kReach * scales_[e],
-                   kReachAlong * std::min(way_to(e), way_to(after(e)))});
+                   scale_ * kReachAlong * std::min(way_to(e), way_to(after(e)))});
 }
 
 /// Calls visit(i, e) for the vertices i and the edges e, none that ends there, whose boxes meet,
