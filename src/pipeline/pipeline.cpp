@@ -218,6 +218,12 @@ void Run::refine(std::vector<Vec2>& uvs) {
   if (keeps_boundary_simple() && certificate.crossings.count > 0) return;
   stage("refine", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
+    const auto scaled_energy = [&] {
+      scale_best(*disk_, rest, uvs);
+      return mean_energy(options_.energy, disk_->faces, rest, uvs);
+    };
+    const double before = scaled_energy();
+    const std::vector<Vec2> start = uvs;
     NewtonOptions newton = newton_options();
     newton.proxy_steps = 0;  // they pay far from the minimum
     if (options_.refine_iterations > 0) newton.max_iterations = options_.refine_iterations;
@@ -226,6 +232,8 @@ void Run::refine(std::vector<Vec2>& uvs) {
     }
     const NewtonResult done = descend(*disk_, rest, newton, keeps_boundary_simple(), uvs,
                                       statistics, checkpoint);
+    // The barrier of the contact may have fallen instead.
+    if (!(scaled_energy() <= before)) uvs = start;
     const bool limited = options_.refine_iterations > 0 || options_.time_limit > 0;
     if (!done.converged && !limited) result_.status = BELTRAMI_NOT_CONVERGED;
   });

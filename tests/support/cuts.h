@@ -124,11 +124,14 @@ inline std::vector<double> edge_distances(const meshes::TriangleList& mesh,
 /// fewer.
 inline Seams seams_through(const meshes::TriangleList& mesh, int points) {
   Seams seams;
-  std::vector<Index> before, tree = {0}, chosen = {0};
+  std::vector<Index> before;
+  const auto farthest_from = [&](const std::vector<Index>& sources) {
+    const std::vector<double> apart = edge_distances(mesh, sources, before);
+    return static_cast<Index>(std::max_element(apart.begin(), apart.end()) - apart.begin());
+  };
+  std::vector<Index> tree = {farthest_from({0})}, chosen = tree;
   for (int k = 1; k < points; ++k) {
-    const std::vector<double> apart = edge_distances(mesh, chosen, before);
-    const auto far =
-        static_cast<Index>(std::max_element(apart.begin(), apart.end()) - apart.begin());
+    const Index far = farthest_from(chosen);
     chosen.push_back(far);
     edge_distances(mesh, tree, before);
     for (Index v = far; before[v] != kNone; v = before[v]) {
