@@ -1,5 +1,8 @@
 #include "fullspace/flat_start.h"
 
+#include <queue>
+#include <utility>
+
 namespace beltrami {
 namespace {
 
@@ -51,20 +54,27 @@ std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle
     const Complex corner = rest[0].corner(k);
     place(mesh.faces[0][k], {corner.real(), corner.imag()});
   }
-  std::vector<Index> queue = {0};
-  reached[0] = true;
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    for (int k = 0; k < 3; ++k) {
-      const Index twin = mesh.twin[3 * queue[next] + k];
+  // Over the longest edge first: over a short one the direction is lost in rounding.
+  std::priority_queue<std::pair<double, Index>> queue;
+  const auto leave = [&](Index face) {
+    reached[face] = true;
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index twin = mesh.twin[h];
       if (twin == kNone || reached[twin / 3]) continue;
-      const Index face = twin / 3;
-      const int corner = previous_corner(twin % 3);
-      const Triangle& t = mesh.faces[face];
-      place(t[corner],
-            apex(rest[face], corner, uvs[t[next_corner(corner)]], uvs[t[previous_corner(corner)]]));
-      reached[face] = true;
-      queue.push_back(face);
+      queue.emplace((mesh.positions[mesh.target(h)] - mesh.positions[mesh.origin(h)]).norm(), twin);
     }
+  };
+  leave(0);
+  while (!queue.empty()) {
+    const Index twin = queue.top().second;
+    queue.pop();
+    const Index face = twin / 3;
+    if (reached[face]) continue;
+    const int corner = previous_corner(twin % 3);
+    const Triangle& t = mesh.faces[face];
+    place(t[corner],
+          apex(rest[face], corner, uvs[t[next_corner(corner)]], uvs[t[previous_corner(corner)]]));
+    leave(face);
   }
   return uvs;
 }

@@ -14,8 +14,8 @@ namespace beltrami {
 std::vector<Vec2> projection(const DiskMesh& mesh);
 
 /// Every face laid out in its rest shape beside the one that it was reached from, from face to face
-/// in the order of a breadth-first search: isometric where the mesh has no inner vertex, or is
-/// flat; elsewhere faces do not fit together, and may be flipped. The boundary may cross itself.
+/// over the longest edge left: isometric where the mesh has no inner vertex, or is flat; elsewhere
+/// faces do not fit together, and may be flipped. The boundary may cross itself.
 std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest);
 
 }  // namespace beltrami
