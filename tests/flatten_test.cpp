@@ -198,7 +198,7 @@ std::vector<Vec2> solve_from_own_metric(const DiskMesh& mesh, const std::vector<
   for (std::size_t v = 0; v < map.size(); ++v) {
     if (held[v]) uvs[v] = map[v];
   }
-  solve_metric(mesh, rest, metric, stiffness, laplacian, false, 1, uvs);
+  solve_metric(mesh, rest, metric, stiffness, laplacian, {}, false, 1, uvs);
   return uvs;
 }
 
@@ -224,7 +224,7 @@ TEST(SolveMetric, RecoversTheMapFromPhasesThatAreOff) {
   const auto energy_after = [&](int rotations) {
     std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
     for (int round = 0; round <= rotations; ++round) {
-      solve_metric(mesh, rest, metric, stiffness, laplacian, round > 0, 1, uvs);
+      solve_metric(mesh, rest, metric, stiffness, laplacian, {}, round > 0, 1, uvs);
     }
     return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet - 2;
   };
@@ -257,8 +257,8 @@ TEST(SolveMetric, HasTheSameBitsOnTwoThreads) {
   const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
   std::vector<Vec2> one(mesh.positions.size(), Vec2::Zero()), two = one;
   for (const bool rotate : {false, true}) {
-    solve_metric(mesh, rest, metric, stiffness, laplacian, rotate, 1, one);
-    solve_metric(mesh, rest, metric, stiffness, laplacian, rotate, 2, two);
+    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, 1, one);
+    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, 2, two);
     EXPECT_EQ(one, two);
   }
 }

@@ -291,18 +291,43 @@ TEST(MinimiseEnergy, StopsAtTheMinimumOfSymmetricArap) {
   }
 }
 
-TEST(MinimiseEnergy, TakesBackAStepThatIsNotAdmissible) {
+TEST(MinimiseEnergy, GivesTheLastAdmissibleMapWhereItIsRefusedAtTheEnd) {
   const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 2.5));
   NewtonOptions two, guarded;
   two.max_iterations = 2;
   int judged = 0;
-  guarded.admissible = [&](const std::vector<Vec2>&) { return ++judged < 3; };
+  guarded.admissible = [&](const std::vector<Vec2>&) { return ++judged <= 3; };
   const Minimum expected = minimise(mesh, start_of(mesh), two);
-  const Minimum stopped = minimise(mesh, start_of(mesh), guarded);
-  EXPECT_TRUE(stopped.result.refused);
-  EXPECT_FALSE(stopped.result.converged);
-  EXPECT_EQ(stopped.uvs, expected.uvs);
-  EXPECT_EQ(stopped.result.energies, expected.result.energies);
+  const Minimum refused = minimise(mesh, start_of(mesh), guarded);
+  EXPECT_TRUE(refused.result.refused);
+  EXPECT_FALSE(refused.result.converged);
+  EXPECT_EQ(refused.result.admitted, expected.uvs);
+  // It ends once there is little hope, not at the first map that is not admissible.
+  EXPECT_GT(refused.result.iterations(), 3);
+  EXPECT_LT(refused.result.iterations(), minimise(mesh, start_of(mesh)).result.iterations());
+  EXPECT_EQ(judged, 1 + refused.result.iterations());
+}
+
+TEST(MinimiseEnergy, GoesThroughMapsThatAreNotAdmissible) {
+  const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 2.5));
+  NewtonOptions guarded;
+  int judged = 0;
+  guarded.admissible = [&](const std::vector<Vec2>&) { return ++judged > 3; };
+  const Minimum expected = minimise(mesh, start_of(mesh));
+  const Minimum admitted = minimise(mesh, start_of(mesh), guarded);
+  EXPECT_FALSE(admitted.result.refused);
+  EXPECT_TRUE(admitted.result.converged);
+  EXPECT_TRUE(admitted.result.admitted.empty());
+  EXPECT_EQ(admitted.uvs, expected.uvs);
+}
+
+TEST(MinimiseEnergy, AdmitsNothingWhereNothingIsAdmissible) {
+  const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 2.5));
+  NewtonOptions guarded;
+  guarded.admissible = [](const std::vector<Vec2>&) { return false; };
+  const NewtonResult result = minimise(mesh, start_of(mesh), guarded).result;
+  EXPECT_TRUE(result.refused);
+  EXPECT_TRUE(result.admitted.empty());
 }
 
 TEST(MinimiseEnergy, EndsAtAnIsometryWhereThereIsOne) {

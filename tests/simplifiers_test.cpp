@@ -110,7 +110,7 @@ double final_energy(const DiskMesh& fine, const CoarseDisk& coarse) {
   const auto stiffness = energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 1);
   const MetricLaplacian laplacian(fine, stiffness, held(fine));
   std::vector<Vec2> uvs = carry_boundary(fine, coarse, coarse_uvs);
-  solve_metric(fine, rest, metric, stiffness, laplacian, false, 1, uvs);
+  solve_metric(fine, rest, metric, stiffness, laplacian, {}, false, 1, uvs);
   EXPECT_TRUE(non_positive_faces(fine.faces, uvs, 1).empty());
   const auto precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
     laplacian.precondition(in, out);

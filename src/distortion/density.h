@@ -2,6 +2,7 @@
 //
 // A Density is a type with
 //   kBarrier                 whether it is infinite at s2 = 0, so that steps must stop short of it
+//   kSmooth                  whether its second derivatives are continuous where it is finite
 //   kMinimum                 its value at the isometries
 //   kCurvature               its second derivatives at the identity
 //   value(s1, s2)            the density, of the signed singular values s1 >= |s2|

@@ -13,6 +13,7 @@ namespace beltrami {
 /// ridge at s1 = s2: its derivative by |fzbar| does not vanish there.
 struct SymmetricArap {
   static constexpr bool kBarrier = true;
+  static constexpr bool kSmooth = false;
   static constexpr double kMinimum = 0;
   static constexpr double kCurvature = 2;
 

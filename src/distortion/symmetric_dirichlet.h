@@ -11,6 +11,7 @@ namespace beltrami {
 /// Defined for s2 > 0; minimum 2 at the isometries.
 struct SymmetricDirichlet {
   static constexpr bool kBarrier = true;
+  static constexpr bool kSmooth = true;
   static constexpr double kMinimum = 2;
   static constexpr double kCurvature = 4;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/boundary.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
@@ -36,6 +37,26 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
     begin = end;
   }
   return uvs;
+}
+
+std::vector<double> coarse_boundary_lengths(const DiskMesh& fine, const CoarseDisk& coarse) {
+  std::vector<bool> kept(fine.vertex_count(), false);
+  for (const Index v : coarse.fine_vertex) kept[v] = true;
+  const std::vector<double> lengths = boundary_lengths(fine);
+  const Index count = size_of(fine.boundary);
+  std::vector<double> result(lengths.size());
+  Index first = 0;
+  while (!kept[fine.boundary[first]]) ++first;
+  for (Index begin = first; begin < first + count;) {
+    Index end = begin;
+    double length = 0;
+    do {
+      length += lengths[end++ % count];
+    } while (!kept[fine.boundary[end % count]]);
+    for (Index i = begin; i < end; ++i) result[i % count] = length;
+    begin = end;
+  }
+  return result;
 }
 
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,

@@ -23,4 +23,8 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
                     std::vector<Vec2>& uvs, int threads = 1);
 
+/// Per edge of the fine boundary loop: the length on the surface of the coarse boundary edge that
+/// it belongs to, > 0.
+std::vector<double> coarse_boundary_lengths(const DiskMesh& fine, const CoarseDisk& coarse);
+
 }  // namespace beltrami

@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::int64_t kGrain = 8192;
 
+/// Of stiff springs, in sums of the weights around: the vertices end nearer to their places than to
+/// each other, and a factor in single precision takes no harm.
+constexpr double kSpring = 10;
+
 /// The stiffness of a face whose singular values are a + b and a - b, the greater one along
 /// `direction`, a unit complex twice as far from the real axis. Along each the mean of the
 /// density's radial curvature there and of its angular ones.
@@ -109,24 +113,47 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
       });
 }
 
+std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                                  const std::vector<bool>& vertices) {
+  std::vector<double> springs(vertices.size(), 0);
+  if (springs.empty()) return springs;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const Index v = mesh.faces[f][k];
+      if (!vertices[v]) continue;
+      const EdgeWeights& weights = stiffness[f];
+      springs[v] += kSpring * std::abs(weights[next_corner(k)] + weights[previous_corner(k)]);
+    }
+  }
+  return springs;
+}
+
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
-                                 const std::vector<bool>& held, const SolverOptions& options)
+                                 const std::vector<bool>& held, const SolverOptions& options,
+                                 const std::vector<double>& springs)
     : matrix_(mesh.vertex_count(), mesh.faces, held, 1, options.threads),
       threads_(options.threads) {
-  assemble(mesh, stiffness);
+  assemble(mesh, stiffness, springs);
   if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_, mesh.positions, options);
 }
 
-void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
+void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                            const std::vector<double>& springs) {
   if (matrix_.free_count() == 0) return;
   matrix_.set_zero(threads_);
-  assemble(mesh, stiffness);
+  assemble(mesh, stiffness, springs);
   refactorize_laplacian(*solver_, matrix_);
 }
 
-void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness) {
+void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                               const std::vector<double>& springs) {
   matrix_.add_up(mesh.faces, threads_,
                  [&](Index f, const auto& add) { add_stiffness(stiffness[f], add); });
+  SparseMatrix& matrix = matrix_.matrix();
+  for (Index v = 0; v < size_of(springs); ++v) {
+    const Index row = matrix_.row(v);
+    if (row != kNone) matrix.valuePtr()[matrix.outerIndexPtr()[row]] += springs[v];
+  }
 }
 
 /// The rows of the free vertices.
@@ -170,8 +197,8 @@ void MetricLaplacian::precondition(const std::vector<Vec2>& rhs, std::vector<Vec
 
 void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                   const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
-                  const MetricLaplacian& laplacian, bool rotate, int threads,
-                  std::vector<Vec2>& uvs) {
+                  const MetricLaplacian& laplacian, const Anchors& anchors, bool rotate,
+                  int threads, std::vector<Vec2>& uvs) {
   // The residual of the present map, so that held vertices need no treatment of their own.
   const auto give = [&](Index f, VertexSums::Terms& terms) {
     const EdgeWeights& weights = stiffness[f];
@@ -188,6 +215,9 @@ void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   };
   std::vector<Vec2> residual, change;
   VertexSums(mesh.vertex_count(), mesh.faces, threads).add_up(give, residual);
+  for (Index v = 0; v < size_of(anchors.springs); ++v) {
+    residual[v] += anchors.springs[v] * (anchors.places[v] - uvs[v]);
+  }
   laplacian.solve(residual, change);
   parallel_for(threads, mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) uvs[v] += change[v];

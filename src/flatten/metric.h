@@ -1,6 +1,6 @@
 // The fine map from the whole prolonged metric: one Poisson solve, rotations re-fitted with the
 // same factor. Free boundary: nothing is taken from the coarse map but its metric, and the places
-// of vertices that are held on purpose.
+// of vertices that are anchored on purpose.
 #pragma once
 
 #include <array>
@@ -32,16 +32,29 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
                                           const std::vector<RestTriangle>& rest,
                                           const std::vector<Vec2>& uvs, int threads);
 
-/// A Laplacian of the mesh with given stiffness and some vertices held, and its factor.
+/// Springs that draw vertices to places of their own.
+struct Anchors {
+  std::vector<double> springs;  ///< per vertex: stiffness, 0 where there is none; empty: all are
+  std::vector<Vec2> places;     ///< per vertex
+};
+
+/// Springs for the given vertices, far stiffer than the faces around them.
+std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                                  const std::vector<bool>& vertices);
+
+/// A Laplacian of the mesh with given stiffness, springs at vertices and some vertices held, and its
+/// factor.
 class MetricLaplacian {
  public:
-  /// `held`: per vertex; at least one must be. Throws Error SOLVER.
+  /// `held`: per vertex; at least one must be. `springs`: per vertex, or empty. Throws Error SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                   const std::vector<bool>& held,
-                  const SolverOptions& options = {Precision::kSingle});
+                  const SolverOptions& options = {Precision::kSingle},
+                  const std::vector<double>& springs = {});
 
-  /// Factorizes anew for another stiffness. Throws Error SOLVER.
-  void refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness);
+  /// Factorizes anew. Throws Error SOLVER.
+  void refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+             const std::vector<double>& springs = {});
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
@@ -50,7 +63,8 @@ class MetricLaplacian {
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
 
  private:
-  void assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness);
+  void assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+                const std::vector<double>& springs);
   template <class Rows>
   DenseMatrix packed(const Rows& rhs) const;
   template <class Rows>
@@ -66,10 +80,10 @@ class MetricLaplacian {
 /// (Liu et al. 2008, local step). Where the stiffness is that of an energy at the metric, this is
 /// near to a Newton step of that energy. `uvs`, one per vertex, is changed in place; vertices that
 /// `laplacian` holds keep their place, of the others nothing is used but for `rotate`. Faces may be
-/// flipped. `laplacian` must be that of the stiffness.
+/// flipped. `laplacian` must be that of the stiffness and of the anchors.
 void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                   const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
-                  const MetricLaplacian& laplacian, bool rotate, int threads,
-                  std::vector<Vec2>& uvs);
+                  const MetricLaplacian& laplacian, const Anchors& anchors, bool rotate,
+                  int threads, std::vector<Vec2>& uvs);
 
 }  // namespace beltrami

@@ -25,9 +25,6 @@ constexpr int kHoldRounds = 4;          // after which a few faces hold back the
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
-/// Nor do those that promised more than so many times what is little: nearly singular faces, which
-/// are held back, are in their way.
-constexpr double kMisjudged = 10;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -49,7 +46,7 @@ void add_multiple(double factor, const Field& a, int threads, Field& sum) {
   });
 }
 
-/// The mean energy and its gradient.
+/// The mean energy with the barrier of the contact, and its gradient.
 template <class Density>
 class Objective {
  public:
@@ -64,7 +61,11 @@ class Objective {
     inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
   }
 
-  /// Infinite where a face is not positive; the gradient is of no use then.
+  /// From now on with contact. Keeps the pointer.
+  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
+
+  /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
+  /// use then.
   double evaluate(const Field& uvs, Field& gradient) {
     const auto give = [&](Index f, VertexSums::Terms& terms) {
       const Triangle& t = faces_[f];
@@ -85,12 +86,16 @@ class Objective {
       const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
       return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
     };
-    return sums_.add_up(give, gradient);
+    const double sum = sums_.add_up(give, gradient);
+    if (!contact_ || !std::isfinite(sum)) return sum;
+    const double strength = contact_->strength() * inverse_area_;
+    return sum + strength * contact_->add_gradient(uvs, strength, gradient);
   }
 
  private:
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
+  const BoundaryContact* contact_ = nullptr;
   double inverse_area_;
   VertexSums sums_;
 };
@@ -185,15 +190,17 @@ struct Fields {
 };
 
 /// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
-/// is low enough for its slope, and shortens `length` accordingly. Infinite if there is none.
+/// is low enough for its slope and the boundary simple, and shortens `length` accordingly. Infinite
+/// if there is none.
 template <class Density>
 double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
-                   int threads, Fields& fields, double& length) {
+                   const PolishOptions& options, Fields& fields, double& length) {
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     fields.trial = uvs;
-    add_multiple(length, fields.direction, threads, fields.trial);
+    add_multiple(length, fields.direction, options.threads, fields.trial);
     const double after = objective.evaluate(fields.trial, fields.next_gradient);
-    if (after < before && after <= before + kArmijo * length * slope) return after;
+    const bool low = after < before && after <= before + kArmijo * length * slope;
+    if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -209,10 +216,16 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   // Not structured bindings, which clang does not let lambdas capture.
   Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
   Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
-  result.energies.push_back(objective.evaluate(uvs, gradient));
-  if (!std::isfinite(result.energies.front())) return result;
+  double start = objective.evaluate(uvs, gradient);
+  if (options.contact && std::isfinite(start)) {
+    objective.set_contact(options.contact);
+    start = objective.evaluate(uvs, gradient);
+  }
+  result.energies.push_back(start);
+  if (!std::isfinite(start)) return result;
   History history(threads);
-  bool rigidly = true;  // whether faces may be held back alone
+  bool rigidly = true;   // whether faces may be held back alone
+  bool settled = false;  // the last step was a full one with little gain
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back();
@@ -220,12 +233,20 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
     const double slope = dot(gradient, direction, threads);
     result.predicted = -slope;
+    result.converged =
+        settled &&
+        0.5 * result.predicted <= options.stationary * comparable_energy<Density>(before);
+    if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;
       break;
     }
+    if (options.contact) {
+      const double limit = length / kSingularShare;
+      length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
+    }
     const double after = slope < 0
-                             ? search_line(objective, uvs, before, slope, threads, fields, length)
+                             ? search_line(objective, uvs, before, slope, options, fields, length)
                              : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
@@ -248,9 +269,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
     gradient.swap(next_gradient);
     const double little = options.tolerance * comparable_energy<Density>(before);
-    result.converged =
-        length >= kFullStep && before - after <= little && result.predicted <= kMisjudged * little;
-    if (result.converged) break;
+    settled = length >= kFullStep && before - after <= little;
   }
   return result;
 }

@@ -7,21 +7,28 @@
 #include "base/checkpoint.h"
 #include "base/types.h"
 #include "distortion/energy.h"
+#include "fullspace/contact.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
 
 struct PolishOptions {
   Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
-  double tolerance = 1e-5;  ///< relative energy decrease of a step that ends it
+  double tolerance = 1e-5;  ///< relative energy decrease of a step after which it may end, if
+  double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
   int max_iterations = 20;
   bool force_first = true;  ///< whether the first step is taken however short it has to be
+  /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before
+  /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
+  /// cross itself.
+  const BoundaryContact* contact = nullptr;
   int threads = 1;
 };
 
 struct PolishResult {
-  std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
-  bool converged = false;        ///< a step of at least 1/2 decreased the energy by less than that
+  std::vector<double> energies;  ///< mean energy, with contact the barrier's share included, at
+                                 ///< the start and after each step, never rising
+  bool converged = false;        ///< ended so, after a step of at least 1/2
   bool blocked = false;          ///< the next step would have had to be shorter than that
   std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular
   double predicted = 0;          ///< -gradient . direction of the last step looked at

@@ -62,11 +62,10 @@ FaceModel face_model(const RestTriangle& rest, const LinearMap& map, const Densi
   return model;
 }
 
-/// Adds up a density over all faces, weighted by `weight(face)`.
-template <class Density, class Weight>
-void assemble(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-              const std::vector<Vec2>& uvs, const Density& density, const Weight& weight,
-              int threads, MeshMatrix& hessian, Eigen::VectorXd& gradient) {
+/// Adds up what `model(face)`, a FaceModel, says of all faces, in parallel.
+template <class Model>
+void assemble(const std::vector<Triangle>& faces, const Model& model_of, int threads,
+              MeshMatrix& hessian, Eigen::VectorXd& gradient) {
   struct Aside {
     Index row;
     Vec2 term;
@@ -77,20 +76,17 @@ void assemble(const std::vector<Triangle>& faces, const std::vector<RestTriangle
   std::vector<std::vector<Aside>> aside(chunks.count());
   hessian.add_up(faces, threads, [&](Index f, const auto& add) {
     const Triangle& t = faces[f];
-    FaceModel model =
-        face_model(rest[f], linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]), density);
-    const double w = weight(f);
+    const FaceModel model = model_of(f);
     for (int k = 0; k < 3; ++k) {
       const Index row = hessian.row(t[k]);
       if (row == kNone) continue;
-      const Vec2 term = w * model.gradient.template segment<2>(2 * k);
+      const Vec2 term = model.gradient.template segment<2>(2 * k);
       if (chunks.shared(t[k])) {
         aside[FaceChunks::of(f)].push_back({row, term});
       } else {
         gradient.segment<2>(2 * row) += term;
       }
     }
-    model.hessian *= w;
     for (int k = 0; k < 3; ++k) {
       for (int l = k; l < 3; ++l) {
         add(k, l, [&](int r, int c) { return model.hessian(2 * k + r, 2 * l + c); });

@@ -8,6 +8,7 @@
 #include "base/checkpoint.h"
 #include "base/types.h"
 #include "distortion/energy.h"
+#include "fullspace/contact.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -21,17 +22,25 @@ struct NewtonOptions {
   /// save a third of all steps on ordinary meshes, and on hard ones make the difference between 75
   /// steps and none that helps. 0: composite majorization alone.
   int proxy_steps = 5;
-  /// Judges the map after each step; a refused step is taken back and ends the run. For instance:
-  /// the boundary is still simple. Anything goes by default.
+  /// Keeps the boundary from touching itself: its barrier joins the energy, a share of it that
+  /// falls with the energy, and steps end before the first touch. The boundary must be simple at
+  /// the start. Null: it may cross itself.
+  const BoundaryContact* contact = nullptr;
+  /// Judges the start and the map after each step, for instance: the boundary is simple. Where that
+  /// does not hold once steps gain less than 1%, the run ends. Anything goes by default.
   std::function<bool(const std::vector<Vec2>& uvs)> admissible;
   /// Asked before each step; true ends the run with what there is. Never by default.
   std::function<bool()> out_of_time;
 };
 
 struct NewtonResult {
-  std::vector<double> energies;  ///< mean energy at the start and after each step, never rising
+  /// Mean energy at the start and after each step; never rising, but with contact, where that holds
+  /// of its sum with the barrier.
+  std::vector<double> energies;
   bool converged = false;
-  bool refused = false;  ///< ended by a step that was not admissible
+  bool in_contact = false;      ///< boundary parts press on each other at the end
+  bool refused = false;         ///< the map at the end is not admissible; then
+  std::vector<Vec2> admitted;  ///< the last one that was, empty if none
 
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };

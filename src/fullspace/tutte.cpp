@@ -1,6 +1,7 @@
 #include "fullspace/tutte.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "fullspace/assembly.h"
@@ -60,6 +61,22 @@ double best_scale(Energy energy, const std::vector<Triangle>& faces,
   }
   const double scale = with_density(energy, [&](auto density) { return density.best_scale(sum); });
   return std::isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+double mean_energy(Energy energy, const std::vector<Triangle>& faces,
+                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
+  return with_density(energy, [&]<class Density>(Density) {
+    double sum = 0, area = 0;
+    for (Index f = 0; f < size_of(faces); ++f) {
+      const Triangle& t = faces[f];
+      const SingularValues s =
+          singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      if (!(s.s2 > 0)) return std::numeric_limits<double>::infinity();
+      sum += rest[f].area() * Density::value(s.s1, s.s2);
+      area += rest[f].area();
+    }
+    return sum / area;
+  });
 }
 
 }  // namespace beltrami

@@ -21,4 +21,8 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh);
 double best_scale(Energy energy, const std::vector<Triangle>& faces,
                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
 
+/// The mean energy of a map; infinite if a face is flipped or degenerate.
+double mean_energy(Energy energy, const std::vector<Triangle>& faces,
+                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
+
 }  // namespace beltrami

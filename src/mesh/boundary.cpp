@@ -51,4 +51,10 @@ std::vector<Vec2> boundary_polygon(const DiskMesh& mesh, const std::vector<Vec2>
   return polygon;
 }
 
+std::vector<bool> only_first_of_boundary(const DiskMesh& mesh) {
+  std::vector<bool> held(mesh.vertex_count(), false);
+  held[mesh.boundary.front()] = true;
+  return held;
+}
+
 }  // namespace beltrami

@@ -19,4 +19,8 @@ std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh);
 /// The UVs along the boundary loop.
 std::vector<Vec2> boundary_polygon(const DiskMesh& mesh, const std::vector<Vec2>& uvs);
 
+/// Per vertex, whether it is the first of the boundary loop: what is held where a map is free to
+/// move as a whole.
+std::vector<bool> only_first_of_boundary(const DiskMesh& mesh);
+
 }  // namespace beltrami

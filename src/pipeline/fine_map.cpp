@@ -12,8 +12,10 @@
 #include "flatten/polish.h"
 #include "flatten/reduced.h"
 #include "flatten/uv_prolongation.h"
+#include "fullspace/contact.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/tutte.h"
+#include "mesh/boundary.h"
 #include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
@@ -31,10 +33,11 @@ constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
 constexpr int kRotations = 2;              // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
 constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
+constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
 constexpr int kPolishIterations = 30;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
-constexpr double kFirstReach = 0.01;  // of the boundary length, held on both sides of a crossing
+constexpr double kFirstReach = 0.01;  // of the boundary length, anchored around a crossing
 constexpr double kReachGrowth = 3;
 
 }  // namespace
@@ -59,7 +62,8 @@ void Run::simplify_fine(FineProblem& fine) {
 
 void Run::solve_coarse(FineProblem& fine) {
   result_.coarse_faces = fine.coarse.mesh.face_count();
-  fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22);
+  fine.coarse_uvs = run_cm(fine.coarse.mesh, "coarse", 0.22, &fine.in_contact);
+  fine.coarse_energy = result_.coarse_energy;
 }
 
 /// The metric of the fine faces: the coarse map's, or that of the surface where there is no coarse
@@ -172,16 +176,10 @@ std::vector<Vec2> Run::descend_from_circle(const std::vector<RestTriangle>& rest
   if (!certify(disk_->faces, disk_->boundary, uvs, options_.threads).injective()) {
     uvs = grid_drawing(*disk_);
   }
-  const double scale = best_scale(options_.energy, disk_->faces, rest, uvs);
-  for (Vec2& w : uvs) w *= scale;
-  NewtonOptions newton = newton_options(*disk_);
-  newton.admissible = nullptr;
-  if (simple) {
-    newton.admissible = [this](const std::vector<Vec2>& map) {
-      return count_crossings(disk_->boundary, map).count == 0;
-    };
-  }
-  const NewtonResult done = descend(*disk_, rest, newton, uvs, statistics, checkpoint);
+  scale_best(*disk_, rest, uvs);
+  start_flat(*disk_, rest, uvs);
+  const NewtonResult done =
+      descend(*disk_, rest, newton_options(), simple, uvs, statistics, checkpoint);
   if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   return uvs;
 }
@@ -223,31 +221,55 @@ std::vector<Vec2> Run::flatten_boundary_first(const FineProblem& fine) {
   return uvs;
 }
 
-/// The metric solve and its polish. A free boundary may cross itself: then the boundary near the
-/// crossings is held where the coarse map has it, further around in each round, up to the whole of
-/// it. (The coarse boundary is simple, or there is nothing to hold on to.)
+/// The metric solve and its polish. Where boundary parts press on each other in the coarse map, and
+/// where the solve would have the boundary cross itself, springs draw it to its place in the coarse
+/// map, further around in each round; the polish then works with contact instead. (The coarse
+/// boundary is simple, or there is nothing to be drawn to.)
 std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   const std::vector<Vec2> carried = carry_boundary(*disk_, fine.coarse, fine.coarse_uvs);
-  const bool global = keeps_boundary_simple() && is_simple(disk_->boundary, carried);
-  std::vector<bool> held(disk_->vertex_count(), false);
-  held[disk_->boundary.front()] = true;
+  const BoundaryContact contact(disk_->boundary, boundary_lengths(*disk_),
+                                coarse_boundary_lengths(*disk_, fine.coarse));
+  const bool global = keeps_boundary_simple() && contact.is_simple(carried);
+  std::vector<bool> anchored;
+  if (global && fine.in_contact) {
+    anchored.assign(disk_->vertex_count(), false);
+    for (const Contact& c : contact.find(carried)) {
+      for (const Index v : {c.vertex, c.from, c.to}) anchored[v] = true;
+    }
+  }
+  std::unique_ptr<MetricLaplacian> laplacian;
   std::vector<Vec2> uvs;
   for (double reach = kFirstReach;; reach *= kReachGrowth) {
-    uvs = solve_and_polish(fine, carried, held, global);
-    if (!global) return uvs;
-    const auto crossings = find_crossings(disk_->boundary, uvs);
-    if (crossings.empty()) return uvs;
-    if (reach > 1) break;
-    hold_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, held);
+    const bool positive = solve_flat(fine, carried, anchored, laplacian, uvs);
+    std::vector<std::array<Index, 2>> crossings;
+    if (global) crossings = find_crossings(disk_->boundary, uvs);
+    if (crossings.empty() && !positive) return uvs;
+    if (crossings.empty()) break;
+    if (reach > 1) {
+      FineProblem harmonic = fine;
+      harmonic.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
+      return flatten_dirichlet(harmonic);
+    }
+    anchored.resize(disk_->vertex_count(), false);
+    anchor_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, anchored);
   }
-  FineProblem harmonic = fine;
-  harmonic.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
-  return flatten_dirichlet(harmonic);
+  const bool pressed = !anchored.empty();
+  if (!global || pressed) {
+    polish_map(fine, pressed ? std::optional(contact) : std::nullopt, *laplacian, uvs);
+    return uvs;
+  }
+  const std::vector<Vec2> before = uvs;
+  polish_map(fine, std::nullopt, *laplacian, uvs);
+  if (contact.is_simple(uvs)) return uvs;
+  uvs = before;
+  result_.status = BELTRAMI_OK;
+  polish_map(fine, contact, *laplacian, uvs);
+  return uvs;
 }
 
-/// Holds the boundary vertices within `reach` times the boundary length of the given edges.
-void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
-                    std::vector<bool>& held) const {
+/// Anchors the boundary vertices within `reach` times the boundary length of the given edges.
+void Run::anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                      std::vector<bool>& anchored) const {
   const std::vector<Index>& loop = disk_->boundary;
   const Index count = size_of(loop);
   const auto next = [count](Index i) { return i + 1 == count ? 0 : i + 1; };
@@ -267,25 +289,33 @@ void Run::hold_near(const std::vector<std::array<Index, 2>>& edges, double reach
   }
   const double most = reach * std::accumulate(lengths.begin(), lengths.end(), 0.0);
   for (Index i = 0; i < count; ++i) {
-    if (apart[i] <= most) held[loop[i]] = true;
+    if (apart[i] <= most) anchored[loop[i]] = true;
   }
 }
 
-std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
-                                        const std::vector<bool>& held, bool global) {
-  std::vector<Vec2> uvs = carried;
-  std::unique_ptr<MetricLaplacian> laplacian;
+/// The solve, with the boundary vertices `anchored` drawn to their `carried` places, and its repair.
+/// Sets `laplacian` up where there is none yet. Returns whether all faces are positive.
+bool Run::solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
+                     const std::vector<bool>& anchored,
+                     std::unique_ptr<MetricLaplacian>& laplacian, std::vector<Vec2>& uvs) {
+  uvs = carried;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
     const auto stiffness =
         energy_stiffness(options_.energy, fine.rest, fine.metric, options_.threads);
-    laplacian = std::make_unique<MetricLaplacian>(
-        *disk_, stiffness, held,
-        SolverOptions{
-            .precision = Precision::kSingle, .threads = options_.threads, .residual = kRoughly});
+    const Anchors anchors{stiff_springs(*disk_, stiffness, anchored), carried};
+    if (laplacian) {
+      laplacian->refit(*disk_, stiffness, anchors.springs);
+    } else {
+      laplacian = std::make_unique<MetricLaplacian>(
+          *disk_, stiffness, only_first_of_boundary(*disk_),
+          SolverOptions{
+              .precision = Precision::kSingle, .threads = options_.threads, .residual = kRoughly},
+          anchors.springs);
+    }
     checkpoint(0.75);
     const auto solve = [&](bool rotate) {
-      solve_metric(*disk_, fine.rest, fine.metric, stiffness, *laplacian, rotate, options_.threads,
-                   uvs);
+      solve_metric(*disk_, fine.rest, fine.metric, stiffness, *laplacian, anchors, rotate,
+                   options_.threads, uvs);
       return non_positive_faces(disk_->faces, uvs, options_.threads).size();
     };
     std::size_t flips = solve(false);
@@ -301,34 +331,31 @@ std::vector<Vec2> Run::solve_and_polish(const FineProblem& fine, const std::vect
       uvs.swap(harmonic);
     }
   });
-  if (!mend(fine, false, 0.66, uvs)) return uvs;
-  // Polishing a map that crosses itself already would be in vain.
-  if (global && !is_simple(disk_->boundary, uvs)) return uvs;
-
-  polish_map(fine, held, *laplacian, uvs);
-  return uvs;
+  return mend(fine, false, 0.66, uvs);
 }
 
 /// A few steps of composite majorization: they cost most, and are not held up by nearly singular
-/// faces. Returns their number.
-int Run::take_newton_steps(const FineProblem& fine, const std::vector<bool>& held,
+/// faces.
+NewtonResult Run::take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                            std::vector<Vec2>& uvs, const Checkpoint& checkpoint) {
-  NewtonOptions newton = newton_options(*disk_);
+  NewtonOptions newton = newton_options();
   newton.proxy_steps = 0;
+  newton.contact = contact;
   newton.max_iterations = kNewtonSteps;
   newton.tolerance = std::max(newton.tolerance, kNewtonTolerance);
-  const NewtonResult done =
-      minimise_energy(disk_->faces, fine.rest, held, uvs, newton, [&](double) { checkpoint(0.9); });
-  return done.iterations();
+  const std::vector<bool> fixed = only_first_of_boundary(*disk_);
+  return minimise_energy(disk_->faces, fine.rest, fixed, uvs, newton,
+                         [&](double) { checkpoint(0.9); });
 }
 
 /// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, if
 /// that one gets through; the others with one that is fitted to the map by then. Where nearly
 /// singular faces block the steps, patches around these are optimised and the factor is fitted
 /// anew; where that does not help either, and much is left to gain, Newton steps end it.
-void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
+void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
+    if (contact) contact->fit(uvs, fine.coarse_energy);
     // The objective is a mean, the stiffness that of a sum.
     const double area = surface_area(*disk_, options_.threads);
     const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
@@ -342,6 +369,7 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
       options.tolerance = kPolishTolerance;
       options.max_iterations = steps;
       options.force_first = force_first;
+      options.contact = contact ? &*contact : nullptr;
       const int before = statistics.iterations;
       PolishResult polished =
           polish(disk_->faces, fine.rest, precondition, uvs, options,
@@ -357,8 +385,15 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
     if (polished.blocked) clean(polished.blocking);
     double before_last_round = std::numeric_limits<double>::infinity();
     while (!polished.converged && statistics.iterations < kPolishIterations) {
-      laplacian.refit(*disk_, energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs,
-                                               options_.threads));
+      std::vector<double> springs;
+      if (contact) {
+        springs = contact->stiffness(uvs);
+        for (double& spring : springs) spring *= contact->strength();
+      }
+      laplacian.refit(
+          *disk_,
+          energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs, options_.threads),
+          springs);
       polished = run(kPolishIterations - statistics.iterations, true);
       if (!polished.blocked) break;
       clean(polished.blocking);
@@ -368,10 +403,16 @@ void Run::polish_map(const FineProblem& fine, const std::vector<bool>& held,
       before_last_round = polished.energies.front();
       if (gained <= kLittleGain * energy) break;
     }
+    bool converged = polished.converged ||
+                     0.5 * polished.predicted <= kStationary * polished.energies.back();
     if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
         affords(*disk_, options_, Extra::kNewtonSteps)) {
-      statistics.iterations += take_newton_steps(fine, held, uvs, checkpoint);
+      const NewtonResult ended =
+          take_newton_steps(fine, contact ? &*contact : nullptr, uvs, checkpoint);
+      statistics.iterations += ended.iterations();
+      converged = ended.converged;
     }
+    if (!converged) result_.status = BELTRAMI_NOT_CONVERGED;
     clean({});
   });
 }

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "flatten/dirichlet.h"
+#include "fullspace/contact.h"
+#include "fullspace/flat_start.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
-#include "fullspace/scaffold.h"
 #include "fullspace/tutte.h"
+#include "mesh/boundary.h"
 #include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
@@ -27,6 +30,8 @@ constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one 
 /// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
 constexpr std::array<Index, 2> kFallbacks = {1000, 100};
 constexpr Index kFewestFaces = 20;
+/// Scales nearer to each other than that differ by 1e-11 of the energy: not worth a rounding.
+constexpr double kSameScale = 1e-6;
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
 constexpr double kHopelessEnergy = 1e3;
 
@@ -45,45 +50,63 @@ bool Run::keeps_boundary_simple() const {
          (options_.injectivity == BELTRAMI_INJECTIVITY_AUTO && !reference);
 }
 
-NewtonOptions Run::newton_options(const DiskMesh& mesh) const {
+NewtonOptions Run::newton_options() const {
   NewtonOptions newton;
   newton.energy = options_.energy;
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
   newton.threads = options_.threads;
-  if (keeps_boundary_simple()) {
-    newton.admissible = [&mesh](const std::vector<Vec2>& map) {
-      return is_simple(mesh.boundary, map);
-    };
-  }
   return newton;
 }
 
-/// Composite majorization; with a scaffold from the first step on that would make the boundary
-/// cross itself. Far from the minimum the symmetric Dirichlet energy leads the way: it is smooth,
-/// and its minimum is near that of the others (symmetric ARAP alone takes 1.5 times the steps).
-NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                          NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
-                          const Checkpoint& checkpoint) {
-  std::vector<bool> fixed(mesh.vertex_count(), false);
-  fixed[mesh.boundary.front()] = true;
+/// Composite majorization. Far from the minimum the symmetric Dirichlet energy leads the way: it is
+/// smooth, and its minimum is near that of the others (symmetric ARAP alone takes 1.5 times the
+/// steps).
+NewtonResult Run::descend_to(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                             NewtonOptions newton, std::vector<Vec2>& uvs,
+                             StageStatistics& statistics, const Checkpoint& checkpoint) {
+  const std::vector<bool> fixed = only_first_of_boundary(mesh);
+  int lead_steps = 0;
+  NewtonResult led;
   if (newton.proxy_steps > 0 && newton.energy != BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
     NewtonOptions lead = newton;
     lead.energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
     lead.tolerance = std::max(lead.tolerance, kLeadTolerance);
-    statistics.iterations =
-        minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint).iterations();
-    newton.max_iterations -= statistics.iterations;
+    led = minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint);
+    lead_steps = led.iterations();
+    newton.max_iterations -= lead_steps;
     newton.proxy_steps = 0;
   }
   NewtonResult done = minimise_energy(mesh.faces, rest, fixed, uvs, newton, checkpoint);
-  statistics.iterations += done.iterations();
-  if (done.refused) {
-    newton.max_iterations -= done.iterations();
-    done = minimise_with_scaffold(mesh, rest, uvs, newton, checkpoint);
-    statistics.iterations += done.iterations();
-  }
+  if (done.refused && done.admitted.empty()) done.admitted.swap(led.admitted);
+  statistics.iterations += lead_steps + done.iterations();
   return done;
+}
+
+/// The free minimum first; where its boundary crosses itself, and that is not wanted, the minimum
+/// with contact, from the last map on the way whose boundary was simple. A map whose boundary parts
+/// press on each other already needs no try without contact.
+NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                          NewtonOptions newton, bool simple, std::vector<Vec2>& uvs,
+                          StageStatistics& statistics, const Checkpoint& checkpoint) {
+  if (!simple) {
+    return descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+  }
+  const std::vector<double> lengths = boundary_lengths(mesh);
+  const BoundaryContact contact(mesh.boundary, lengths, lengths);
+  if (contact.find(uvs).empty() || !contact.is_simple(uvs)) {
+    newton.admissible = [&](const std::vector<Vec2>& map) { return contact.is_simple(map); };
+    NewtonResult free = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+    if (!free.refused || free.admitted.empty()) return free;
+    newton.admissible = nullptr;
+    newton.max_iterations -= free.iterations();
+    uvs.swap(free.admitted);
+  }
+  newton.contact = &contact;
+  newton.tolerance = std::max(newton.tolerance, options_.tolerance);
+  NewtonResult pressed = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+  pressed.in_contact = !contact.find(uvs).empty();
+  return pressed;
 }
 
 /// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
@@ -96,6 +119,26 @@ std::vector<Vec2> Run::start_map(const DiskMesh& mesh, const std::vector<RestTri
   if (repair(mesh, rest, uvs, mend).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
   return other.empty() ? grid_drawing(mesh) : other;
+}
+
+void Run::scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                     std::vector<Vec2>& uvs) const {
+  const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
+  if (std::abs(scale - 1) < kSameScale) return;
+  for (Vec2& w : uvs) w *= scale;
+}
+
+/// Takes a flat start instead where it is injective and has less energy.
+void Run::start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                     std::vector<Vec2>& uvs) const {
+  double least = mean_energy(options_.energy, mesh.faces, rest, uvs);
+  for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
+    scale_best(mesh, rest, start);
+    const double energy = mean_energy(options_.energy, mesh.faces, rest, start);
+    if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, 1).injective()) continue;
+    uvs.swap(start);
+    least = energy;
+  }
 }
 
 /// The pipeline in small: a mesh of a tenth of the faces, or 1,000, or 100, is flattened and its
@@ -116,7 +159,7 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
     std::vector<Vec2> map = start_map(coarse.mesh, coarse_rest, checkpoint);
     if (!non_positive_faces(coarse.mesh.faces, map, 1).empty()) continue;
     StageStatistics unused{"coarse"};
-    descend(coarse.mesh, coarse_rest, newton_options(coarse.mesh), map, unused,
+    descend(coarse.mesh, coarse_rest, newton_options(), keeps_boundary_simple(), map, unused,
             [&](double) { checkpoint(0.05); });
     const auto metric =
         prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh,
@@ -135,25 +178,28 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
   return {};
 }
 
-/// A start, then composite majorization; with a scaffold from the first step on that would make the
-/// boundary cross itself. Where it crawls at an enormous energy, again from a coarser mesh.
-std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until) {
+/// A start, then composite majorization. Where it crawls at an enormous energy, again from a
+/// coarser mesh.
+std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double until,
+                              bool* in_contact) {
   std::vector<Vec2> uvs;
   stage(name, until, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(mesh.positions, mesh.faces, options_.threads);
     uvs = start_map(mesh, rest, checkpoint);
     checkpoint(0.02);
     if (!non_positive_faces(mesh.faces, uvs, options_.threads).empty()) return;
-    const double scale = best_scale(options_.energy, mesh.faces, rest, uvs);
-    for (Vec2& w : uvs) w *= scale;
-    NewtonOptions newton = newton_options(mesh);
+    scale_best(mesh, rest, uvs);
+    start_flat(mesh, rest, uvs);
+    NewtonOptions newton = newton_options();
     if (&mesh != &input_) newton.tolerance *= kCoarseTolerance;
-    NewtonResult done = descend(mesh, rest, newton, uvs, statistics, checkpoint);
+    const bool simple = keeps_boundary_simple();
+    NewtonResult done = descend(mesh, rest, newton, simple, uvs, statistics, checkpoint);
     if (done.energies.back() > kHopelessEnergy) {
       std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
       if (!other.empty()) {
         StageStatistics second{name};
-        const NewtonResult again = descend(mesh, rest, newton, other, second, checkpoint);
+        const NewtonResult again =
+            descend(mesh, rest, newton, simple, other, second, checkpoint);
         statistics.iterations += second.iterations;
         if (again.energies.back() < done.energies.back()) {
           uvs.swap(other);
@@ -162,6 +208,7 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
       }
     }
     result_.coarse_energy = done.energies.back();
+    if (in_contact) *in_contact = done.in_contact;
     if (!done.converged) result_.status = BELTRAMI_NOT_CONVERGED;
   });
   return uvs;
@@ -175,13 +222,22 @@ void Run::refine(std::vector<Vec2>& uvs) {
   if (keeps_boundary_simple() && certificate.crossings.count > 0) return;
   stage("refine", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
-    NewtonOptions newton = newton_options(*disk_);
+    const auto scaled_energy = [&] {
+      scale_best(*disk_, rest, uvs);
+      return mean_energy(options_.energy, disk_->faces, rest, uvs);
+    };
+    const double before = scaled_energy();
+    const std::vector<Vec2> start = uvs;
+    NewtonOptions newton = newton_options();
     newton.proxy_steps = 0;  // they pay far from the minimum
     if (options_.refine_iterations > 0) newton.max_iterations = options_.refine_iterations;
     if (options_.time_limit > 0) {
       newton.out_of_time = [&] { return wall_seconds() - started_ > options_.time_limit; };
     }
-    const NewtonResult done = descend(*disk_, rest, newton, uvs, statistics, checkpoint);
+    const NewtonResult done = descend(*disk_, rest, newton, keeps_boundary_simple(), uvs,
+                                      statistics, checkpoint);
+    // The barrier of the contact may have fallen instead.
+    if (!(scaled_energy() <= before)) uvs = start;
     const bool limited = options_.refine_iterations > 0 || options_.time_limit > 0;
     if (!done.converged && !limited) result_.status = BELTRAMI_NOT_CONVERGED;
   });
@@ -220,6 +276,8 @@ Delivery Run::run_with_fallback() {
     try {
       uvs = run();
       if (options_.refine) refine(uvs);
+      const auto rest = rest_triangles(disk_->positions, disk_->faces, options_.threads);
+      scale_best(*disk_, rest, uvs);
     } catch (const Error& error) {
       // GIF's only one asks for another method, with the reason.
       if (error.status() != BELTRAMI_E_SOLVER || options_.method == BELTRAMI_METHOD_GIF) throw;

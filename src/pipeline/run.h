@@ -5,6 +5,8 @@
 #include <array>
 #include <atomic>
 #include <optional>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -12,6 +14,7 @@
 #include "beltrami/prolongation.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
+#include "fullspace/contact.h"
 #include "fullspace/newton.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -25,6 +28,8 @@ namespace beltrami {
 struct FineProblem {
   CoarseDisk coarse;
   std::vector<Vec2> coarse_uvs;
+  double coarse_energy = 2;
+  bool in_contact = false;  ///< parts of the coarse boundary press on each other
   std::vector<RestTriangle> rest;
   std::vector<FaceMetric> metric;
   std::vector<Cotangents> cotangents;  ///< for the harmonic solves
@@ -71,16 +76,24 @@ class Run {
   Delivery run_with_fallback();
   std::vector<Vec2> run_method();
   std::vector<Vec2> run_tutte();
-  std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until);
+  std::vector<Vec2> run_cm(const DiskMesh& mesh, const char* name, double until,
+                           bool* in_contact = nullptr);
   std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                               const Checkpoint& checkpoint);
   std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                        const Checkpoint& checkpoint);
   void refine(std::vector<Vec2>& uvs);
-  NewtonOptions newton_options(const DiskMesh& mesh) const;
+  NewtonOptions newton_options() const;
+  void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  std::vector<Vec2>& uvs) const;
+  void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                  std::vector<Vec2>& uvs) const;
+  NewtonResult descend_to(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                          NewtonOptions newton, std::vector<Vec2>& uvs,
+                          StageStatistics& statistics, const Checkpoint& checkpoint);
   NewtonResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                       NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
-                       const Checkpoint& checkpoint);
+                       NewtonOptions newton, bool simple, std::vector<Vec2>& uvs,
+                       StageStatistics& statistics, const Checkpoint& checkpoint);
 
   // delivery.cpp: the numbers that are delivered.
   Numbers numbers(bool single) const;
@@ -106,14 +119,15 @@ class Run {
   std::vector<Vec2> descend_from_circle(const std::vector<RestTriangle>& rest, bool simple,
                                         StageStatistics& statistics, const Checkpoint& checkpoint);
   std::vector<Vec2> flatten_boundary_first(const FineProblem& fine);
-  std::vector<Vec2> solve_and_polish(const FineProblem& fine, const std::vector<Vec2>& carried,
-                                     const std::vector<bool>& held, bool global);
-  void polish_map(const FineProblem& fine, const std::vector<bool>& held,
+  bool solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
+                  const std::vector<bool>& anchored, std::unique_ptr<MetricLaplacian>& laplacian,
+                  std::vector<Vec2>& uvs);
+  void polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                   MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
-  int take_newton_steps(const FineProblem& fine, const std::vector<bool>& held,
+  NewtonResult take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                         std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
-  void hold_near(const std::vector<std::array<Index, 2>>& edges, double reach,
-                 std::vector<bool>& held) const;
+  void anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
+                   std::vector<bool>& anchored) const;
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
   void count_flips(const std::vector<Vec2>& uvs);
 

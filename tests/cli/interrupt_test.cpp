@@ -10,6 +10,7 @@
 #include "command.h"
 #include "mesh_file.h"
 #include "run_program.h"
+#include "surface.h"
 #include "tiny_meshes.h"
 
 namespace beltrami::cli {
@@ -118,9 +119,10 @@ TEST_P(Interrupt, IsHeardByAChecksWork) {
   const TemporaryDirectory directory;
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
   const MeshFile file = read_mesh(directory.file("in.obj", text), Content::kUvs);
+  const Surface surface(file, false);
   const auto check = [&] {
-    const beltrami_mesh mesh = view_of(file);
-    const beltrami_buffer uvs = uv_view(file.uvs);
+    const beltrami_mesh mesh = view_of(surface.view());
+    const beltrami_buffer uvs = uv_view(surface.view());
     beltrami_certificate certificate{};
     certificate.struct_size = sizeof certificate;
     return beltrami_check_injective(&mesh, &uvs, &certificate);
