@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -59,10 +58,10 @@ std::vector<NamedMesh> overlapping_meshes() {
   std::vector<NamedMesh> meshes = {{"slit saddle", disks::slit_saddle(10, 0.25)},
                                    {"blob of 24 points", opened_blob(4, 24)},
                                    {"blob of 60 points", opened_blob(4, 60)}};
-  for (const std::size_t i : {0, 2}) {
-    const int levels = size_of(meshes[i].mesh.faces) < 1000 ? 3 : 2;
-    meshes.push_back({"fine " + meshes[i].name, disks::refined(meshes[i].mesh, levels)});
-  }
+  const TriangleList saddle = disks::refined(meshes.front().mesh, 3);
+  const TriangleList blob = disks::refined(meshes.back().mesh, 2);
+  meshes.push_back({"fine slit saddle", saddle});
+  meshes.push_back({"fine blob of 60 points", blob});
   return meshes;
 }
 
@@ -80,6 +79,24 @@ TEST(Overlap, CostsLittleToAvoid) {
       EXPECT_EQ(result.status, BELTRAMI_OK) << name;
       EXPECT_EQ(result.restarts, 0) << name;
       EXPECT_LE(energy(result, which), 1.03 * energy(covering, which)) << name;
+    }
+  }
+}
+
+TEST(Overlap, CostsLittleToAvoidWhereSidesOnlyJustTouch) {
+  for (const double height : {0.0, 1e-8, 1e-4, 1e-2, 0.05, 1.0}) {
+    for (const Index n : {5, 12}) {
+      const std::string where = std::to_string(n) + " cells, height " + std::to_string(height);
+      const TriangleList mesh = disks::slit_saddle(n, height);
+      const double least = energy(run(mesh, local()));
+      for (const std::int64_t coarse : {0, 60}) {
+        Options options;
+        options.coarse_faces = coarse;
+        const Flattening result = run(mesh, options);
+        EXPECT_TRUE(result.certificate.injective()) << where;
+        EXPECT_EQ(result.status, BELTRAMI_OK) << where;
+        EXPECT_LE(energy(result), 1.1 * least) << where << ", coarse " << coarse << " " << least;
+      }
     }
   }
 }
@@ -107,7 +124,7 @@ TEST(Overlap, IsAvoidedWithTheSameBitsOnTwoAndThreeThreads) {
 TEST(Overlap, IsAvoidedWithTheSameBitsInAnyUnitThatIsAPowerOfTwo) {
   for (const auto& [name, mesh] : overlapping_meshes()) {
     const Flattening plain = run(mesh);
-    for (const int exponent : {-20, 20}) {
+    for (const int exponent : {-21, 20}) {
       const double unit = std::ldexp(1.0, exponent);
       TriangleList scaled = mesh;
       for (Vec3& p : scaled.positions) p *= unit;
@@ -207,20 +224,16 @@ TriangleList wound_strip(Index along, Index across, double height) {
   return mesh;
 }
 
-TEST(ThinStrip, IsFlattenedIsometricallyOrNotSaidToBe) {
+TEST(ThinStrip, IsFlattenedIsometrically) {
   const std::pair<Index, Index> sizes[] = {{100, 1}, {50, 2}, {355, 1}, {71, 5}};
   for (const auto& [along, across] : sizes) {
     for (const double height : {1e-4, 1e-6, 1e-8}) {
       for (const bool wound : {false, true}) {
         const std::string where = std::to_string(2 * along * across) + " faces, height " +
                                   std::to_string(height) + (wound ? ", wound" : ", flat");
-        const Flattening result =
-            run((wound ? wound_strip : thin_strip)(along, across, height));
-        if (result.status != BELTRAMI_NOT_CONVERGED) {
-          EXPECT_EQ(result.status, BELTRAMI_OK) << where;
-          EXPECT_NEAR(energy(result), 2, 1e-3) << where;
-        }
-        std::printf("%s %d %g\n", where.c_str(), result.status, energy(result));
+        const Flattening result = run((wound ? wound_strip : thin_strip)(along, across, height));
+        EXPECT_EQ(result.status, BELTRAMI_OK) << where;
+        EXPECT_NEAR(energy(result), 2, 1e-6) << where;
         EXPECT_TRUE(result.certificate.injective()) << where;
       }
     }
@@ -240,9 +253,9 @@ double worst_stretch(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
 }
 
 TEST(FlatStart, IsAnIsometryOfWhatIsFlat) {
-  for (const TriangleList& list : {meshes::triangle(), meshes::quad(), meshes::grid(8, 6),
-                                   meshes::fan(7), thin_strip(100, 1, 1e-4),
-                                   thin_strip(50, 2, 1e-4)}) {
+  for (const TriangleList& list :
+       {meshes::triangle(), meshes::quad(), meshes::grid(8, 6), meshes::fan(7),
+        thin_strip(100, 1, 1e-4), thin_strip(50, 2, 1e-4)}) {
     const DiskMesh mesh = disks::disk(list);
     for (const auto& uvs : {projection(mesh), unfolding(mesh, disks::rest_of(mesh))}) {
       EXPECT_LE(worst_stretch(mesh, uvs), 1e-9) << mesh.face_count();
@@ -252,12 +265,22 @@ TEST(FlatStart, IsAnIsometryOfWhatIsFlat) {
 }
 
 TEST(FlatStart, UnfoldsWhatHasNoInnerVertex) {
-  for (const TriangleList& list : {meshes::strip(50), wound_strip(100, 1, 1e-2),
-                                   disks::winding(100, 1, 0.1, 1.3)}) {
+  for (const TriangleList& list :
+       {meshes::strip(50), wound_strip(100, 1, 1e-2), disks::winding(100, 1, 0.1, 1.3)}) {
     const DiskMesh mesh = disks::disk(list);
     const auto uvs = unfolding(mesh, disks::rest_of(mesh));
     EXPECT_LE(worst_stretch(mesh, uvs), 1e-9) << mesh.face_count();
     EXPECT_TRUE(non_positive_faces(mesh.faces, uvs, 1).empty()) << mesh.face_count();
+  }
+}
+
+TEST(FlatStart, IsNotTakenWhereSidesAreARoundingErrorApart) {
+  // Laid out without distortion, the sides of the slit coincide, or not, as it happens.
+  for (const Index n : {5, 12, 20}) {
+    const Flattening result = run(disks::slit(n));
+    EXPECT_TRUE(result.certificate.injective()) << n;
+    EXPECT_EQ(result.status, BELTRAMI_OK) << n;
+    EXPECT_NEAR(energy(result), 2, 2e-3) << n;
   }
 }
 

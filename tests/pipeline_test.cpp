@@ -373,7 +373,11 @@ TEST(Pipeline, StartsFromCoarserMeshesWhereTutteIsLostInRounding) {
     const DiskMesh disk = disks::disk(mesh);
     ASSERT_GT(non_positive_faces(disk.faces, tutte_embedding(disk), 1).size(), 0u);
     expect_injective(run(mesh), "tube of " + std::to_string(sectors));
-    expect_injective(run(mesh, coarse_to_fine(800)), "coarse tube of " + std::to_string(sectors));
+    // So far from a good map the polish may end before it is done, and says so.
+    const Flattening coarse = run(mesh, coarse_to_fine(800));
+    EXPECT_TRUE(coarse.certificate.injective()) << "coarse tube of " << sectors;
+    EXPECT_LE(coarse.status, BELTRAMI_NOT_CONVERGED) << "coarse tube of " << sectors;
+    EXPECT_LT(energy(coarse), 300) << "coarse tube of " << sectors;
   }
 }
 

@@ -12,7 +12,8 @@ Complex to_complex(const Vec2& w) {
 
 /// Places corner `k` of a face whose other two corners are placed, as far from them as at rest.
 Vec2 apex(const RestTriangle& rest, int k, const Vec2& after, const Vec2& before) {
-  const Complex rest_after = rest.corner(next_corner(k)), rest_before = rest.corner(previous_corner(k));
+  const Complex rest_after = rest.corner(next_corner(k)),
+                rest_before = rest.corner(previous_corner(k));
   const Complex edge = to_complex(before) - to_complex(after), rest_edge = rest_before - rest_after;
   const double length = modulus(edge) * modulus(rest_edge);
   const Complex turn = length > 0 ? edge * std::conj(rest_edge) / length : Complex(1);

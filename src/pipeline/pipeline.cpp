@@ -128,14 +128,22 @@ void Run::scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
   for (Vec2& w : uvs) w *= scale;
 }
 
-/// Takes a flat start instead where it is injective and has less energy.
+/// Takes a flat start instead where it is injective and has less energy, with that of its contact:
+/// where parts are a rounding error apart, nothing moves.
 void Run::start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                      std::vector<Vec2>& uvs) const {
   double least = mean_energy(options_.energy, mesh.faces, rest, uvs);
+  const std::vector<double> lengths = boundary_lengths(mesh);
+  BoundaryContact contact(mesh.boundary, lengths, lengths);
   for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
     scale_best(mesh, rest, start);
-    const double energy = mean_energy(options_.energy, mesh.faces, rest, start);
+    double energy = mean_energy(options_.energy, mesh.faces, rest, start);
     if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, 1).injective()) continue;
+    if (keeps_boundary_simple()) {
+      contact.fit(start, 2);
+      energy += contact.strength() / surface_area(mesh) * contact.energy(start);
+    }
+    if (!(energy < least)) continue;
     uvs.swap(start);
     least = energy;
   }
