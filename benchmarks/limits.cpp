@@ -41,13 +41,14 @@ struct Arrays {
   }
 };
 
+/// On a wavy cone, which teeth do not fold.
 void add_ring(Arrays& mesh, std::uint32_t count, double shift,
               const std::function<double(std::uint32_t)>& radius) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * (i + shift) / count;
     const double r = radius(i);
-    mesh.positions.insert(mesh.positions.end(),
-                          {r * std::cos(angle), r * std::sin(angle), 0.1 * std::sin(7 * angle)});
+    mesh.positions.insert(mesh.positions.end(), {r * std::cos(angle), r * std::sin(angle),
+                                                 0.1 * r * std::sin(7 * angle)});
   }
 }
 
