@@ -311,10 +311,11 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
  * with the mesh and the options as they are set: the stored mesh and the results of the last run
  * included, arrays of the caller and other contexts not. It is told from counts of the mesh (of
  * the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
- * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it is
- * at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do with;
- * without a limit a run may take four times as much on hard meshes, where Newton steps end a blocked
- * polish, or the repair embeds the whole layout anew: with one it does without these. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
+ * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it
+ * is at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do
+ * with; without a limit a run may take four times as much on hard meshes, where Newton steps end a
+ * blocked polish, or the repair embeds the whole layout anew: with one it does without these.
+ * Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
@@ -325,9 +326,8 @@ BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_pr
                                           void* user);
 
 /* Asks the run or beltrami_set_mesh under way (or, where none is, the next run) to end with
- * CANCELLED. From any thread,
- * and from a signal handler. It takes effect at the next solver step: at the latest after one
- * ordering or factorization. NULL is ignored. Cannot fail. */
+ * CANCELLED. From any thread, and from a signal handler. It takes effect at the next solver step:
+ * at the latest after one ordering or factorization. NULL is ignored. Cannot fail. */
 BELTRAMI_API void beltrami_cancel(beltrami_context* context);
 
 /* ---- Results ---------------------------------------------------------------------------- */
@@ -447,10 +447,10 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
 
 /* ---- Checks without a context ----------------------------------------------------------- */
 /* They judge the caller's own arrays, keep nothing and need no run; `mesh->cancel` ends them.
- * `uvs`: vertex_count items of 2, F32 or F64, judged as stored. `mesh->positions` may be empty (data NULL) except for the
- * beltrami_measure functions. Each returns OK, or NOT_INJECTIVE where it found something, or an
- * error with out->error_element set: INVALID_ARGUMENT, CANCELLED, OUT_OF_MEMORY, NON_FINITE (a UV),
- * and mesh statuses. */
+ * `uvs`: vertex_count items of 2, F32 or F64, judged as stored. `mesh->positions` may be empty
+ * (data NULL) except for the beltrami_measure functions. Each returns OK, or NOT_INJECTIVE where it
+ * found something, or an error with out->error_element set: INVALID_ARGUMENT, CANCELLED,
+ * OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
 
 /* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
  * that, so out->injective stays 0. Errors: as above, of the mesh INDEX_OUT_OF_RANGE. */

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
 from conftest import grid
 
 import beltrami
+from beltrami import _interrupt
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -146,3 +149,23 @@ def test_a_distortion_equals_itself():
 def test_lengths_must_agree():
     with pytest.raises(ValueError, match="5 vertices, but 4 UVs"):
         beltrami.distortion(np.zeros((5, 3)), FACES, SQUARE)
+
+
+def test_ctrl_c_ends_checks_measures_and_the_loading_of_a_mesh(monkeypatch):
+    @contextlib.contextmanager
+    def cancelled_at_once(cancel):
+        cancel()
+        yield _interrupt.Interrupt()
+
+    monkeypatch.setattr(_interrupt, "watched", cancelled_at_once)
+    vertices, faces = grid(80)
+    uv = np.ascontiguousarray(vertices[:, :2])
+    for call in (
+        lambda: beltrami.check_injective(uv, faces),
+        lambda: beltrami.check_triangles(uv, faces),
+        lambda: beltrami.check_boundary(uv, faces),
+        lambda: beltrami.distortion(vertices, faces, uv),
+        lambda: beltrami.Flattener().set_mesh(vertices, faces),
+    ):
+        with pytest.raises(beltrami.Cancelled):
+            call()

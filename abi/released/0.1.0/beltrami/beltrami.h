@@ -287,12 +287,17 @@ typedef struct beltrami_mesh {
   uint64_t face_count;       /* at most 700,000,000 */
   beltrami_buffer positions; /* vertex_count items of 3: F32 or F64, in any unit of length */
   beltrami_buffer indices;   /* face_count items of 3: U32 or U64, counter-clockwise */
+  /* NULL, or where the caller asks for an end: the function that this mesh is given to looks there
+   * every few milliseconds, and returns CANCELLED if the number is not 0. Any thread and any signal
+   * handler may set it. */
+  const int32_t* cancel;
 } beltrami_mesh;
 
 /* Copies and validates a mesh; the caller's memory is free to go afterwards. A valid mesh drops the
- * results of the old one; an invalid mesh leaves the context with its old mesh and results. A
- * request to cancel that is pending is dropped. Errors: INVALID_ARGUMENT, INVALID_STATE,
- * OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element. */
+ * results of the old one; an invalid mesh, or a cancel, leaves the context with its old mesh and
+ * results. A request to cancel that is pending is dropped; one that comes meanwhile ends the call,
+ * or where it comes too late for that the next run. Errors: INVALID_ARGUMENT, INVALID_STATE,
+ * CANCELLED, OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element. */
 BELTRAMI_API beltrami_status beltrami_set_mesh(beltrami_context* context,
                                                const beltrami_mesh* mesh);
 
@@ -304,11 +309,13 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
 
 /* Estimates how many bytes of memory the library will hold at the peak of the next beltrami_run,
  * with the mesh and the options as they are set: the stored mesh and the results of the last run
- * included, arrays of the caller and other contexts not. It is told from counts of the mesh, at
- * least 40 MiB, and meant to be enough for all but what few large meshes need: the global fix of
- * the repair, GIF with many bridges. Valid for solver:native. It is the least memory-limit that the
- * run can do with; without a limit the default mode may take four times as much on hard meshes,
- * where Newton steps end a blocked polish. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
+ * included, arrays of the caller and other contexts not. It is told from counts of the mesh (of
+ * the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
+ * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it
+ * is at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do
+ * with; without a limit a run may take four times as much on hard meshes, where Newton steps end a
+ * blocked polish, or the repair embeds the whole layout anew: with one it does without these.
+ * Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
@@ -318,9 +325,9 @@ BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context,
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
 
-/* Asks the run under way (or, where none is, the next one) to end with CANCELLED. From any thread,
- * and from a signal handler. It takes effect at the next solver step: at the latest after one
- * ordering or factorization. NULL is ignored. Cannot fail. */
+/* Asks the run or beltrami_set_mesh under way (or, where none is, the next run) to end with
+ * CANCELLED. From any thread, and from a signal handler. It takes effect at the next solver step:
+ * at the latest after one ordering or factorization. NULL is ignored. Cannot fail. */
 BELTRAMI_API void beltrami_cancel(beltrami_context* context);
 
 /* ---- Results ---------------------------------------------------------------------------- */
@@ -333,7 +340,9 @@ typedef struct beltrami_certificate {
   uint64_t positive; /* faces of positive, negative, zero area in UV */
   uint64_t negative;
   uint64_t degenerate;
-  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not */
+  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not: all of
+                                * them while they are few, else at least so many (it takes and
+                                * lists no more than about n log n of n edges) */
   uint64_t first_bad_face;     /* a face that is not positive, or BELTRAMI_NO_ELEMENT */
   uint64_t first_crossing[2];  /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
   uint64_t error_element;      /* the element of an error status, or BELTRAMI_NO_ELEMENT */
@@ -437,11 +446,11 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
                                                 beltrami_stage* out);
 
 /* ---- Checks without a context ----------------------------------------------------------- */
-/* They judge the caller's own arrays, keep nothing and need no run. `uvs`: vertex_count items of 2,
- * F32 or F64, judged as stored. `mesh->positions` may be empty (data NULL) except for the
- * beltrami_measure functions. Each returns OK, or NOT_INJECTIVE where it found something, or an
- * error with out->error_element set: INVALID_ARGUMENT, OUT_OF_MEMORY, NON_FINITE (a UV), and mesh
- * statuses. */
+/* They judge the caller's own arrays, keep nothing and need no run; `mesh->cancel` ends them.
+ * `uvs`: vertex_count items of 2, F32 or F64, judged as stored. `mesh->positions` may be empty
+ * (data NULL) except for the beltrami_measure functions. Each returns OK, or NOT_INJECTIVE where it
+ * found something, or an error with out->error_element set: INVALID_ARGUMENT, CANCELLED,
+ * OUT_OF_MEMORY, NON_FINITE (a UV), and mesh statuses. */
 
 /* Orientation of every face. Needs no topology: any list of triangles will do. Proves no more than
  * that, so out->injective stays 0. Errors: as above, of the mesh INDEX_OUT_OF_RANGE. */
@@ -461,7 +470,7 @@ BELTRAMI_API beltrami_status beltrami_check_injective(const beltrami_mesh* mesh,
                                                       beltrami_certificate* out);
 
 /* Distortion of any UVs, in the positions' unit of length. `face_energies`: NULL or face_count
- * doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT,
+ * doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT, CANCELLED,
  * INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffer* uvs,
                                               beltrami_energy* out, double* face_energies);

@@ -367,11 +367,15 @@ pub struct beltrami_mesh {
     pub positions: beltrami_buffer,
     /// face_count items of 3: U32 or U64, counter-clockwise
     pub indices: beltrami_buffer,
+    /** NULL, or where the caller asks for an end: the function that this mesh is given to looks there
+ every few milliseconds, and returns CANCELLED if the number is not 0. Any thread and any signal
+ handler may set it.*/
+    pub cancel: *const i32,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_mesh"][::core::mem::size_of::<beltrami_mesh>() - 72usize];
+    ["Size of beltrami_mesh"][::core::mem::size_of::<beltrami_mesh>() - 80usize];
     ["Alignment of beltrami_mesh"][::core::mem::align_of::<beltrami_mesh>() - 8usize];
     [
         "Offset of field: beltrami_mesh::struct_size",
@@ -391,6 +395,9 @@ const _: () = {
     [
         "Offset of field: beltrami_mesh::indices",
     ][::core::mem::offset_of!(beltrami_mesh, indices) - 48usize];
+    [
+        "Offset of field: beltrami_mesh::cancel",
+    ][::core::mem::offset_of!(beltrami_mesh, cancel) - 72usize];
 };
 impl Default for beltrami_mesh {
     fn default() -> Self {
@@ -403,9 +410,10 @@ impl Default for beltrami_mesh {
 }
 extern "C" {
     /** Copies and validates a mesh; the caller's memory is free to go afterwards. A valid mesh drops the
- results of the old one; an invalid mesh leaves the context with its old mesh and results. A
- request to cancel that is pending is dropped. Errors: INVALID_ARGUMENT, INVALID_STATE,
- OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element.*/
+ results of the old one; an invalid mesh, or a cancel, leaves the context with its old mesh and
+ results. A request to cancel that is pending is dropped; one that comes meanwhile ends the call,
+ or where it comes too late for that the next run. Errors: INVALID_ARGUMENT, INVALID_STATE,
+ CANCELLED, OUT_OF_MEMORY, and the mesh statuses (-20 to -31) with their element.*/
     pub fn beltrami_set_mesh(
         context: *mut beltrami_context,
         mesh: *const beltrami_mesh,
@@ -423,11 +431,13 @@ pub type beltrami_progress = ::core::option::Option<
 extern "C" {
     /** Estimates how many bytes of memory the library will hold at the peak of the next beltrami_run,
  with the mesh and the options as they are set: the stored mesh and the results of the last run
- included, arrays of the caller and other contexts not. It is told from counts of the mesh, at
- least 40 MiB, and meant to be enough for all but what few large meshes need: the global fix of
- the repair, GIF with many bridges. Valid for solver:native. It is the least memory-limit that the
- run can do with; without a limit the default mode may take four times as much on hard meshes,
- where Newton steps end a blocked polish. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT.*/
+ included, arrays of the caller and other contexts not. It is told from counts of the mesh (of
+ the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
+ bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it
+ is at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do
+ with; without a limit a run may take four times as much on hard meshes, where Newton steps end a
+ blocked polish, or the repair embeds the whole layout anew: with one it does without these.
+ Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT.*/
     pub fn beltrami_estimate_memory(
         context: *mut beltrami_context,
         bytes: *mut u64,
@@ -445,9 +455,9 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Asks the run under way (or, where none is, the next one) to end with CANCELLED. From any thread,
- and from a signal handler. It takes effect at the next solver step: at the latest after one
- ordering or factorization. NULL is ignored. Cannot fail.*/
+    /** Asks the run or beltrami_set_mesh under way (or, where none is, the next run) to end with
+ CANCELLED. From any thread, and from a signal handler. It takes effect at the next solver step:
+ at the latest after one ordering or factorization. NULL is ignored. Cannot fail.*/
     pub fn beltrami_cancel(context: *mut beltrami_context);
 }
 /** The exact verdict on a map. Signs of areas and crossings are decided by exact predicates on the
@@ -462,7 +472,9 @@ pub struct beltrami_certificate {
     pub positive: u64,
     pub negative: u64,
     pub degenerate: u64,
-    /// pairs of boundary edges that meet where they should not
+    /** pairs of boundary edges that meet where they should not: all of
+ them while they are few, else at least so many (it takes and
+ lists no more than about n log n of n edges)*/
     pub boundary_crossings: u64,
     /// a face that is not positive, or BELTRAMI_NO_ELEMENT
     pub first_bad_face: u64,
@@ -840,7 +852,7 @@ extern "C" {
 }
 extern "C" {
     /** Distortion of any UVs, in the positions' unit of length. `face_energies`: NULL or face_count
- doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT,
+ doubles for the symmetric Dirichlet energy of each face. Errors: INVALID_ARGUMENT, CANCELLED,
  INDEX_OUT_OF_RANGE, NON_FINITE, OUT_OF_MEMORY.*/
     pub fn beltrami_measure(
         mesh: *const beltrami_mesh,

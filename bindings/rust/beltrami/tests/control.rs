@@ -9,7 +9,10 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::mpsc;
 use std::thread;
 
-use beltrami::{CancelToken, Control, ErrorKind, Flattener, Mesh, Options, Progress};
+use beltrami::{
+    check_boundary_with, check_injective_with, check_triangles_with, measure_faces_with,
+    measure_with, CancelToken, Control, ErrorKind, Flattener, Mesh, Options, Progress,
+};
 use support::sheet;
 
 fn go_on(_: Progress) -> ControlFlow<()> {
@@ -242,4 +245,22 @@ fn types_are_send_and_sync_where_they_should_be() {
     sync::<Mesh<'_>>();
     send::<beltrami::UvsMut<'_>>();
     sync::<beltrami::UvsMut<'_>>();
+}
+
+#[test]
+fn a_token_ends_checks_and_measures() {
+    let (positions, faces) = sheet(10);
+    let mesh = Mesh::new(&positions, &faces);
+    let uvs: Vec<[f32; 2]> = positions.iter().map(|p| [p[0] as f32, p[1] as f32]).collect();
+    let token = CancelToken::new();
+    assert!(check_injective_with(&faces, &uvs, &token).unwrap().injective);
+    token.cancel();
+    let kinds = [
+        check_injective_with(&faces, &uvs, &token).map(drop).unwrap_err().kind,
+        check_triangles_with(&faces, &uvs, &token).map(drop).unwrap_err().kind,
+        check_boundary_with(&faces, &uvs, &token).map(drop).unwrap_err().kind,
+        measure_with(&mesh, &uvs, &token).map(drop).unwrap_err().kind,
+        measure_faces_with(&mesh, &uvs, &token).map(drop).unwrap_err().kind,
+    ];
+    assert_eq!(kinds, [ErrorKind::Cancelled; 5]);
 }
