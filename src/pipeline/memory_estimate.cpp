@@ -200,7 +200,7 @@ double metric_bytes(const Counts& n, int threads) {
 /// Beside what the repair was given: the ring makes it a few faces and vertices more.
 double global_fix_bytes(const Counts& n) {
   const double entries =
-      (kFillByDegree + kFillOfRegular * n.regular) * n.vertices * std::log2(n.vertices + 2);
+      (kFillByDegree + kFillOfRegular * n.regular) * n.vertices * log2_of(n.vertices + 2);
   return (n.faces + 2 * n.boundary) * (sizeof(Triangle) + kEntriesOfFace) + 8 * n.vertices * kUv +
          kBothFactors * entries;
 }

@@ -1,14 +1,53 @@
 #include "scaffold/ring_predicates.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
-#include "exact/certificate.h"
+#include "exact/exact_number.h"
+#include "exact/orientation.h"
 
 namespace beltrami {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+template <class Number>
+struct Offset {
+  Number x, y;
+  Offset(const Vec2& p, const Vec2& origin)
+      : x(Number(p.x()) - Number(origin.x())), y(Number(p.y()) - Number(origin.y())) {}
+};
+
+int exact_side_of_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const Offset<ExactNumber> p(a, d), q(b, d), r(c, d);
+  const auto cross = [](const auto& s, const auto& t) -> ExactNumber {
+    return s.x * t.y - s.y * t.x;
+  };
+  const auto lift = [](const auto& s) -> ExactNumber { return s.x * s.x + s.y * s.y; };
+  return sign_of(lift(p) * cross(q, r) + lift(q) * cross(r, p) + lift(r) * cross(p, q));
+}
+
+/// 1 where d lies inside of the circle of the counter-clockwise triangle (a, b, c), 0 on it, -1
+/// outside. Filtered as by Shewchuk 1997, stage A.
+int side_of_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  constexpr double kRoundoff = 0x1p-53, kErrorBound = (10 + 96 * kRoundoff) * kRoundoff;
+  // Between these, products that underflow are far below the roundoff.
+  constexpr double kLeastSum = 0x1p-500, kGreatest = 0x1p200;
+  const Offset<double> p(a, d), q(b, d), r(c, d);
+  double greatest = 0, side = 0, sum = 0;
+  const auto add = [&](const auto& s, const auto& t, const auto& u) {
+    const double lift = s.x * s.x + s.y * s.y, left = t.x * u.y, right = t.y * u.x;
+    greatest = std::max({greatest, std::abs(s.x), std::abs(s.y)});
+    side += lift * (left - right);
+    sum += lift * (std::abs(left) + std::abs(right));
+  };
+  add(p, q, r);
+  add(q, r, p);
+  add(r, p, q);
+  if (greatest < kGreatest && sum > kLeastSum && std::abs(side) > kErrorBound * sum) {
+    return side > 0 ? 1 : -1;
+  }
+  return exact_side_of_circle(a, b, c, d);
+}
 
 }  // namespace
 
@@ -31,9 +70,8 @@ std::vector<Vec2> ring_points(const std::vector<Vec2>& inner, const std::vector<
 }
 
 bool is_in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const auto point = [](const Vec2& p) { return Kernel::Point_2(p.x(), p.y()); };
-  const auto side = CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d));
-  if (side != CGAL::ON_ORIENTED_BOUNDARY) return side == CGAL::ON_POSITIVE_SIDE;
+  const int side = side_of_circle(a, b, c, d);
+  if (side != 0) return side > 0;
   const auto smaller = [](const Vec2& p, const Vec2& q) {
     return lexicographically_less(p, q) ? p : q;
   };

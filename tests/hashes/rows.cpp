@@ -206,7 +206,10 @@ std::vector<std::string> function_rows() {
   return {
       function_row("exp", [](Random& r) { return portable::exp(r.between(-750, 715)); }),
       function_row("log",
-                   [](Random& r) { return portable::log(std::ldexp(r.unit(), r.below(200))); }),
+                   [](Random& r) {
+                     const int exponent = r.below(200);
+                     return portable::log(std::ldexp(r.unit(), exponent));
+                   }),
       function_row("sin", [](Random& r) { return portable::sin(r.between(-1e3, 1e7)); }),
       function_row("cos", [](Random& r) { return portable::cos(r.between(-1e3, 1e7)); }),
       function_row("atan2",
@@ -216,7 +219,8 @@ std::vector<std::string> function_rows() {
                    }),
       function_row("hypot",
                    [](Random& r) {
-                     const Vec2 p = std::ldexp(1, r.below(1600) - 800) * r.vec2();
+                     const Vec2 q = r.vec2();
+                     const Vec2 p = std::ldexp(1, r.below(1600) - 800) * q;
                      return portable::hypot(p.x(), p.y());
                    }),
   };

@@ -33,7 +33,8 @@ inline void add_spikes(Random& random, meshes::TriangleList& mesh) {
   const int count = 1 + random.below(4);
   for (int i = 0; i < count; ++i) {
     const int v = random.below(static_cast<int>(mesh.positions.size()));
-    mesh.positions[v] += random.between(1, 30) * random.vec3();
+    const Vec3 direction = random.vec3();
+    mesh.positions[v] += random.between(1, 30) * direction;
   }
 }
 
