@@ -34,7 +34,7 @@ OURS: dict[str, dict[str, object]] = {
     "local": {"injectivity": "local"},
     "default": {},
     "refine": {"refine": True},
-    "cm": {"method": "cm"},
+    "cm": {"method": "cm", "injectivity": "global"},
 }
 METHODS = [*OURS, "scaf"]
 SCAF_ITERATIONS = 50
@@ -156,13 +156,18 @@ def label(row: Row) -> str:
     return f"{row.mesh[:20]:20} {row.points:4} {row.boundary:6}"
 
 
+def ratio(value: float, digits: int) -> str:
+    """Return a column of ratios."""
+    return f"{'-':>10}" if np.isnan(value) else f"{value:10.{digits}f}"
+
+
 def energy_line(row: Row, methods: list[str]) -> str:
     """Return a row of the table of energies; a star marks an end in NOT_CONVERGED."""
     cells = [
         f"{row.outcomes[m].energy:9.4f}{' ' if row.outcomes[m].converged else '*'}" for m in methods
     ]
-    ratios = f"{row.over('default', 'local'):10.4f} {row.over('default', 'scaf'):10.4f}"
-    return f"{label(row)} {''.join(cells)} {ratios}"
+    ratios = (ratio(row.over("default", other), 4) for other in ("local", "scaf"))
+    return f"{label(row)} {''.join(cells)} {' '.join(ratios)}"
 
 
 def check_line(row: Row, methods: list[str]) -> str:
@@ -170,7 +175,7 @@ def check_line(row: Row, methods: list[str]) -> str:
     checks = (f"{row.outcomes[m].crossings}/{row.outcomes[m].flips}" for m in methods)
     costs = (f"{row.outcomes[m].cpu_seconds:10.2f}" for m in methods)
     checked = "".join(f"{check:>12}" for check in checks)
-    return f"{label(row)} {checked} {''.join(costs)} {row.cost():10.2f}"
+    return f"{label(row)} {checked} {''.join(costs)} {ratio(row.cost(), 2)}"
 
 
 def summary(name: str, ratios: list[float]) -> str:
