@@ -23,10 +23,10 @@ from pathlib import Path
 import igl
 import numpy as np
 import xatlas
+from meshes import FOLDER, areas, read_obj
 
 import beltrami
 
-BUST = Path(__file__).resolve().parents[3] / "examples" / "data" / "nefertiti_disk.obj"
 MOST_ITERATIONS = 500
 
 
@@ -39,24 +39,6 @@ class Outcome:
     faces: np.ndarray  # (m, 3)
     uv: np.ndarray  # (n, 2)
     note: str
-
-
-def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertices (n, 3) and faces (m, 3), scaled to area 1."""
-    lines = [line.split() for line in path.read_text().splitlines()]
-    vertices = np.array([words[1:4] for words in lines if words[:1] == ["v"]], float)
-    corners = [[w.split("/")[0] for w in words[1:4]] for words in lines if words[:1] == ["f"]]
-    faces = np.array(corners, np.int64) - 1
-    return vertices / np.sqrt(areas(vertices, faces).sum()), faces
-
-
-def areas(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Return the areas of faces in space or in the plane, (m,)."""
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    if points.shape[1] == 2:
-        u, v = b - a, c - a
-        return 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
 def run_beltrami(vertices: np.ndarray, faces: np.ndarray, _tolerance: float) -> Outcome:
@@ -154,7 +136,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("mesh", nargs="?", type=Path, default=BUST, metavar="MESH.obj")
+    bust = FOLDER / "nefertiti_disk.obj"
+    parser.add_argument("mesh", nargs="?", type=Path, default=bust, metavar="MESH.obj")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--energy-tolerance", type=float, default=1e-4)
     arguments = parser.parse_args()
