@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 
 namespace beltrami {
@@ -157,7 +158,8 @@ std::vector<Vec2> grid_drawing(const DiskMesh& mesh) {
   for (const Addition& added : additions) drawing.add(added);
 
   const auto count = static_cast<double>(mesh.vertex_count());
-  const int exponent = -std::ilogb(count);
+  const int below = std::ilogb(count);
+  const int exponent = count < std::ldexp(std::numbers::sqrt2, below) ? -below : -below - 1;
   std::vector<Vec2> uvs(mesh.vertex_count());
   std::vector<std::pair<Index, std::int64_t>> open{{a, 0}};
   while (!open.empty()) {
