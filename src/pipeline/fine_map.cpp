@@ -384,7 +384,9 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
     PolishResult polished = run(1, false);
     if (polished.blocked) clean(polished.blocking);
     double before_last_round = std::numeric_limits<double>::infinity();
-    while (!polished.converged && statistics.iterations < kPolishIterations) {
+    // Rounds of cleaning alone, without a step, are bounded too.
+    for (int round = 0; round < kPolishIterations; ++round) {
+      if (polished.converged || statistics.iterations >= kPolishIterations) break;
       std::vector<double> springs;
       if (contact) {
         springs = contact->stiffness(uvs);
