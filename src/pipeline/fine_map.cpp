@@ -35,6 +35,7 @@ constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is l
 constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
 constexpr int kPolishIterations = 30;
+constexpr int kCleaningRounds = 4;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
 constexpr double kFirstReach = 0.01;  // of the boundary length, anchored around a crossing
@@ -384,8 +385,8 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
     PolishResult polished = run(1, false);
     if (polished.blocked) clean(polished.blocking);
     double before_last_round = std::numeric_limits<double>::infinity();
-    // Rounds of cleaning alone, without a step, are bounded too.
-    for (int round = 0; round < kPolishIterations; ++round) {
+    // Cleaning costs more than it gains where many rounds of it are needed.
+    for (int round = 0; round < kCleaningRounds; ++round) {
       if (polished.converged || statistics.iterations >= kPolishIterations) break;
       std::vector<double> springs;
       if (contact) {
