@@ -4,6 +4,8 @@
 // of triangles around the map (Jiang et al. 2017, SCAF) glues it together instead.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "base/types.h"
@@ -47,8 +49,10 @@ class BoundaryContact {
   double strength() const { return strength_; }
 
   /// Pairs nearer than `margin` times their reach, in the order of the vertices along the loop,
-  /// then of the edges. O(n log n) for n edges if each is near to a few others.
-  std::vector<Contact> find(const std::vector<Vec2>& uvs, double margin = 1) const;
+  /// then of the edges; the first `most` of them. O(n log n) for n edges if each is near to a few
+  /// others.
+  std::vector<Contact> find(const std::vector<Vec2>& uvs, double margin = 1,
+                            std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   /// The sum over all pairs: an area. Infinite if two touch.
   double energy(const std::vector<Vec2>& uvs) const;
