@@ -86,8 +86,8 @@ Vector6 outside_gradient(const Nearest& near, const Vec2& p, const Vec2& a, cons
   return (by_height - near.outside * distance_gradient(near)) / near.distance;
 }
 
-/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the vertex
-/// gets behind it, where the next edge takes over.
+/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the
+/// vertex gets behind it, where the next edge takes over.
 struct Term {
   double value;
   Vector6 gradient;
@@ -192,6 +192,12 @@ void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
   }
 }
 
+bool BoundaryContact::is_pressed(const std::vector<Vec2>& uvs) const {
+  const std::size_t most = kMostContacts * loop_.size();
+  const std::size_t near = find(uvs, 1, most + 1).size();
+  return near > 0 && near <= most;
+}
+
 std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin,
                                            std::size_t most) const {
   using BoxOf = std::function<Box(Index)>;
@@ -251,9 +257,10 @@ std::vector<double> BoundaryContact::stiffness(const std::vector<Vec2>& uvs) con
 }
 
 std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
-                                            const std::vector<Vec2>& direction,
-                                            double limit) const {
+                                            const std::vector<Vec2>& direction, double limit,
+                                            double all_before) const {
   std::vector<Touch> found;
+  double first = limit;
   const std::function<Box(Index)> swept = [&](Index i) {
     const Vec2 &p = uvs[loop_[i]], &d = direction[loop_[i]];
     Box box(p);
@@ -263,7 +270,9 @@ std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double time =
         touch_time({uvs[p], uvs[a], uvs[b]}, {direction[p], direction[a], direction[b]}, limit);
-    if (time < limit) found.push_back({p, a, time});
+    // There may be as many as pairs of edges.
+    if (time < std::max(first, std::min(all_before, limit))) found.push_back({p, a, time});
+    first = std::min(first, time);
     return true;
   });
   return found;
