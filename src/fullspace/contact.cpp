@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "exact/crossings.h"
 
 namespace beltrami {
@@ -85,8 +86,8 @@ Vector6 outside_gradient(const Nearest& near, const Vec2& p, const Vec2& a, cons
   return (by_height - near.outside * distance_gradient(near)) / near.distance;
 }
 
-/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the vertex
-/// gets behind it, where the next edge takes over.
+/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the
+/// vertex gets behind it, where the next edge takes over.
 struct Term {
   double value;
   Vector6 gradient;
@@ -146,7 +147,7 @@ double BoundaryContact::reach(Index i, Index e) const {
 }
 
 /// Calls visit(i, e) for the vertices i and the edges e, none that ends there, whose boxes meet,
-/// that of an edge being around the boxes of its ends.
+/// that of an edge being around the boxes of its ends, until it returns false.
 template <class BoxOf, class Visit>
 void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_end_box,
                                     const Visit& visit) const {
@@ -162,19 +163,21 @@ void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_e
     boxes[node] = boxes[2 * node].merged(boxes[2 * node + 1]);
   }
   std::vector<Index> stack;
+  PollSometimes poll;
   for (Index i = 0; i < count; ++i) {
     const Box box = vertex_box(i);
     stack.assign(1, 1);
     while (!stack.empty()) {
       const Index node = stack.back();
       stack.pop_back();
+      poll();
       if (!boxes[node].intersects(box)) continue;
       const Index e = node - leaves;
       if (e < 0) {
         stack.push_back(2 * node + 1);
         stack.push_back(2 * node);
-      } else if (e != i && after(e) != i) {
-        visit(i, e);
+      } else if (e != i && after(e) != i && !visit(i, e)) {
+        return;
       }
     }
   }
@@ -184,10 +187,19 @@ void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
   strength_ = 0.5 * kStrength * energy;
   scale_ = std::min(1.0, std::sqrt(2 / energy));
   const std::size_t most = kMostContacts * loop_.size();
-  while (scale_ > std::numeric_limits<double>::min() && find(uvs).size() > most) scale_ *= 0.5;
+  while (scale_ > std::numeric_limits<double>::min() && find(uvs, 1, most + 1).size() > most) {
+    scale_ *= 0.5;
+  }
 }
 
-std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin) const {
+bool BoundaryContact::is_pressed(const std::vector<Vec2>& uvs) const {
+  const std::size_t most = kMostContacts * loop_.size();
+  const std::size_t near = find(uvs, 1, most + 1).size();
+  return near > 0 && near <= most;
+}
+
+std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin,
+                                           std::size_t most) const {
   using BoxOf = std::function<Box(Index)>;
   const BoxOf around_vertex = [&](Index i) {
     const double reach = margin * reach_of_vertex(i);
@@ -201,8 +213,9 @@ std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double 
     const double limit = reach(i, e);
     const Nearest near = nearest_on_edge(uvs[p], uvs[a], uvs[b]);
     // Behind the edge is the surface, and no contact.
-    if (near.distance >= margin * limit || near.outside <= (margin > 1 ? -0.5 : 0.0)) return;
+    if (near.distance >= margin * limit || near.outside <= (margin > 1 ? -0.5 : 0.0)) return true;
     contacts.push_back({p, a, b, limit, (lengths_[before(i)] + lengths_[i]) * lengths_[e]});
+    return contacts.size() < most;
   });
   return contacts;
 }
@@ -244,9 +257,10 @@ std::vector<double> BoundaryContact::stiffness(const std::vector<Vec2>& uvs) con
 }
 
 std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
-                                            const std::vector<Vec2>& direction,
-                                            double limit) const {
+                                            const std::vector<Vec2>& direction, double limit,
+                                            double all_before) const {
   std::vector<Touch> found;
+  double first = limit;
   const std::function<Box(Index)> swept = [&](Index i) {
     const Vec2 &p = uvs[loop_[i]], &d = direction[loop_[i]];
     Box box(p);
@@ -256,7 +270,10 @@ std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double time =
         touch_time({uvs[p], uvs[a], uvs[b]}, {direction[p], direction[a], direction[b]}, limit);
-    if (time < limit) found.push_back({p, a, time});
+    // There may be as many as pairs of edges.
+    if (time < std::max(first, std::min(all_before, limit))) found.push_back({p, a, time});
+    first = std::min(first, time);
+    return true;
   });
   return found;
 }

@@ -4,6 +4,8 @@
 // of triangles around the map (Jiang et al. 2017, SCAF) glues it together instead.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "base/types.h"
@@ -38,8 +40,8 @@ class BoundaryContact {
                   std::vector<double> scales);
 
   /// Scales the reach, and the contact's weight in an objective, to a map: `energy` is its mean
-  /// energy, counted from 2 at the isometries. A map far too small gets a reach as much smaller, and
-  /// one with more parts near each other than the barrier needs, too.
+  /// energy, counted from 2 at the isometries. A map far too small gets a reach as much smaller,
+  /// and one with more parts near each other than the barrier needs, too.
   void fit(const std::vector<Vec2>& uvs, double energy);
 
   /// What the barrier's energy counts in an objective, times the inverse area of the surface: it
@@ -47,8 +49,14 @@ class BoundaryContact {
   double strength() const { return strength_; }
 
   /// Pairs nearer than `margin` times their reach, in the order of the vertices along the loop,
-  /// then of the edges. O(n log n) for n edges if each is near to a few others.
-  std::vector<Contact> find(const std::vector<Vec2>& uvs, double margin = 1) const;
+  /// then of the edges; the first `most` of them. O(n log n) for n edges if each is near to a few
+  /// others.
+  std::vector<Contact> find(const std::vector<Vec2>& uvs, double margin = 1,
+                            std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+
+  /// Whether parts of the boundary are near each other, and not as many as in a shape that is made
+  /// so: a star of long teeth does not press on itself.
+  bool is_pressed(const std::vector<Vec2>& uvs) const;
 
   /// The sum over all pairs: an area. Infinite if two touch.
   double energy(const std::vector<Vec2>& uvs) const;
@@ -61,9 +69,10 @@ class BoundaryContact {
   std::vector<double> stiffness(const std::vector<Vec2>& uvs) const;
 
   /// The vertices that would go through an edge on the way uvs + t * direction before t = limit,
-  /// each with the t at which they touch. Precondition: the boundary is simple in `uvs`.
+  /// each with the t at which they touch: all before t = `all_before`, and of the others some, with
+  /// the first of all. Precondition: the boundary is simple in `uvs`.
   std::vector<Touch> touches(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,
-                             double limit) const;
+                             double limit, double all_before = 0) const;
 
   /// The first of these t; `limit` if there is none.
   double first_touch(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,

@@ -88,7 +88,7 @@ class NewtonStepper {
   static constexpr int kMaxHalvings = 40;
 
   static constexpr double kJammed = 0.25;  // of a step, below which what touches first is stuck
-  static constexpr double kFreed = 0.2;  // of the reach, beyond which it is no more
+  static constexpr double kFreed = 0.2;    // of the reach, beyond which it is no more
   static constexpr double kPatternMargin = 1.5;  // of the reach, up to which pairs have entries
 
   double strength() const { return contact_->strength() / area_; }
@@ -107,7 +107,7 @@ class NewtonStepper {
   const int threads_;
   Density density_;
   const BoundaryContact* contact_ = nullptr;
-  std::vector<Contact> contacts_;      // that the matrix has entries for
+  std::vector<Contact> contacts_;            // that the matrix has entries for
   std::set<std::pair<Index, Index>> stuck_;  // of them, by vertex and first vertex of the edge
   std::vector<Triangle> with_contacts_;  // the faces, then the vertices of each contact; or empty
   MeshMatrix hessian_;
@@ -174,7 +174,7 @@ double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
                                                  const std::vector<Vec2>& direction,
                                                  double length) {
   double limit = length / kSingularShare;
-  const std::vector<Touch> touches = contact_->touches(uvs, direction, limit);
+  const std::vector<Touch> touches = contact_->touches(uvs, direction, limit, kJammed * length);
   for (const Contact& c : contacts_) {
     if (share_of_reach(c, uvs) > kFreed) stuck_.erase({c.vertex, c.from});
   }

@@ -94,7 +94,7 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
   }
   const std::vector<double> lengths = boundary_lengths(mesh);
   const BoundaryContact contact(mesh.boundary, lengths, lengths);
-  if (contact.find(uvs).empty() || !contact.is_simple(uvs)) {
+  if (!contact.is_pressed(uvs) || !contact.is_simple(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact.is_simple(map); };
     NewtonResult free = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
     if (!free.refused || free.admitted.empty()) return free;
@@ -105,7 +105,7 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
   newton.contact = &contact;
   newton.tolerance = std::max(newton.tolerance, options_.tolerance);
   NewtonResult pressed = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
-  pressed.in_contact = !contact.find(uvs).empty();
+  pressed.in_contact = contact.is_pressed(uvs);
   return pressed;
 }
 
@@ -206,8 +206,7 @@ std::vector<Vec2> Run::run_cm(const DiskMesh& mesh, const char* name, double unt
       std::vector<Vec2> other = start_from_coarser(mesh, rest, checkpoint);
       if (!other.empty()) {
         StageStatistics second{name};
-        const NewtonResult again =
-            descend(mesh, rest, newton, simple, other, second, checkpoint);
+        const NewtonResult again = descend(mesh, rest, newton, simple, other, second, checkpoint);
         statistics.iterations += second.iterations;
         if (again.energies.back() < done.energies.back()) {
           uvs.swap(other);
@@ -242,8 +241,8 @@ void Run::refine(std::vector<Vec2>& uvs) {
     if (options_.time_limit > 0) {
       newton.out_of_time = [&] { return wall_seconds() - started_ > options_.time_limit; };
     }
-    const NewtonResult done = descend(*disk_, rest, newton, keeps_boundary_simple(), uvs,
-                                      statistics, checkpoint);
+    const NewtonResult done =
+        descend(*disk_, rest, newton, keeps_boundary_simple(), uvs, statistics, checkpoint);
     // The barrier of the contact may have fallen instead.
     if (!(scaled_energy() <= before)) uvs = start;
     const bool limited = options_.refine_iterations > 0 || options_.time_limit > 0;
