@@ -13,7 +13,7 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
-constexpr Index kHub = 40;  // faces at a vertex, beyond what a walk crosses
+constexpr Index kHub = 40;                    // faces at a vertex, beyond what a walk crosses
 constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
 
 /// The metric at each corner of a face, in the frame of the face.

@@ -42,11 +42,12 @@ struct Anchors {
 std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                   const std::vector<bool>& vertices);
 
-/// A Laplacian of the mesh with given stiffness, springs at vertices and some vertices held, and its
-/// factor.
+/// A Laplacian of the mesh with given stiffness, springs at vertices and some vertices held, and
+/// its factor.
 class MetricLaplacian {
  public:
-  /// `held`: per vertex; at least one must be. `springs`: per vertex, or empty. Throws Error SOLVER.
+  /// `held`: per vertex; at least one must be. `springs`: per vertex, or empty. Throws Error
+  /// SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                   const std::vector<bool>& held,
                   const SolverOptions& options = {Precision::kSingle},

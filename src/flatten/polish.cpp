@@ -233,9 +233,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
     const double slope = dot(gradient, direction, threads);
     result.predicted = -slope;
-    result.converged =
-        settled &&
-        0.5 * result.predicted <= options.stationary * comparable_energy<Density>(before);
+    result.converged = settled && 0.5 * result.predicted <=
+                                      options.stationary * comparable_energy<Density>(before);
     if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;

@@ -1,5 +1,5 @@
-// Starts that are isometric where the surface is flat, or nearly, or a strip. Tutte's embedding of a
-// thin strip is so far from it that descent does not get there in floating point.
+// Starts that are isometric where the surface is flat, or nearly, or a strip. Tutte's embedding of
+// a thin strip is so far from it that descent does not get there in floating point.
 #pragma once
 
 #include <vector>

@@ -38,8 +38,8 @@ struct NewtonResult {
   /// of its sum with the barrier.
   std::vector<double> energies;
   bool converged = false;
-  bool in_contact = false;      ///< boundary parts press on each other at the end
-  bool refused = false;         ///< the map at the end is not admissible; then
+  bool in_contact = false;     ///< boundary parts press on each other at the end
+  bool refused = false;        ///< the map at the end is not admissible; then
   std::vector<Vec2> admitted;  ///< the last one that was, empty if none
 
   int iterations() const { return static_cast<int>(energies.size()) - 1; }

@@ -33,7 +33,7 @@ constexpr std::size_t kManyFlips = 20;     // beyond which targets are rotated
 constexpr int kRotations = 2;              // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is looked at too
 constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
-constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
+constexpr double kStationary = 1e-4;       // predicted relative decrease that is none
 constexpr int kPolishIterations = 30;
 constexpr int kCleaningRounds = 4;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
@@ -294,11 +294,11 @@ void Run::anchor_near(const std::vector<std::array<Index, 2>>& edges, double rea
   }
 }
 
-/// The solve, with the boundary vertices `anchored` drawn to their `carried` places, and its repair.
-/// Sets `laplacian` up where there is none yet. Returns whether all faces are positive.
+/// The solve, with the boundary vertices `anchored` drawn to their `carried` places, and its
+/// repair. Sets `laplacian` up where there is none yet. Returns whether all faces are positive.
 bool Run::solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
-                     const std::vector<bool>& anchored,
-                     std::unique_ptr<MetricLaplacian>& laplacian, std::vector<Vec2>& uvs) {
+                     const std::vector<bool>& anchored, std::unique_ptr<MetricLaplacian>& laplacian,
+                     std::vector<Vec2>& uvs) {
   uvs = carried;
   stage("flatten", 0.63, [&](StageStatistics&, const Checkpoint& checkpoint) {
     const auto stiffness =
@@ -338,7 +338,7 @@ bool Run::solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
 /// A few steps of composite majorization: they cost most, and are not held up by nearly singular
 /// faces.
 NewtonResult Run::take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
-                           std::vector<Vec2>& uvs, const Checkpoint& checkpoint) {
+                                    std::vector<Vec2>& uvs, const Checkpoint& checkpoint) {
   NewtonOptions newton = newton_options();
   newton.proxy_steps = 0;
   newton.contact = contact;
@@ -394,8 +394,7 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
         for (double& spring : springs) spring *= contact->strength();
       }
       laplacian.refit(
-          *disk_,
-          energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs, options_.threads),
+          *disk_, energy_stiffness(options_.energy, disk_->faces, fine.rest, uvs, options_.threads),
           springs);
       polished = run(kPolishIterations - statistics.iterations, true);
       if (!polished.blocked) break;
@@ -406,8 +405,8 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
       before_last_round = polished.energies.front();
       if (gained <= kLittleGain * energy) break;
     }
-    bool converged = polished.converged ||
-                     0.5 * polished.predicted <= kStationary * polished.energies.back();
+    bool converged =
+        polished.converged || 0.5 * polished.predicted <= kStationary * polished.energies.back();
     if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
         affords(*disk_, options_, Extra::kNewtonSteps)) {
       const NewtonResult ended =

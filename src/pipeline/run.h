@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <optional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/checkpoint.h"
@@ -89,8 +89,8 @@ class Run {
   void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                   std::vector<Vec2>& uvs) const;
   NewtonResult descend_to(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                          NewtonOptions newton, std::vector<Vec2>& uvs,
-                          StageStatistics& statistics, const Checkpoint& checkpoint);
+                          NewtonOptions newton, std::vector<Vec2>& uvs, StageStatistics& statistics,
+                          const Checkpoint& checkpoint);
   NewtonResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                        NewtonOptions newton, bool simple, std::vector<Vec2>& uvs,
                        StageStatistics& statistics, const Checkpoint& checkpoint);
@@ -125,7 +125,7 @@ class Run {
   void polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                   MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
   NewtonResult take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
-                        std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
+                                 std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
   void anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                    std::vector<bool>& anchored) const;
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
