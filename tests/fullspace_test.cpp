@@ -256,6 +256,14 @@ TEST(FirstSingularStep, FindsADoubleRoot) {
   EXPECT_NEAR(first_singular_step({{0, 1, 2}}, uvs, scaled(uvs, -1), 1), 1, 1e-7);
 }
 
+TEST(FirstSingularStep, IsNeverNegative) {
+  // Roundoff turns thin faces over that are positive by their singular values.
+  const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0.5, -1e-20}};
+  const std::vector<Vec2> up = {{0, 0}, {0, 0}, {0, 1}};
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, up, 1), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, scaled(up, -1), 1), 0);
+}
+
 // ---- Newton ---------------------------------------------------------------------------------
 
 TEST(MinimiseEnergy, NeverRaisesAnEnergyAndNeverFlips) {

@@ -15,7 +15,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Smallest positive root of c0 + c1 t + c2 t^2 for c0 > 0.
+/// Smallest root of c0 + c1 t + c2 t^2 that is not negative, for c0 >= 0.
 double smallest_positive_root(double c0, double c1, double c2) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double discriminant = c1 * c1 - 4 * c0 * c2;
@@ -25,7 +25,8 @@ double smallest_positive_root(double c0, double c1, double c2) {
   return c2 < 0 ? (c1 + root) / (-2 * c2) : kNever;
 }
 
-/// Twice the area of a face along the way: c0 + c1 t + c2 t^2.
+/// Twice the area of a positive face along the way: c0 + c1 t + c2 t^2. Of a face so thin that
+/// roundoff makes its area negative c0 is 0: it may grow only.
 struct AreaPolynomial {
   double c0, c1, c2;
 };
@@ -34,7 +35,7 @@ AreaPolynomial area_along(const Triangle& t, const std::vector<Vec2>& uvs,
                           const std::vector<Vec2>& direction) {
   const Vec2 e1 = uvs[t[1]] - uvs[t[0]], e2 = uvs[t[2]] - uvs[t[0]];
   const Vec2 p1 = direction[t[1]] - direction[t[0]], p2 = direction[t[2]] - direction[t[0]];
-  return {cross(e1, e2), cross(e1, p2) + cross(p1, e2), cross(p1, p2)};
+  return {std::max(cross(e1, e2), 0.0), cross(e1, p2) + cross(p1, e2), cross(p1, p2)};
 }
 
 }  // namespace

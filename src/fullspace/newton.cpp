@@ -73,7 +73,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
       proxy_steps = step.length > 0 ? proxy_steps - 1 : 0;
       continue;
     }
-    if (step.length == 0) {
+    if (!(step.length > 0)) {
       // No representable decrease: at the minimum (or on a ridge) if little was predicted, stuck
       // otherwise.
       result.converged = is_stationary<Density>(step, before, options.tolerance);

@@ -238,6 +238,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
     return contact_ ? strength() * contact_->energy(map) : 0.0;
   };
   if (contact_) length = stop_before_touch(uvs, direction, length);
+  if (!(length > 0)) return result;
   const double before = energy + pressure(uvs);
   std::vector<Vec2> trial(uvs.size());
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
