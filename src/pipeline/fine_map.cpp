@@ -38,7 +38,7 @@ constexpr int kPolishIterations = 30;
 constexpr int kCleaningRounds = 4;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
-constexpr double kFirstReach = 0.01;  // of the boundary length, anchored around a crossing
+constexpr double kFirstReach = 0.001;  // of the boundary length, anchored around a crossing
 constexpr double kReachGrowth = 3;
 
 }  // namespace
@@ -232,12 +232,7 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
                                 coarse_boundary_lengths(*disk_, fine.coarse));
   const bool global = keeps_boundary_simple() && contact.is_simple(carried);
   std::vector<bool> anchored;
-  if (global && fine.in_contact) {
-    anchored.assign(disk_->vertex_count(), false);
-    for (const Contact& c : contact.find(carried)) {
-      for (const Index v : {c.vertex, c.from, c.to}) anchored[v] = true;
-    }
-  }
+  if (global && fine.in_contact) anchored = vertices_in_contact(fine);
   std::unique_ptr<MetricLaplacian> laplacian;
   std::vector<Vec2> uvs;
   for (double reach = kFirstReach;; reach *= kReachGrowth) {
@@ -255,17 +250,28 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
     anchor_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, anchored);
   }
   const bool pressed = !anchored.empty();
-  if (!global || pressed) {
-    polish_map(fine, pressed ? std::optional(contact) : std::nullopt, *laplacian, uvs);
-    return uvs;
-  }
   const std::vector<Vec2> before = uvs;
-  polish_map(fine, std::nullopt, *laplacian, uvs);
-  if (contact.is_simple(uvs)) return uvs;
-  uvs = before;
-  result_.status = BELTRAMI_OK;
-  polish_map(fine, contact, *laplacian, uvs);
+  bool converged =
+      polish_map(fine, pressed ? std::optional(contact) : std::nullopt, *laplacian, uvs);
+  if (global && !pressed && !contact.is_simple(uvs)) {
+    uvs = before;
+    converged = polish_map(fine, contact, *laplacian, uvs);
+  }
+  if (!converged) result_.status = BELTRAMI_NOT_CONVERGED;
   return uvs;
+}
+
+/// The vertices of the coarse boundary that are near other parts of it. Those between them are at
+/// liberty: carried over they are on straight lines, on the surface they need not be.
+std::vector<bool> Run::vertices_in_contact(const FineProblem& fine) const {
+  const DiskMesh& coarse = fine.coarse.mesh;
+  const std::vector<double> lengths = boundary_lengths(coarse);
+  const BoundaryContact contact(coarse.boundary, lengths, lengths);
+  std::vector<bool> found(disk_->vertex_count(), false);
+  for (const Contact& c : contact.find(fine.coarse_uvs)) {
+    for (const Index v : {c.vertex, c.from, c.to}) found[fine.coarse.fine_vertex[v]] = true;
+  }
+  return found;
 }
 
 /// Anchors the boundary vertices within `reach` times the boundary length of the given edges.
@@ -352,9 +358,11 @@ NewtonResult Run::take_newton_steps(const FineProblem& fine, const BoundaryConta
 /// L-BFGS: one step with the factor of the flattening, which is that of the prolonged metric, if
 /// that one gets through; the others with one that is fitted to the map by then. Where nearly
 /// singular faces block the steps, patches around these are optimised and the factor is fitted
-/// anew; where that does not help either, and much is left to gain, Newton steps end it.
-void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
+/// anew; where that does not help either, and much is left to gain, Newton steps end it. Returns
+/// whether the map ends stationary.
+bool Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
+  bool converged = false;
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
     if (contact) contact->fit(uvs, fine.coarse_energy);
     // The objective is a mean, the stiffness that of a sum.
@@ -405,7 +413,7 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
       before_last_round = polished.energies.front();
       if (gained <= kLittleGain * energy) break;
     }
-    bool converged =
+    converged =
         polished.converged || 0.5 * polished.predicted <= kStationary * polished.energies.back();
     if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
         affords(*disk_, options_, Extra::kNewtonSteps)) {
@@ -414,9 +422,9 @@ void Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
       statistics.iterations += ended.iterations();
       converged = ended.converged;
     }
-    if (!converged) result_.status = BELTRAMI_NOT_CONVERGED;
     clean({});
   });
+  return converged;
 }
 
 /// Mends flips and, on demand, crossings of the boundary; where that succeeds, cleans outliers.

@@ -122,10 +122,11 @@ class Run {
   bool solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
                   const std::vector<bool>& anchored, std::unique_ptr<MetricLaplacian>& laplacian,
                   std::vector<Vec2>& uvs);
-  void polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
+  bool polish_map(const FineProblem& fine, std::optional<BoundaryContact> contact,
                   MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
   NewtonResult take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                                  std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
+  std::vector<bool> vertices_in_contact(const FineProblem& fine) const;
   void anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
                    std::vector<bool>& anchored) const;
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
