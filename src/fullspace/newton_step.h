@@ -113,6 +113,7 @@ class NewtonStepper {
   MeshMatrix hessian_;
   std::unique_ptr<SpdSolver> solver_;
   bool analyzed_ = false;
+  double stretch_ = 1;  // the first length to try, with contact
   Eigen::VectorXd gradient_;
 };
 
@@ -229,7 +230,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   for (Index v = 0; v < size_of(uvs); ++v) {
     if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
   }
-  double length = 1;
+  double length = contact_ ? stretch_ : 1;
   if (Density::kBarrier) {
     length =
         std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
@@ -252,6 +253,10 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
       result.length = length;
       result.energy = trial_energy;
       result.gain = before - after;
+      // The model is stiffer than the objective, with contact most: where the parabola through what
+      // a full step gained has its end, the next step may go at once.
+      const double bend = 2 * (length - result.gain / result.predicted) / (length * length);
+      stretch_ = length >= 1 && bend > 0 ? std::clamp(1 / bend, 1.0, 2.0) : 1.0;
       break;
     }
   }

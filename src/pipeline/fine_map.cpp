@@ -16,6 +16,7 @@
 #include "fullspace/grid_drawing.h"
 #include "fullspace/tutte.h"
 #include "mesh/boundary.h"
+#include "pipeline/anchors.h"
 #include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
@@ -38,8 +39,6 @@ constexpr int kPolishIterations = 30;
 constexpr int kCleaningRounds = 4;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
-constexpr double kFirstReach = 0.001;  // of the boundary length, anchored around a crossing
-constexpr double kReachGrowth = 3;
 
 }  // namespace
 
@@ -232,23 +231,24 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
                                 coarse_boundary_lengths(*disk_, fine.coarse));
   const bool global = keeps_boundary_simple() && contact.is_simple(carried);
   std::vector<bool> anchored;
-  if (global && fine.in_contact) anchored = vertices_in_contact(fine);
+  if (global && fine.in_contact) {
+    anchored = vertices_in_contact(fine.coarse, fine.coarse_uvs, disk_->vertex_count());
+  }
   std::unique_ptr<MetricLaplacian> laplacian;
   std::vector<Vec2> uvs;
-  for (double reach = kFirstReach;; reach *= kReachGrowth) {
-    const bool positive = solve_flat(fine, carried, anchored, laplacian, uvs);
-    std::vector<std::array<Index, 2>> crossings;
-    if (global) crossings = find_crossings(disk_->boundary, uvs);
-    if (crossings.empty() && !positive) return uvs;
-    if (crossings.empty()) break;
-    if (reach > 1) {
-      FineProblem harmonic = fine;
-      harmonic.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
-      return flatten_dirichlet(harmonic);
-    }
-    anchored.resize(disk_->vertex_count(), false);
-    anchor_near(crossings, reach * kReachGrowth > 1 ? 1.0 : reach, anchored);
+  bool positive = false;
+  const auto solve = [&] {
+    positive = solve_flat(fine, carried, anchored, laplacian, uvs);
+    return true;
+  };
+  if (!global) {
+    solve();
+  } else if (!solve_until_simple(*disk_, uvs, anchored, solve)) {
+    FineProblem harmonic = fine;
+    harmonic.cotangents = modified_cotangents(fine.rest, fine.metric, options_.threads);
+    return flatten_dirichlet(harmonic);
   }
+  if (!positive) return uvs;
   const bool pressed = !anchored.empty();
   const std::vector<Vec2> before = uvs;
   bool converged =
@@ -259,45 +259,6 @@ std::vector<Vec2> Run::flatten_metric(const FineProblem& fine) {
   }
   if (!converged) result_.status = BELTRAMI_NOT_CONVERGED;
   return uvs;
-}
-
-/// The vertices of the coarse boundary that are near other parts of it. Those between them are at
-/// liberty: carried over they are on straight lines, on the surface they need not be.
-std::vector<bool> Run::vertices_in_contact(const FineProblem& fine) const {
-  const DiskMesh& coarse = fine.coarse.mesh;
-  const std::vector<double> lengths = boundary_lengths(coarse);
-  const BoundaryContact contact(coarse.boundary, lengths, lengths);
-  std::vector<bool> found(disk_->vertex_count(), false);
-  for (const Contact& c : contact.find(fine.coarse_uvs)) {
-    for (const Index v : {c.vertex, c.from, c.to}) found[fine.coarse.fine_vertex[v]] = true;
-  }
-  return found;
-}
-
-/// Anchors the boundary vertices within `reach` times the boundary length of the given edges.
-void Run::anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
-                      std::vector<bool>& anchored) const {
-  const std::vector<Index>& loop = disk_->boundary;
-  const Index count = size_of(loop);
-  const auto next = [count](Index i) { return i + 1 == count ? 0 : i + 1; };
-  std::vector<double> lengths(count), apart(count, std::numeric_limits<double>::infinity());
-  for (Index i = 0; i < count; ++i) {
-    lengths[i] = (disk_->positions[loop[next(i)]] - disk_->positions[loop[i]]).norm();
-  }
-  for (const auto& pair : edges) {
-    for (const Index edge : pair) apart[edge] = apart[next(edge)] = 0;
-  }
-  // Twice around, so that the way across the start of the loop counts, too.
-  for (Index round = 0, i = 0; round < 2 * count; ++round, i = next(i)) {
-    apart[next(i)] = std::min(apart[next(i)], apart[i] + lengths[i]);
-  }
-  for (Index round = 0, i = count - 1; round<2 * count; ++round, i = i> 0 ? i - 1 : count - 1) {
-    apart[i] = std::min(apart[i], apart[next(i)] + lengths[i]);
-  }
-  const double most = reach * std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  for (Index i = 0; i < count; ++i) {
-    if (apart[i] <= most) anchored[loop[i]] = true;
-  }
 }
 
 /// The solve, with the boundary vertices `anchored` drawn to their `carried` places, and its

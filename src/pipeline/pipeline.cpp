@@ -5,16 +5,19 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "flatten/dirichlet.h"
+#include "flatten/metric.h"
 #include "fullspace/contact.h"
 #include "fullspace/flat_start.h"
 #include "fullspace/grid_drawing.h"
 #include "fullspace/newton.h"
 #include "fullspace/tutte.h"
 #include "mesh/boundary.h"
+#include "pipeline/anchors.h"
 #include "pipeline/memory_estimate.h"
 #include "pipeline/run.h"
 #include "repair/outliers.h"
@@ -30,6 +33,12 @@ constexpr double kLeadTolerance = 1e-3;  // of the energy that leads to the one 
 /// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
 constexpr std::array<Index, 2> kFallbacks = {1000, 100};
 constexpr Index kFewestFaces = 20;
+/// Of a mesh with contact: from so many on, and where the last map without crossings has so much
+/// more energy than the free minimum, it starts from a mesh of a quarter of the faces. With a tenth
+/// the boundary crosses itself too often when it is carried over.
+constexpr Index kContactFaces = 3000;
+constexpr Index kContactReduction = 4;
+constexpr double kFarStart = 1.1;
 /// Scales nearer to each other than that differ by 1e-11 of the energy: not worth a rounding.
 constexpr double kSameScale = 1e-6;
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
@@ -101,6 +110,13 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
     newton.admissible = nullptr;
     newton.max_iterations -= free.iterations();
     uvs.swap(free.admitted);
+    const auto energy = [&](const std::vector<Vec2>& map) {
+      return mean_energy(newton.energy, mesh.faces, rest, map);
+    };
+    if (mesh.face_count() >= kContactFaces && energy(uvs) > kFarStart * free.energies.back()) {
+      std::vector<Vec2> start = contact_from_coarser(mesh, rest, checkpoint);
+      if (!start.empty() && energy(start) < energy(uvs)) uvs.swap(start);
+    }
   }
   newton.contact = &contact;
   newton.tolerance = std::max(newton.tolerance, options_.tolerance);
@@ -149,41 +165,94 @@ void Run::start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
   }
 }
 
+/// The minimum on a mesh of `target` faces, and its metric on the finer one. Nothing where there is
+/// no coarser mesh, or no start on it.
+std::optional<CoarserMinimum> Run::minimise_coarser(const DiskMesh& mesh, Index target, bool simple,
+                                                    double tolerance,
+                                                    const Checkpoint& checkpoint) {
+  CoarserMinimum minimum{simplify(mesh, target, options_.threads), {}, {}};
+  const DiskMesh& coarse = minimum.coarse.mesh;
+  // Simplification may get stuck far above its target.
+  if (coarse.face_count() > kLeastReduction * mesh.face_count()) return std::nullopt;
+  const auto rest = rest_triangles(coarse.positions, coarse.faces, options_.threads);
+  minimum.uvs = start_map(coarse, rest, checkpoint);
+  if (!non_positive_faces(coarse.faces, minimum.uvs, 1).empty()) return std::nullopt;
+  scale_best(coarse, rest, minimum.uvs);
+  NewtonOptions newton = newton_options();
+  newton.tolerance = std::max(newton.tolerance, tolerance);
+  StageStatistics unused{"coarse"};
+  descend(coarse, rest, newton, simple, minimum.uvs, unused, checkpoint);
+  minimum.metric = prolong_metric(coarse, face_metrics(coarse.faces, rest, minimum.uvs), mesh,
+                                  minimum.coarse.nearby, options_.threads);
+  return minimum;
+}
+
 /// The pipeline in small: a mesh of a tenth of the faces, or 1,000, or 100, is flattened and its
 /// metric prolonged. Empty if every size leaves faces flipped.
 std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
                                           const std::vector<RestTriangle>& rest,
                                           const Checkpoint& checkpoint) {
+  const bool simple = keeps_boundary_simple();
   Index last = mesh.face_count();
   for (const Index target : {mesh.face_count() / 10, kFallbacks[0], kFallbacks[1]}) {
     if (target >= last || target < kFewestFaces) continue;
     last = target;
     checkpoint(0.05);
-    const CoarseDisk coarse = simplify(mesh, target, options_.threads);
-    // Simplification may get stuck far above its target.
-    if (coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) continue;
-    const auto coarse_rest =
-        rest_triangles(coarse.mesh.positions, coarse.mesh.faces, options_.threads);
-    std::vector<Vec2> map = start_map(coarse.mesh, coarse_rest, checkpoint);
-    if (!non_positive_faces(coarse.mesh.faces, map, 1).empty()) continue;
-    StageStatistics unused{"coarse"};
-    descend(coarse.mesh, coarse_rest, newton_options(), keeps_boundary_simple(), map, unused,
-            [&](double) { checkpoint(0.05); });
-    const auto metric =
-        prolong_metric(coarse.mesh, face_metrics(coarse.mesh.faces, coarse_rest, map), mesh,
-                       coarse.nearby, options_.threads);
-    std::vector<Vec2> uvs = carry_boundary(mesh, coarse, map);
-    solve_harmonic(mesh, modified_cotangents(rest, metric, options_.threads), uvs,
+    const auto minimum =
+        minimise_coarser(mesh, target, simple, 0, [&](double) { checkpoint(0.05); });
+    if (!minimum) continue;
+    std::vector<Vec2> uvs = carry_boundary(mesh, minimum->coarse, minimum->uvs);
+    solve_harmonic(mesh, modified_cotangents(rest, minimum->metric, options_.threads), uvs,
                    options_.threads);
-    const RepairOptions mend{.simple_boundary = keeps_boundary_simple(),
+    const RepairOptions mend{.simple_boundary = simple,
                              .threads = options_.threads,
                              .global_fix = affords(mesh, options_, Extra::kGlobalFix)};
     if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
-    if (keeps_boundary_simple() && count_crossings(mesh.boundary, uvs).count > 0) continue;
+    if (simple && count_crossings(mesh.boundary, uvs).count > 0) continue;
     clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
     return uvs;
   }
   return {};
+}
+
+/// The minimum with contact of a mesh of a quarter of the faces, carried over: steps with contact
+/// are many, and cheap there. Empty where it is not injective here.
+std::vector<Vec2> Run::contact_from_coarser(const DiskMesh& mesh,
+                                            const std::vector<RestTriangle>& rest,
+                                            const Checkpoint& checkpoint) {
+  const auto minimum = minimise_coarser(mesh, mesh.face_count() / kContactReduction, true,
+                                        kLeadTolerance, [&](double) { checkpoint(0.5); });
+  if (!minimum) return {};
+  const std::vector<Vec2> carried = carry_boundary(mesh, minimum->coarse, minimum->uvs);
+  const auto stiffness = energy_stiffness(options_.energy, rest, minimum->metric, options_.threads);
+  std::vector<bool> anchored =
+      vertices_in_contact(minimum->coarse, minimum->uvs, mesh.vertex_count());
+  std::unique_ptr<MetricLaplacian> laplacian;
+  std::vector<Vec2> uvs;
+  const auto solve = [&] {
+    checkpoint(0.5);
+    const Anchors anchors{stiff_springs(mesh, stiffness, anchored), carried};
+    if (laplacian) {
+      laplacian->refit(mesh, stiffness, anchors.springs);
+    } else {
+      laplacian = std::make_unique<MetricLaplacian>(
+          mesh, stiffness, only_first_of_boundary(mesh),
+          SolverOptions{.precision = Precision::kSingle, .threads = options_.threads},
+          anchors.springs);
+    }
+    uvs = carried;
+    solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false,
+                 options_.threads, uvs);
+    const RepairOptions mend{.threads = options_.threads, .global_fix = false};
+    return repair(mesh, rest, uvs, mend).flips_after == 0;
+  };
+  try {
+    if (!solve_until_simple(mesh, uvs, anchored, solve)) return {};
+  } catch (const Error&) {  // the solver's: there is another start
+    return {};
+  }
+  clean_outliers(options_.energy, mesh, rest, uvs, options_.threads);
+  return uvs;
 }
 
 /// A start, then composite majorization. Where it crawls at an enormous energy, again from a

@@ -35,6 +35,13 @@ struct FineProblem {
   std::vector<Cotangents> cotangents;  ///< for the harmonic solves
 };
 
+/// The minimum on a coarser mesh, as the start of that on a finer one.
+struct CoarserMinimum {
+  CoarseDisk coarse;
+  std::vector<Vec2> uvs;           ///< of the coarse mesh
+  std::vector<FaceMetric> metric;  ///< of the finer one
+};
+
 /// A map in the numbers that are delivered, but for a power of two, and what they are worth.
 struct Delivery {
   beltrami_status status = BELTRAMI_OK;  ///< of the method: OK or NOT_CONVERGED
@@ -82,6 +89,11 @@ class Run {
                               const Checkpoint& checkpoint);
   std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                        const Checkpoint& checkpoint);
+  std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index target, bool simple,
+                                                 double tolerance, const Checkpoint& checkpoint);
+  std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh,
+                                         const std::vector<RestTriangle>& rest,
+                                         const Checkpoint& checkpoint);
   void refine(std::vector<Vec2>& uvs);
   NewtonOptions newton_options() const;
   void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
@@ -126,9 +138,6 @@ class Run {
                   MetricLaplacian& laplacian, std::vector<Vec2>& uvs);
   NewtonResult take_newton_steps(const FineProblem& fine, const BoundaryContact* contact,
                                  std::vector<Vec2>& uvs, const Checkpoint& checkpoint);
-  std::vector<bool> vertices_in_contact(const FineProblem& fine) const;
-  void anchor_near(const std::vector<std::array<Index, 2>>& edges, double reach,
-                   std::vector<bool>& anchored) const;
   bool mend(const FineProblem& fine, bool simple_boundary, double until, std::vector<Vec2>& uvs);
   void count_flips(const std::vector<Vec2>& uvs);
 

@@ -1,15 +1,18 @@
 #include "repair/global_fix.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseLU>
+#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "exact/certificate.h"
 #include "mesh/boundary.h"
 #include "scaffold/ring_faces.h"
 #include "scaffold/triangulate_ring.h"
+#include "sparse/shifted_factor.h"
 #include "sparse/spd_solver.h"
 
 namespace beltrami {
@@ -21,6 +24,10 @@ constexpr int kCirclePoints = 48;
 /// nothing still gets a positive weight that the solve can digest.
 constexpr double kLeastTangent = 1e-6, kGreatestTangent = 1e6;
 constexpr double kLeastLength = 1e-9;
+/// Of the iteration: the share of a residual that a round leaves, that at which nothing is left,
+/// and limits.
+constexpr double kRoughly = 1e-6, kRoundoff = 1e-13;
+constexpr int kRounds = 5, kMostIterations = 100;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -76,6 +83,87 @@ Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   return glued;
 }
 
+/// A matrix of the same kind with symmetric weights, as its lower triangle: each weight the
+/// geometric mean of both. `matrix`: a diagonal of 1, less the weights of neighbours in each row.
+SparseMatrix symmetrised(const SparseMatrix& matrix) {
+  const SparseMatrix transposed = matrix.transpose();  // of the same pattern
+  std::vector<double> diagonal(matrix.cols(), 1.0);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(matrix.nonZeros() / 2 + matrix.cols());
+  for (int column = 0; column < matrix.cols(); ++column) {
+    SparseMatrix::InnerIterator other(transposed, column);
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry, ++other) {
+      if (entry.row() == column) continue;
+      const double mean = std::sqrt(entry.value() * other.value());
+      // What the row has lost or won against its diagonal.
+      diagonal[column] += other.value() + mean;
+      if (entry.row() > column) entries.emplace_back(entry.row(), column, -mean);
+    }
+  }
+  for (int k = 0; k < matrix.cols(); ++k) entries.emplace_back(k, k, diagonal[k]);
+  SparseMatrix lower(matrix.rows(), matrix.cols());
+  lower.setFromTriplets(entries.begin(), entries.end());
+  return lower;
+}
+
+std::vector<Place> places_of(const DiskMesh& mesh) {
+  std::vector<Place> places;
+  places.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) {
+    places.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  }
+  return places;
+}
+
+/// The factor of a symmetric matrix, as what an iteration by Eigen is preconditioned with.
+class Preconditioner {
+ public:
+  Preconditioner() = default;
+  void set(const SpdSolver& solver) { solver_ = &solver; }
+  template <class Matrix>
+  Preconditioner& analyzePattern(const Matrix&) {
+    return *this;
+  }
+  template <class Matrix>
+  Preconditioner& factorize(const Matrix&) {
+    return *this;
+  }
+  template <class Matrix>
+  Preconditioner& compute(const Matrix&) {
+    return *this;
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const {
+    poll_interrupt();
+    return solver_->solve(rhs);
+  }
+  Eigen::ComputationInfo info() const { return Eigen::Success; }
+
+ private:
+  const SpdSolver* solver_ = nullptr;
+};
+
+/// Improves `solution` until nothing but roundoff is left of the residual. False if it does not get
+/// there.
+bool iterate(const SparseMatrix& matrix, const SpdSolver& symmetric, const DenseMatrix& rhs,
+             DenseMatrix& solution) {
+  Eigen::BiCGSTAB<SparseMatrix, Preconditioner> solver;
+  solver.preconditioner().set(symmetric);
+  solver.compute(matrix);
+  solver.setTolerance(kRoughly);
+  solver.setMaxIterations(kMostIterations);
+  for (int round = 0; round < kRounds; ++round) {
+    const DenseMatrix residual = rhs - matrix * solution;
+    if (!residual.allFinite()) return false;
+    if (residual.norm() <= kRoundoff * rhs.norm()) return true;
+    for (int k = 0; k < 2; ++k) {
+      solution.col(k) += solver.solve(residual.col(k));
+      if (solver.info() != Eigen::Success) return false;
+    }
+  }
+  return solution.allFinite();
+}
+
 }  // namespace
 
 bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
@@ -116,14 +204,14 @@ bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
   SparseMatrix matrix(free, free);
   matrix.setFromTriplets(scaled.begin(), scaled.end());
 
-  // Weakly diagonally dominant by rows: elimination on the diagonal is stable.
-  Eigen::SparseLU<SparseMatrix, Eigen::AMDOrdering<int>> solver;
-  solver.isSymmetric(true);
-  solver.setPivotThreshold(0);
-  solver.compute(matrix);
-  if (solver.info() != Eigen::Success) return false;
-  DenseMatrix solution = solver.solve(rhs);
-  solution += solver.solve(DenseMatrix(rhs - matrix * solution));
+  SparseMatrix symmetric = symmetrised(matrix);
+  const std::unique_ptr<SpdSolver> solver = make_spd_solver();
+  solver->analyze(symmetric, places_of(mesh));
+  if (factorize_shifted(*solver, symmetric) < 0) return false;
+  const DenseMatrix start = solver->solve(rhs);
+  DenseMatrix solution = start;
+  // Any positive weights give an embedding: where the iteration fails, those of the start do.
+  if (!iterate(matrix, *solver, rhs, solution)) solution = start;
   if (!solution.allFinite()) return false;
   for (Index v = 0; v < free; ++v) uvs[v] = solution.row(v).transpose();
   return true;

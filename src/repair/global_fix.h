@@ -16,8 +16,10 @@ namespace beltrami {
 /// satisfies the vertex's equation already, so that the map changes little away from its folds. A
 /// boundary that crosses itself gets the ring of the boundary laid on a circle.
 ///
-/// One unsymmetric solve. Returns false, with `uvs` as they were, if it fails in floating point;
-/// the caller checks what rounding made of the rest.
+/// One unsymmetric system, solved by an iteration with the factor of a symmetric one near to it;
+/// where it does not converge, that one's solution, an embedding as well, is taken. Returns false,
+/// with `uvs` as they were, if the factorization fails in floating point; the caller checks what
+/// rounding made of the rest.
 bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs);
 
 }  // namespace beltrami
