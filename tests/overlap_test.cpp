@@ -62,6 +62,8 @@ std::vector<NamedMesh> overlapping_meshes() {
   const TriangleList blob = disks::refined(meshes.back().mesh, 2);
   meshes.push_back({"fine slit saddle", saddle});
   meshes.push_back({"fine blob of 60 points", blob});
+  // Its seams zigzag, where those of the coarse mesh are straight.
+  meshes.push_back({"fine blob opened along fine edges", opened_blob(5, 40)});
   return meshes;
 }
 

@@ -22,4 +22,17 @@ auto with_density(Energy energy, Body&& body) {
   }
 }
 
+/// What a decrease of the energy is compared with to tell convergence: the energy, shifted so that
+/// an isometry counts 2 as it does for symmetric Dirichlet. All energies then end equally near
+/// their minimum.
+template <class Density>
+constexpr double comparable_energy(double energy) {
+  return energy + 2 - Density::kMinimum;
+}
+
+inline double comparable_energy(Energy which, double energy) {
+  return with_density(
+      which, [&]<class Density>(Density) { return comparable_energy<Density>(energy); });
+}
+
 }  // namespace beltrami

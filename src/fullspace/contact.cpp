@@ -185,8 +185,7 @@ void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_e
 
 void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
   strength_ = 0.5 * kStrength * energy;
-  // Far from the minimum, where steps are long, they see further ahead.
-  scale_ = std::sqrt(2 / energy) * std::min(2.0, energy / 2);
+  scale_ = std::min(1.0, std::sqrt(2 / energy));
   const std::size_t most = kMostContacts * loop_.size();
   while (scale_ > std::numeric_limits<double>::min() && find(uvs, 1, most + 1).size() > most) {
     scale_ *= 0.5;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "distortion/energy.h"
 #include "fullspace/assembly.h"
 #include "fullspace/contact.h"
 #include "fullspace/line_search.h"
@@ -21,14 +22,6 @@ namespace beltrami {
 /// Energies are compared relative to their value, but not to less than this: the least symmetric
 /// ARAP energy is 0.
 inline constexpr double kLeastEnergy = 0.01;
-
-/// What a decrease of the energy is compared with to tell convergence: the energy, shifted so that
-/// an isometry counts 2 as it does for symmetric Dirichlet. All energies then end equally near
-/// their minimum.
-template <class Density>
-constexpr double comparable_energy(double energy) {
-  return energy + 2 - Density::kMinimum;
-}
 
 /// What a step did.
 struct NewtonStep {
@@ -113,7 +106,6 @@ class NewtonStepper {
   MeshMatrix hessian_;
   std::unique_ptr<SpdSolver> solver_;
   bool analyzed_ = false;
-  double stretch_ = 1;  // the first length to try, with contact
   Eigen::VectorXd gradient_;
 };
 
@@ -230,7 +222,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   for (Index v = 0; v < size_of(uvs); ++v) {
     if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
   }
-  double length = contact_ ? stretch_ : 1;
+  double length = 1;
   if (Density::kBarrier) {
     length =
         std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
@@ -253,10 +245,6 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
       result.length = length;
       result.energy = trial_energy;
       result.gain = before - after;
-      // The model is stiffer than the objective, with contact most: where the parabola through what
-      // a full step gained has its end, the next step may go at once.
-      const double bend = 2 * (length - result.gain / result.predicted) / (length * length);
-      stretch_ = length >= 1 && bend > 0 ? std::clamp(1 / bend, 1.0, 2.0) : 1.0;
       break;
     }
   }

@@ -36,7 +36,6 @@ constexpr double kFlippedShare = 0.001;    // beyond which the harmonic map is l
 constexpr double kPolishTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr double kStationary = 1e-4;       // predicted relative decrease that is none
 constexpr int kPolishIterations = 30;
-constexpr int kCleaningRounds = 4;
 constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
 constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
 
@@ -325,7 +324,10 @@ bool Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
                      MetricLaplacian& laplacian, std::vector<Vec2>& uvs) {
   bool converged = false;
   stage("polish", 0.97, [&](StageStatistics& statistics, const Checkpoint& checkpoint) {
-    if (contact) contact->fit(uvs, fine.coarse_energy);
+    const auto comparable = [&](double energy) {
+      return comparable_energy(options_.energy, energy);
+    };
+    if (contact) contact->fit(uvs, comparable(fine.coarse_energy));
     // The objective is a mean, the stiffness that of a sum.
     const double area = surface_area(*disk_, options_.threads);
     const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
@@ -354,8 +356,8 @@ bool Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
     PolishResult polished = run(1, false);
     if (polished.blocked) clean(polished.blocking);
     double before_last_round = std::numeric_limits<double>::infinity();
-    // Cleaning costs more than it gains where many rounds of it are needed.
-    for (int round = 0; round < kCleaningRounds; ++round) {
+    // Rounds of cleaning alone, without a step, are bounded too.
+    for (int round = 0; round < kPolishIterations; ++round) {
       if (polished.converged || statistics.iterations >= kPolishIterations) break;
       std::vector<double> springs;
       if (contact) {
@@ -372,11 +374,11 @@ bool Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
       const double energy = polished.energies.back();
       const double gained = before_last_round - energy;
       before_last_round = polished.energies.front();
-      if (gained <= kLittleGain * energy) break;
+      if (gained <= kLittleGain * comparable(energy)) break;
     }
-    converged =
-        polished.converged || 0.5 * polished.predicted <= kStationary * polished.energies.back();
-    if (!polished.converged && polished.predicted > kMuchLeft * polished.energies.back() &&
+    const double energy = comparable(polished.energies.back());
+    converged = polished.converged || 0.5 * polished.predicted <= kStationary * energy;
+    if (!polished.converged && polished.predicted > kMuchLeft * energy &&
         affords(*disk_, options_, Extra::kNewtonSteps)) {
       const NewtonResult ended =
           take_newton_steps(fine, contact ? &*contact : nullptr, uvs, checkpoint);

@@ -111,9 +111,10 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
     newton.max_iterations -= free.iterations();
     uvs.swap(free.admitted);
     const auto energy = [&](const std::vector<Vec2>& map) {
-      return mean_energy(newton.energy, mesh.faces, rest, map);
+      return comparable_energy(newton.energy, mean_energy(newton.energy, mesh.faces, rest, map));
     };
-    if (mesh.face_count() >= kContactFaces && energy(uvs) > kFarStart * free.energies.back()) {
+    if (mesh.face_count() >= kContactFaces &&
+        energy(uvs) > kFarStart * comparable_energy(newton.energy, free.energies.back())) {
       std::vector<Vec2> start = contact_from_coarser(mesh, rest, checkpoint);
       if (!start.empty() && energy(start) < energy(uvs)) uvs.swap(start);
     }

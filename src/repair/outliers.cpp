@@ -23,8 +23,6 @@ constexpr double kTimesMean = 4;
 constexpr int kRounds = 3;
 constexpr int kRings = 3;
 constexpr int kNewtonSteps = 10;
-/// Where more faces than these block a descent, patches around them are the slower way.
-constexpr std::ptrdiff_t kMostBlocking = 100;
 /// A round that finds more than this share of the faces is no longer about outliers: the global
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
@@ -105,8 +103,7 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
   std::int64_t patches = 0;
   std::vector<Index> outliers = energies.find_all(threads);
   energies.keep_outliers(outliers);
-  const auto few = std::min<std::ptrdiff_t>(kMostBlocking, std::ssize(also));
-  outliers.insert(outliers.end(), also.begin(), also.begin() + few);
+  outliers.insert(outliers.end(), also.begin(), also.end());
   std::unordered_set<Index> treated;
   for (int round = 0; round < kRounds && !outliers.empty(); ++round) {
     treated.clear();
