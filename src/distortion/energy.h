@@ -31,8 +31,8 @@ constexpr double comparable_energy(double energy) {
 }
 
 inline double comparable_energy(Energy which, double energy) {
-  return with_density(
-      which, [&]<class Density>(Density) { return comparable_energy<Density>(energy); });
+  return with_density(which,
+                      [&]<class Density>(Density) { return comparable_energy<Density>(energy); });
 }
 
 }  // namespace beltrami

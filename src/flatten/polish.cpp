@@ -21,6 +21,7 @@ using Field = std::vector<Vec2>;  // one entry per vertex
 constexpr std::int64_t kGrain = 16384;
 constexpr std::size_t kHistory = 5;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
+constexpr int kPatience = 3;            // steps with contact that gain next to nothing
 constexpr int kHoldRounds = 4;          // after which a few faces hold back the whole map
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
@@ -224,8 +225,11 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   result.energies.push_back(start);
   if (!std::isfinite(start)) return result;
   History history(threads);
-  bool rigidly = true;   // whether faces may be held back alone
-  bool settled = false;  // the last step was a full one with little gain
+  bool rigidly = true;  // whether faces may be held back alone
+  // Whether the last step was a full one with little gain, or the last ones had next to none: what
+  // touches shortens nearly all of them.
+  bool settled = false;
+  int little_gains = 0;
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back();
@@ -268,7 +272,10 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
     gradient.swap(next_gradient);
     const double little = options.tolerance * comparable_energy<Density>(before);
-    settled = length >= kFullStep && before - after <= little;
+    const bool next_to_nothing =
+        before - after <= options.stationary * comparable_energy<Density>(before);
+    little_gains = options.contact && next_to_nothing ? little_gains + 1 : 0;
+    settled = (length >= kFullStep && before - after <= little) || little_gains >= kPatience;
   }
   return result;
 }

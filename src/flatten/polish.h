@@ -28,7 +28,8 @@ struct PolishOptions {
 struct PolishResult {
   std::vector<double> energies;  ///< mean energy, with contact the barrier's share included, at
                                  ///< the start and after each step, never rising
-  bool converged = false;        ///< ended so, after a step of at least 1/2
+  bool converged = false;        ///< ended so, after a step of at least 1/2 or, with contact,
+                                 ///< after three that gained as little as the next one would
   bool blocked = false;          ///< the next step would have had to be shorter than that
   std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular
   double predicted = 0;          ///< -gradient . direction of the last step looked at
