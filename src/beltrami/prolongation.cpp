@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "beltrami/closest_point.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kGrain = 4096;
 constexpr Index kHub = 40;                    // faces at a vertex, beyond what a walk crosses
+constexpr std::int64_t kPollPeriod = 64;      // faces, of which one at a hub takes long
 constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
 
 /// The metric at each corner of a face, in the frame of the face.
@@ -149,6 +151,7 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
     parallel_for(threads, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Index seed = kNone;  // neighbours in the file are often neighbours on the surface
       for (std::int64_t i = begin; i < end; ++i) {
+        if (i % kPollPeriod == 0) poll_interrupt();
         const auto f = static_cast<Index>(first + i);
         const FrameOfFace to = frame_of(fine, f);
         if (!to.valid) continue;

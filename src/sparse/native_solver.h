@@ -8,7 +8,7 @@
 namespace beltrami {
 
 /// Below so many vertices minimum degree takes less time than nested dissection saves.
-inline constexpr int kLeastDissected = 250000;
+inline constexpr int kLeastDissected = 60000;
 /// Below so many rows factors in double precision stay in the caches.
 inline constexpr int kLeastSingle = 50000;
 
