@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "distortion/measure.h"
 #include "exact/certificate.h"
@@ -202,6 +203,16 @@ TEST(GlobalFix, EmbedsAnyLayout) {
   std::vector<Vec2> uvs(mesh.positions.size(), Vec2(0.25, 0.5));
   ASSERT_TRUE(embed_with_scaffold(mesh, uvs));
   EXPECT_TRUE(injective(mesh, uvs));
+}
+
+TEST(GlobalFix, EndsOnRequest) {
+  const DiskMesh mesh = disks::disk(meshes::grid(10, 10));
+  const std::vector<Vec2> before = disks::flat_uvs(mesh);
+  std::vector<Vec2> uvs = before;
+  const std::atomic<bool> request{true};
+  const InterruptScope scope(&request);
+  EXPECT_THROW(embed_with_scaffold(mesh, uvs), Cancelled);
+  EXPECT_EQ(uvs, before);
 }
 
 TEST(GlobalFix, IsTheRungAfterPatches) {

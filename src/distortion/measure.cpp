@@ -22,7 +22,7 @@ constexpr int kModerate = 200;
 
 /// The exponent of a size if it is not moderate; else 0: then nothing needs to be scaled.
 int unit_of(double size) {
-  if (!(size > 0)) return 0;
+  if (!(size > 0 && std::isfinite(size))) return 0;
   const int exponent = std::ilogb(size);
   return std::abs(exponent) > kModerate ? exponent : 0;
 }
