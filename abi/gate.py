@@ -43,7 +43,6 @@ UNWANTED_IMPORTS = {
 # the one variable that src/base/interrupt.cpp defends.
 KNOWN_STATICS = [
     r"std::__ioinit",  # of <iostream>, which CGAL includes
-    r"CGAL::Handle_for<CGAL::Gmp\w+, std::allocator<CGAL::Gmp\w+> >::allocator",  # empty objects
     r"boost::none",
     r"beltrami::\(anonymous namespace\)::current",  # of a thread: the run that it is in
     r"boost::math::detail::.*(::initializer|::val)",  # limits of number types

@@ -27,7 +27,7 @@ install(FILES include/beltrami/beltrami.h
 install(EXPORT beltrami-targets NAMESPACE beltrami:: DESTINATION ${package_dir}
   COMPONENT development)
 
-set(BELTRAMI_STATIC_NEEDS gmp)
+set(BELTRAMI_STATIC_NEEDS "")
 if(BELTRAMI_SOLVER MATCHES "^cholmod")
   list(APPEND BELTRAMI_STATIC_NEEDS cholmod)
 endif()
@@ -58,7 +58,7 @@ install(FILES
   DESTINATION ${package_dir} COMPONENT development)
 
 # pkg-config: relative to where the file lies, so that the folder can be moved.
-set(BELTRAMI_PC_PRIVATE "-lgmp -l${BELTRAMI_CXX_RUNTIME} -lm ${CMAKE_THREAD_LIBS_INIT}")
+set(BELTRAMI_PC_PRIVATE "-l${BELTRAMI_CXX_RUNTIME} -lm ${CMAKE_THREAD_LIBS_INIT}")
 if(BELTRAMI_SOLVER MATCHES "^cholmod")
   string(PREPEND BELTRAMI_PC_PRIVATE "-lcholmod ")
 endif()
@@ -121,7 +121,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbeltrami-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libbeltrami${BELTRAMI_ABI} (= ${PROJECT_VERSION}), libgmp-dev")
+  "libbeltrami${BELTRAMI_ABI} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME beltrami)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libbeltrami${BELTRAMI_ABI} (= ${PROJECT_VERSION})")

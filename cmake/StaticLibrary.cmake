@@ -30,9 +30,8 @@ function(beltrami_add_static_library target)
   if(NOT WIN32 OR NOT BUILD_SHARED_LIBS)
     set_target_properties(${target} PROPERTIES OUTPUT_NAME beltrami)
   endif()
-  # What is left open in the archive, by name; the package configuration finds GMP where it lies.
-  target_link_libraries(${target} INTERFACE Threads::Threads
-    $<BUILD_INTERFACE:${BELTRAMI_GMP_LIBRARY}> $<INSTALL_INTERFACE:beltrami::gmp>)
+  # What is left open in the archive, by name; the package configuration finds it where it lies.
+  target_link_libraries(${target} INTERFACE Threads::Threads)
   if(BELTRAMI_SOLVER MATCHES "^cholmod")
     target_link_libraries(${target} INTERFACE
       $<BUILD_INTERFACE:${CHOLMOD_LIBRARY}> $<INSTALL_INTERFACE:beltrami::cholmod>)

@@ -65,6 +65,47 @@ TEST(Orientation, IsExactForHugeCoordinates) {
   EXPECT_EQ(orientation({0, 0}, {1e300, 1e300}, {1e300, std::nextafter(1e300, 2e300)}), 1);
 }
 
+/// Of whole numbers below 2^52.
+int orientation_of_integers(const std::array<std::array<std::int64_t, 2>, 3>& p) {
+  __extension__ using Long = __int128;
+  const auto edge = [&](int i, int k) -> Long { return p[i][k] - p[2][k]; };
+  const auto left = edge(0, 0) * edge(1, 1), right = edge(0, 1) * edge(1, 0);
+  return left > right ? 1 : left < right ? -1 : 0;
+}
+
+TEST(Orientation, AgreesWithWholeNumbersAtAnyScale) {
+  // Next to a line, on grids of all kinds: near, far from the origin, and where products underflow.
+  Random random(3);
+  std::array<int, 3> seen{};
+  for (int i = 0; i < 20000; ++i) {
+    const std::int64_t size = std::int64_t{1} << (2 + random.below(49));
+    const std::int64_t offset = std::int64_t{1} << random.below(51);
+    const auto any = [&] { return static_cast<std::int64_t>(random.between(-1, 1) * size); };
+    const std::int64_t ux = any() / 4, uy = any() / 4;
+    const std::array<std::array<std::int64_t, 2>, 3> p = {
+        {{offset, offset},
+         {offset + ux, offset + uy},
+         {offset + 2 * ux + random.below(3) - 1, offset + 2 * uy + random.below(3) - 1}}};
+    const double scale = std::ldexp(1.0, random.below(2) == 0 ? 0 : random.below(1900) - 1000);
+    const auto at = [&](int k) -> Vec2 {
+      return scale * Vec2(static_cast<double>(p[k][0]), static_cast<double>(p[k][1]));
+    };
+    const int expected = orientation_of_integers(p);
+    ASSERT_EQ(orientation(at(0), at(1), at(2)), expected) << i;
+    ++seen[expected + 1];
+  }
+  for (const int count : seen) EXPECT_GT(count, 1000);
+}
+
+TEST(Orientation, IsZeroWhereACoordinateIsNoNumber) {
+  for (const double bad :
+       {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+        std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(orientation({0, 0}, {bad, 0}, {0, 1}), 0);
+    EXPECT_EQ(orientation({0, bad}, {bad, 1}, {0, 1}), 0);
+  }
+}
+
 TEST(Orientation, IsAntisymmetricAndCyclic) {
   Random random(1);
   for (int i = 0; i < 200; ++i) {

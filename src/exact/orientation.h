@@ -5,7 +5,8 @@
 
 namespace beltrami {
 
-/// Exact sign of the area of (a, b, c): 1 counter-clockwise, 0 collinear, -1 clockwise.
+/// Exact sign of the area of (a, b, c): 1 counter-clockwise, 0 collinear, -1 clockwise; 0 where a
+/// coordinate is not finite.
 int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 
 }  // namespace beltrami

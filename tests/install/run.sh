@@ -105,7 +105,7 @@ case $STEP in
     packages DEB
     for package in ./*.deb; do dpkg-deb -x "$package" unpacked; done
     dpkg-deb -f libbeltrami[0-9]*.deb Package Version Depends Section
-    dpkg-deb -f libbeltrami[0-9]*.deb Depends | grep -q 'libgmp10'
+    dpkg-deb -f libbeltrami[0-9]*.deb Depends | grep -q 'libstdc++6'
     dpkg-deb -f libbeltrami-dev*.deb Depends | grep -q 'libbeltrami[0-9]* (= '
     find_package "$WORK/unpacked/usr" beltrami::beltrami
     LD_LIBRARY_PATH=$(dirname "$(find unpacked -name 'libbeltrami.so.?')") \

@@ -15,8 +15,8 @@ import subprocess
 import sys
 
 OBJECTS = re.compile(r"src/CMakeFiles/beltrami_\w+\.dir/\S+\.o:")
-# What a library without GPL code may need at run time: GMP, and what every C++ program needs.
-ALLOWED = re.compile(r"lib(gmp|stdc\+\+|m|gcc_s|c|pthread)\.so\.\d+|ld-linux\S*")
+# What a library without GPL code may need at run time: what every C++ program needs.
+ALLOWED = re.compile(r"lib(stdc\+\+|m|gcc_s|c|pthread)\.so\.\d+|ld-linux\S*")
 # And what it may need where it says "simplifier openmesh", and nowhere else.
 OPENMESH = re.compile(r"libOpenMesh(Core|Tools)\.so\S*")
 

@@ -33,7 +33,6 @@ class BeltramiConan(ConanFile):
     def requirements(self):
         self.requires("cgal/5.6.1")
         self.requires("eigen/3.4.0")
-        self.requires("gmp/6.3.0")
 
     def validate(self):
         check_min_cppstd(self, 20)

@@ -94,11 +94,11 @@ fn probe() -> Result<Installation, pkg_config::Error> {
     })
 }
 
-/// Links the static library, and what it leaves open: GMP, the back end's `libraries`, and the C++
+/// Links the static library, and what it leaves open: the back end's `libraries` and the C++
 /// runtime (`CXXSTDLIB` names another one; empty: none).
 fn link_static(libraries: &[&str]) {
     println!("cargo::rustc-link-lib=static=beltrami");
-    for library in libraries.iter().chain(&["gmp"]) {
+    for library in libraries {
         println!("cargo::rustc-link-lib={library}");
     }
     let runtime = variable("CXXSTDLIB").unwrap_or_else(|| default_cxx_runtime().to_owned());
@@ -136,8 +136,8 @@ fn fail(reason: impl Display) -> ! {
          - set BELTRAMI_LIB_DIR to the folder of its library (and BELTRAMI_INCLUDE_DIR to that of \
          its header, BELTRAMI_STATIC=1 for the static library);\n\
          - have the packaged sources compiled: that takes CMake 3.25, a C++20 compiler, and the \
-         development files of Eigen 3.4, CGAL 5.5 and GMP (Debian: g++ cmake libeigen3-dev \
-         libcgal-dev libgmp-dev). The feature `vendored` does so whatever is installed.\n",
+         development files of Eigen 3.4 and CGAL 5.5 (Debian: g++ cmake libeigen3-dev \
+         libcgal-dev). The feature `vendored` does so whatever is installed.\n",
         VERSIONS.start, VERSIONS.end
     );
     exit(1);

@@ -21,10 +21,9 @@ pub fn build() -> Result<Installation, String> {
     let root = lay_out(&out, &sources).map_err(|error| error.to_string())?;
     println!("cargo::rustc-link-search=native={}", root.join("lib").display());
     let cache = fs::read_to_string(out.join("build/CMakeCache.txt")).unwrap_or_default();
-    for found in ["BELTRAMI_GMP_LIBRARY", "CHOLMOD_LIBRARY"] {
-        if let Some(folder) = cached(&cache, found).and_then(|path| Path::new(path).parent()) {
-            println!("cargo::rustc-link-search=native={}", folder.display());
-        }
+    let cholmod = cached(&cache, "CHOLMOD_LIBRARY");
+    if let Some(folder) = cholmod.and_then(|path| Path::new(path).parent()) {
+        println!("cargo::rustc-link-search=native={}", folder.display());
     }
     crate::link_static(if cfg!(feature = "cholmod") { &["cholmod"] } else { &[] });
     Ok(Installation { include: root.join("include"), root })
