@@ -24,10 +24,9 @@ constexpr int kCirclePoints = 48;
 /// nothing still gets a positive weight that the solve can digest.
 constexpr double kLeastTangent = 1e-6, kGreatestTangent = 1e6;
 constexpr double kLeastLength = 1e-9;
-/// Of the iteration: the share of a residual that a round leaves, that at which nothing is left,
-/// and limits.
-constexpr double kRoughly = 1e-6, kRoundoff = 1e-13;
-constexpr int kRounds = 5, kMostIterations = 100;
+/// Of a residual, what a round of the iteration leaves.
+constexpr double kShareLeft = 1e-6;
+constexpr int kMostIterations = 100;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -143,19 +142,18 @@ class Preconditioner {
   const SpdSolver* solver_ = nullptr;
 };
 
-/// Improves `solution` until nothing but roundoff is left of the residual. False if it does not get
-/// there.
+/// Improves `solution` in two rounds: the second takes what the first leaves, rounding included, as
+/// a right-hand side of its own. False where the iteration does not converge.
 bool iterate(const SparseMatrix& matrix, const SpdSolver& symmetric, const DenseMatrix& rhs,
              DenseMatrix& solution) {
   Eigen::BiCGSTAB<SparseMatrix, Preconditioner> solver;
   solver.preconditioner().set(symmetric);
   solver.compute(matrix);
-  solver.setTolerance(kRoughly);
+  solver.setTolerance(kShareLeft);
   solver.setMaxIterations(kMostIterations);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 2; ++round) {
     const DenseMatrix residual = rhs - matrix * solution;
     if (!residual.allFinite()) return false;
-    if (residual.norm() <= kRoundoff * rhs.norm()) return true;
     for (int k = 0; k < 2; ++k) {
       solution.col(k) += solver.solve(residual.col(k));
       if (solver.info() != Eigen::Success) return false;
