@@ -44,9 +44,9 @@ constexpr double kSimplify = 225;
 /// GIF and FLIM: samples besides the metas' own, each with rows of three vertices and two edges; of
 /// the Newton systems, which are dense, the matrix and its factor.
 constexpr double kSamples = 2000, kRowsOfSample = 5, kNewtonCopies = 2;
-/// The global fix, per face: the corners' entries twice, as they come and scaled; and the factors,
-/// left and right, with their indices, in numbers of a factor by minimum degree.
-constexpr double kEntriesOfFace = 2 * 6 * 16, kBothFactors = 2 * (8 + 4);
+/// The global fix, per face: the corners' entries twice, as they come and scaled; and the factor,
+/// with room for as much again while it is made, in numbers of a factor by minimum degree.
+constexpr double kEntriesOfFace = 2 * 6 * 16, kFactorOfFix = 2 * (8 + 4);
 /// What the allocator holds beyond what is in use, what does not depend on the mesh, and what small
 /// meshes may take that need the global fix.
 constexpr double kAllocator = 1.08, kConstant = 8 << 20, kLeast = 40 << 20;
@@ -202,7 +202,7 @@ double global_fix_bytes(const Counts& n) {
   const double entries =
       (kFillByDegree + kFillOfRegular * n.regular) * n.vertices * log2_of(n.vertices + 2);
   return (n.faces + 2 * n.boundary) * (sizeof(Triangle) + kEntriesOfFace) + 8 * n.vertices * kUv +
-         kBothFactors * entries;
+         kFactorOfFix * entries;
 }
 
 /// An extra beside the factor of the metric solve.

@@ -7,7 +7,8 @@
 
 namespace beltrami {
 
-/// Below so many vertices minimum degree takes less time than nested dissection saves.
+/// Below so many vertices minimum degree takes no more time than nested dissection saves, and ends
+/// before a cancel, which it does not hear, has to wait for long.
 inline constexpr int kLeastDissected = 60000;
 /// Below so many rows factors in double precision stay in the caches.
 inline constexpr int kLeastSingle = 50000;

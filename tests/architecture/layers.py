@@ -10,6 +10,7 @@ from __future__ import annotations
 import pathlib
 import re
 import sys
+from collections.abc import Callable, Iterable
 
 # From below. A room includes itself and rooms of lower levels, never its neighbours. The program
 # sees the library through the public header alone.
@@ -25,57 +26,54 @@ LEVELS = [
 ]
 ALONE = {"cli"}
 
-Graph = "dict[str, list[tuple[str, int]]]"  # file -> (file, line that names it)
+Graph = dict[str, list[tuple[str, int]]]  # file -> (file, line that names it)
+Named = Callable[[pathlib.Path, str], list[pathlib.Path]]
+
+
+def graph_of(root: pathlib.Path, files: Iterable[pathlib.Path], named: Named) -> Graph:
+    """Return for every file those that `named(file, line of text)` finds in its lines."""
+    graph: Graph = {}
+    for file in sorted(files):
+        edges = graph.setdefault(str(file.relative_to(root)), [])
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            edges += [(str(place.relative_to(root)), number) for place in named(file, line)]
+    return graph
 
 
 def cpp_graph(root: pathlib.Path) -> Graph:
     """Return the quoted includes of every source that name a file of the sources."""
     folder = root / "src"
-    graph = {}
-    for file in sorted(folder.rglob("*")):
-        if file.suffix not in (".h", ".cpp"):
-            continue
-        edges = graph.setdefault(str(file.relative_to(root)), [])
-        for number, line in enumerate(file.read_text().splitlines(), 1):
-            match = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
-            if not match:
-                continue
-            for place in (folder / match[1], file.parent / match[1]):
-                if place.is_file():
-                    edges.append((str(place.relative_to(root)), number))
-                    break
-    return graph
+
+    def named(file: pathlib.Path, line: str) -> list[pathlib.Path]:
+        match = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+        places = [folder / match[1], file.parent / match[1]] if match else []
+        return [place for place in places if place.is_file()][:1]
+
+    return graph_of(root, [*folder.rglob("*.h"), *folder.rglob("*.cpp")], named)
 
 
 def python_graph(root: pathlib.Path) -> Graph:
     """Return the relative imports between the modules of the package."""
     folder = root / "bindings/python/src/beltrami"
-    graph = {}
-    for file in sorted(folder.glob("*.py")):
-        edges = graph.setdefault(str(file.relative_to(root)), [])
-        for number, line in enumerate(file.read_text().splitlines(), 1):
-            match = re.match(r"\s*from \.(\w*) import (.*)", line)
-            if not match:
-                continue
-            names = [match[1]] if match[1] else re.findall(r"\w+", match[2])
-            for name in names:
-                if (folder / f"{name}.py").is_file():
-                    edges.append((str((folder / f"{name}.py").relative_to(root)), number))
-    return graph
+
+    def named(_: pathlib.Path, line: str) -> list[pathlib.Path]:
+        match = re.match(r"\s*from \.(\w*) import (.*)", line)
+        names = ([match[1]] if match[1] else re.findall(r"\w+", match[2])) if match else []
+        return [place for name in names if (place := folder / f"{name}.py").is_file()]
+
+    return graph_of(root, folder.glob("*.py"), named)
 
 
 def rust_graph(root: pathlib.Path) -> Graph:
     """Return the uses of one module of the safe crate by another; comments do not count."""
     folder = root / "bindings/rust/beltrami/src"
-    graph = {}
-    for file in sorted(folder.rglob("*.rs")):
-        edges = graph.setdefault(str(file.relative_to(root)), [])
-        for number, line in enumerate(file.read_text().splitlines(), 1):
-            for name in re.findall(r"\bcrate::(\w+)", line.split("//")[0]):
-                place = folder / f"{name}.rs"
-                if place.is_file() and place != file:
-                    edges.append((str(place.relative_to(root)), number))
-    return graph
+
+    def named(file: pathlib.Path, line: str) -> list[pathlib.Path]:
+        names = re.findall(r"\bcrate::(\w+)", line.split("//")[0])
+        places = [folder / f"{name}.rs" for name in names]
+        return [place for place in places if place.is_file() and place != file]
+
+    return graph_of(root, folder.rglob("*.rs"), named)
 
 
 def room_of(file: str) -> str:
@@ -89,7 +87,7 @@ def upward(graph: Graph) -> list[str]:
     found = []
     for file, edges in graph.items():
         here = room_of(file)
-        if here == "CMakeLists.txt" or here not in level:
+        if here not in level:
             found.append(f"{file}: the room '{here}' has no level in {pathlib.Path(__file__).name}")
             continue
         for other, line in edges:
