@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-#include "command.h"
+#include "commands/command.h"
 #include "refine.h"
 
 namespace {

@@ -1,4 +1,4 @@
-// The memory of runs against its estimate: what src/pipeline/memory_estimate.cpp is calibrated
+// The memory of runs against its estimate: what src/chart/memory_estimate.cpp is calibrated
 // with.
 //
 // Each run has a process of its own. It counts what the process grows by from before
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
+#include "commands/command.h"
 #include "process_memory.h"
 #include "refine.h"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
+#include "commands/command.h"
 #include "refine.h"
 
 namespace {

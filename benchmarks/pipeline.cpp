@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
+#include "commands/command.h"
 #include "process_memory.h"
 #include "refine.h"
 #include "yardstick.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "triangulate.h"
+#include "files/triangulate.h"
 
 namespace beltrami::benchmarks {
 namespace {

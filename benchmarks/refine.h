@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "surface.h"
+#include "files/surface.h"
 
 namespace beltrami::benchmarks {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "beltrami/closest_point.h"
+#include "prolong/closest_point.h"
 #include "refine.h"
 #include "simplify/back_ends.h"
 #include "yardstick.h"

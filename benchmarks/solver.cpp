@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "linear/cholesky/native_solver.h"
 #include "refine.h"
-#include "sparse/native_solver.h"
 #include "yardstick.h"
 
 namespace beltrami::benchmarks {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/mesh_matrix.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
-#include "sparse/mesh_matrix.h"
 #ifdef BELTRAMI_WITH_CHOLMOD
 #include <cholmod.h>
 #endif

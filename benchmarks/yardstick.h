@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "linear/spd_solver.h"
 #include "refine.h"
-#include "sparse/spd_solver.h"
 
 namespace beltrami::benchmarks {
 

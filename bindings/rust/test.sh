@@ -65,7 +65,7 @@ examples() {
   local folder=$TARGET/debug/examples
   with_library cargo build --locked --quiet -p beltrami --examples
   with_library "$folder/flatten_obj" "$MESH" "$PLACE/flattened.obj" 2>/dev/null
-  "$BUILD/src/cli/beltrami" check "$PLACE/flattened.obj" >/dev/null
+  "$BUILD/program/beltrami" check "$PLACE/flattened.obj" >/dev/null
   # On a fast machine its run may be over before its user gives up.
   with_library "$folder/cancel" | tail -n 1 | tee "$PLACE/cancel.txt"
   grep -q -e '^cancelled' -e "faster than the user's patience" "$PLACE/cancel.txt"
@@ -125,7 +125,7 @@ with_installed() (
 # Every way to the library, each with the packages and the consumer only.
 consumers() {
   cp -r tests/consumer "$PLACE"
-  "$BUILD/src/cli/beltrami" flatten "$MESH" "$PLACE/reference.obj" >/dev/null
+  "$BUILD/program/beltrami" flatten "$MESH" "$PLACE/reference.obj" >/dev/null
   say "a program with the packages: BELTRAMI_LIB_DIR, shared"
   with_library consumer shared
   links_the_shared_library shared || fail "it is not the shared library"

@@ -11,9 +11,9 @@
 #include "abi/option_table.h"
 #include "abi/reports.h"
 #include "abi/status.h"
-#include "scaffold/triangulate_ring.h"
+#include "linear/spd_solver.h"
+#include "ring/triangulate_ring.h"
 #include "simplify/simplify.h"
-#include "sparse/spd_solver.h"
 
 #define BELTRAMI_TEXT_(x) #x
 #define BELTRAMI_TEXT(x) BELTRAMI_TEXT_(x)

@@ -6,7 +6,7 @@
 #include "abi/input_mesh.h"
 #include "abi/reports.h"
 #include "base/interrupt.h"
-#include "distortion/measure.h"
+#include "energy/measure.h"
 #include "exact/certificate.h"
 
 namespace beltrami {

@@ -8,8 +8,8 @@
 #include "abi/buffers.h"
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "chart/memory_estimate.h"
 #include "mesh/rest_shape.h"
-#include "pipeline/memory_estimate.h"
 
 static_assert(std::atomic<bool>::is_always_lock_free,
               "beltrami_cancel may be called from a signal handler");

@@ -8,7 +8,7 @@
 
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
-#include "pipeline/pipeline.h"
+#include "chart/pipeline.h"
 
 namespace beltrami {
 

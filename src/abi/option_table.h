@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/pipeline.h"
+#include "chart/pipeline.h"
 
 namespace beltrami {
 

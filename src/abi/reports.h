@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "distortion/measure.h"
+#include "energy/measure.h"
 #include "exact/certificate.h"
 
 namespace beltrami {

@@ -7,9 +7,9 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
-#include "beltrami/prolongation.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
+#include "prolong/prolongation.h"
 
 namespace beltrami {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
-#include "sparse/spd_solver.h"
 
 namespace beltrami {
 

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "sparse/shifted_factor.h"
+#include "linear/shifted_factor.h"
 
 namespace beltrami {
 namespace {

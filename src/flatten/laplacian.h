@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/types.h"
-#include "beltrami/prolongation.h"
+#include "linear/mesh_matrix.h"
 #include "mesh/rest_shape.h"
-#include "sparse/mesh_matrix.h"
+#include "prolong/prolongation.h"
 
 namespace beltrami {
 

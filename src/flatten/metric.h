@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "base/types.h"
-#include "beltrami/prolongation.h"
-#include "distortion/energy.h"
+#include "energy/energy.h"
+#include "linear/mesh_matrix.h"
+#include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
-#include "sparse/mesh_matrix.h"
-#include "sparse/spd_solver.h"
+#include "prolong/prolongation.h"
 
 namespace beltrami {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "beltrami/closest_point.h"
+#include "prolong/closest_point.h"
 
 namespace beltrami {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "base/interrupt.h"
 #include "exact/certificate.h"
+#include "linear/shifted_factor.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
-#include "scaffold/ring_faces.h"
-#include "scaffold/triangulate_ring.h"
-#include "sparse/shifted_factor.h"
-#include "sparse/spd_solver.h"
+#include "ring/ring_faces.h"
+#include "ring/triangulate_ring.h"
 
 namespace beltrami {
 namespace {

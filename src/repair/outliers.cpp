@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "descend/assembly.h"
+#include "descend/newton.h"
 #include "exact/certificate.h"
-#include "fullspace/assembly.h"
-#include "fullspace/newton.h"
 #include "repair/patch.h"
 #include "repair/patch_work.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/checkpoint.h"
 #include "base/types.h"
-#include "distortion/energy.h"
+#include "energy/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 

@@ -16,8 +16,8 @@
 #include "repair/kernel.h"
 #include "repair/patch.h"
 #include "repair/untangle.h"
-#include "scaffold/ring_faces.h"
-#include "scaffold/triangulate_ring.h"
+#include "ring/ring_faces.h"
+#include "ring/triangulate_ring.h"
 
 namespace beltrami {
 namespace {

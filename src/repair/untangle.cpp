@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/portable_math.h"
-#include "distortion/density.h"
+#include "descend/newton.h"
+#include "descend/newton_step.h"
+#include "energy/density.h"
 #include "exact/certificate.h"
-#include "fullspace/newton.h"
-#include "fullspace/newton_step.h"
 
 namespace beltrami {
 namespace {

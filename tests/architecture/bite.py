@@ -9,14 +9,14 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["src", "bindings/python/src", "bindings/rust/beltrami/src"]
+FOLDERS = ["src", "program", "bindings/python/src", "bindings/rust/beltrami/src"]
 
 # A file, a line put before it, and what layers.py must say.
 BREAKS = [
     ("src/base/types.h", '#include "mesh/disk_mesh.h"', "src/base/types.h:1: 'base' may not include"),
     ("src/repair/kernel.h", '#include "flatten/metric.h"', "'repair' may not include 'flatten'"),
-    ("src/cli/report.cpp", '#include "exact/orientation.h"', "by its public header alone"),
-    ("src/distortion/density.h", '#include "distortion/energy.h"', "a circle: src/distortion/"),
+    ("program/commands/report.cpp", '#include "exact/orientation.h"', "by its header alone"),
+    ("src/energy/density.h", '#include "energy/energy.h"', "a circle: src/energy/"),
     ("bindings/python/src/beltrami/_errors.py", "from . import _library", "a circle: bindings/python"),
     ("bindings/rust/beltrami/src/error.rs", "use crate::mesh::Mesh;", "a circle: bindings/rust"),
 ]

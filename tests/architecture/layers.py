@@ -3,7 +3,7 @@
 
     layers.py [ROOT]
 
-ROOT is a checkout. docs/architecture.md draws the rooms; LEVELS is that drawing in few words.
+ROOT is a checkout. docs/architecture.md draws the rooms; LIBRARY and PROGRAM are that drawing in few words.
 """
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ import re
 import sys
 from collections.abc import Callable, Iterable
 
-# From below. A room includes itself and rooms of lower levels, never its neighbours. The program
-# sees the library through the public header alone.
-LEVELS = [
+# From below. A room includes itself and rooms of lower levels, never its neighbours.
+LIBRARY = [
     {"base"},
     {"mesh", "exact"},
-    {"beltrami", "distortion", "scaffold", "simplify", "sparse"},
-    {"fullspace"},
+    {"energy", "linear", "prolong", "ring", "simplify"},
+    {"descend"},
     {"flatten", "repair"},
-    {"pipeline"},
+    {"chart"},
     {"abi"},
-    {"cli"},
 ]
-ALONE = {"cli"}
+# The program sees the library through the public header alone.
+PROGRAM = [{"process"}, {"files"}, {"picture"}, {"commands"}, {"main.cpp"}]
+TREES = {"src": LIBRARY, "program": PROGRAM}
 
 Graph = dict[str, list[tuple[str, int]]]  # file -> (file, line that names it)
 Named = Callable[[pathlib.Path, str], list[pathlib.Path]]
@@ -42,14 +42,15 @@ def graph_of(root: pathlib.Path, files: Iterable[pathlib.Path], named: Named) ->
 
 def cpp_graph(root: pathlib.Path) -> Graph:
     """Return the quoted includes of every source that name a file of the sources."""
-    folder = root / "src"
 
     def named(file: pathlib.Path, line: str) -> list[pathlib.Path]:
         match = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
-        places = [folder / match[1], file.parent / match[1]] if match else []
+        folders = [root / tree for tree in TREES] + [file.parent]
+        places = [folder / match[1] for folder in folders] if match else []
         return [place for place in places if place.is_file()][:1]
 
-    return graph_of(root, [*folder.rglob("*.h"), *folder.rglob("*.cpp")], named)
+    sources = [file for tree in TREES for file in (root / tree).rglob("*") if file.is_file()]
+    return graph_of(root, [file for file in sources if file.suffix in (".h", ".cpp")], named)
 
 
 def python_graph(root: pathlib.Path) -> Graph:
@@ -76,28 +77,37 @@ def rust_graph(root: pathlib.Path) -> Graph:
     return graph_of(root, folder.rglob("*.rs"), named)
 
 
-def room_of(file: str) -> str:
-    """Return the folder under src that a file is in."""
-    return pathlib.PurePath(file).parts[1]
+def room_of(file: str) -> tuple[str, str]:
+    """Return the tree that a file is in, and its folder there."""
+    tree, room = pathlib.PurePath(file).parts[:2]
+    return tree, room
 
 
 def upward(graph: Graph) -> list[str]:
     """Return a sentence for every include that does not go down."""
-    level = {room: i for i, rooms in enumerate(LEVELS) for room in rooms}
+    level = {
+        (tree, room): i
+        for tree, levels in TREES.items()
+        for i, rooms in enumerate(levels)
+        for room in rooms
+    }
     found = []
     for file, edges in graph.items():
         here = room_of(file)
         if here not in level:
-            found.append(f"{file}: the room '{here}' has no level in {pathlib.Path(__file__).name}")
+            where = pathlib.Path(__file__).name
+            found.append(f"{file}: the room '{here[1]}' has no level in {where}")
             continue
         for other, line in edges:
             there = room_of(other)
             if there == here:
                 continue
-            if here in ALONE:
-                found.append(f"{file}:{line}: '{here}' sees the library by its public header alone")
-            elif level.get(there, len(LEVELS)) >= level[here]:
-                found.append(f"{file}:{line}: '{here}' may not include '{there}', which is not below")
+            if here[0] != there[0]:
+                found.append(f"{file}:{line}: the program sees the library by its header alone")
+            elif level.get(there, len(level)) >= level[here]:
+                found.append(
+                    f"{file}:{line}: '{here[1]}' may not include '{there[1]}', which is not below"
+                )
     return found
 
 

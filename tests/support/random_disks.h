@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
-#include "pipeline/pipeline.h"
+#include "chart/pipeline.h"
 #include "support/disks.h"
 
 namespace beltrami::disks {

@@ -1,0 +1,174 @@
+// beltrami check: judge the UVs that a file carries.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "commands/command.h"
+#include "commands/progress_bar.h"
+#include "files/atomic_file.h"
+#include "files/vector3.h"
+#include "picture/picture.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace {
+
+/// Over the whole range of numbers, and not std::hypot, whose last bit depends on the processor.
+double safe_norm(const Vector3& a) {
+  const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
+  if (!(largest > 0) || !std::isfinite(largest)) return largest;
+  return largest * norm({a[0] / largest, a[1] / largest, a[2] / largest});
+}
+
+double area_of(const TriangleView& mesh) {
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); i += 3) {
+    const double* a = &mesh.positions[3 * std::size_t{mesh.faces[i]}];
+    const double* b = &mesh.positions[3 * std::size_t{mesh.faces[i + 1]}];
+    const double* c = &mesh.positions[3 * std::size_t{mesh.faces[i + 2]}];
+    Vector3 p, q;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = b[k] - a[k];
+      q[k] = c[k] - a[k];
+    }
+    area += 0.5 * safe_norm(cross(p, q));
+  }
+  return area;
+}
+
+/// Of a disk, by Euler's formula.
+std::uint64_t boundary_edges_of(const TriangleView& disk) {
+  std::vector<bool> used(disk.vertex_count(), false);
+  std::uint64_t vertices = 0;
+  for (const std::uint32_t vertex : disk.faces) {
+    vertices += !used[vertex];
+    used[vertex] = true;
+  }
+  return 2 * vertices - 2 - disk.face_count();
+}
+
+void round_to_float32(std::vector<double>& uvs) {
+  for (double& value : uvs) value = static_cast<double>(static_cast<float>(value));
+}
+
+class Check {
+ public:
+  Check(const CheckArguments& arguments, Report& report)
+      : arguments_(arguments), report_(report), bar_(!arguments.quiet) {}
+
+  int run() {
+    require_files();
+    read();
+    judge();
+    measure();
+    return write_files();
+  }
+
+ private:
+  void require_files() const {
+    format_of(arguments_.input);
+    require_distinct({arguments_.input, arguments_.report, arguments_.picture});
+    if (!arguments_.quiet) require_apart_from_stdout({arguments_.report, arguments_.picture});
+    for (const std::string& path : {arguments_.report, arguments_.picture}) {
+      if (!path.empty()) require_writable(path);
+    }
+  }
+
+  void read() {
+    bar_.show(0, "read");
+    StageClock clock(report_, "read");
+    file_ = read_mesh(arguments_.input, Content::kUvs);
+    if (arguments_.float32) round_to_float32(file_.uvs);
+    surface_.emplace(file_, arguments_.weld);
+    report_.set_input(file_, *surface_);
+    report_.unreferenced_vertices = unreferenced_vertices(file_);
+    report_.area = area_of(surface_->view());
+    clock.finish();
+  }
+
+  void judge() {
+    throw_if_interrupted();
+    bar_.show(0.2, "check");
+    StageClock clock(report_, "check");
+    const TriangleView triangles = surface_->view();
+    const beltrami_mesh mesh = view_of(triangles);
+    const beltrami_buffer uvs = uv_view(triangles);
+    beltrami_certificate certificate{};
+    certificate.struct_size = sizeof certificate;
+    const beltrami_status status = beltrami_check_injective(&mesh, &uvs, &certificate);
+    require_ok_mesh(status, arguments_.input, "", certificate.error_element_kind,
+                    certificate.error_element, file_, *surface_);
+    to_face_of(*surface_, certificate.first_bad_face);
+    report_.certificate = certificate;
+    report_.status = beltrami_status_name(status);
+    report_.boundary_edges = boundary_edges_of(triangles);
+    report_.float32_injective =
+        arguments_.float32 ? certificate.injective != 0 : injective_in_float32(triangles);
+    clock.finish();
+  }
+
+  void measure() {
+    throw_if_interrupted();
+    bar_.show(0.6, "measure");
+    StageClock clock(report_, "measure");
+    const TriangleView triangles = surface_->view();
+    const beltrami_mesh mesh = view_of(triangles);
+    const beltrami_buffer uvs = uv_view(triangles);
+    beltrami_energy energy{};
+    energy.struct_size = sizeof energy;
+    if (!arguments_.picture.empty()) face_energies_.resize(triangles.face_count());
+    const beltrami_status status = beltrami_measure(
+        &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
+    require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+    to_face_of(*surface_, energy.worst_face);
+    report_.energy = energy;
+    clock.finish();
+  }
+
+  /// Returns the exit code.
+  int write_files() {
+    throw_if_interrupted();
+    std::optional<AtomicFile> picture, report;
+    if (!arguments_.picture.empty()) {
+      bar_.show(0.8, "picture");
+      StageClock clock(report_, "picture");
+      picture.emplace(arguments_.picture)
+          .write(encode_png(render_picture(surface_->view(), face_energies_)));
+      picture->close();
+      clock.finish();
+    }
+    report_.seconds = seconds_so_far();
+    if (!arguments_.report.empty()) {
+      report.emplace(arguments_.report).write(to_json(report_));
+      report->close();
+    }
+    const std::string summary = arguments_.quiet ? std::string() : to_summary(report_, "");
+    bar_.clear();
+    throw_if_interrupted();
+    // From here on nothing needs memory: with something replaced, it must not run out.
+    if (picture) picture->commit();
+    if (report) report->commit();
+    return print(summary, "the summary",
+                 report_.certificate->injective ? kExitInjective : kExitNotInjective);
+  }
+
+  const CheckArguments& arguments_;
+  Report& report_;
+  ProgressBar bar_;
+  MeshFile file_;
+  std::optional<Surface> surface_;  ///< of file_
+  std::vector<double> face_energies_;
+};
+
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  Report report;
+  report.command = "check";
+  report.input_path = arguments.input;
+  report.options = {{"float32", arguments.float32}, {"weld", arguments.weld}};
+  return run_guarded(report, arguments.report, {arguments.input, arguments.picture},
+                     [&] { return Check(arguments, report).run(); });
+}
+
+}  // namespace beltrami::cli

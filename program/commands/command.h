@@ -1,0 +1,77 @@
+// What the commands share: a mesh for the library, failures, and reports.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "commands/options.h"
+#include "commands/report.h"
+#include "files/surface.h"
+
+namespace beltrami::cli {
+
+struct FlattenArguments {
+  std::string input, output;
+  std::string report, picture;  ///< paths, or "" for none
+  bool weld = false;            ///< vertices at one place count as one
+  bool quiet = false;
+};
+
+struct CheckArguments {
+  std::string input;
+  std::string report, picture;  ///< paths, or "" for none
+  bool float32 = false;         ///< judge the UVs rounded to single precision
+  bool weld = false;            ///< vertices at one place and with one UV count as one
+  bool quiet = false;
+};
+
+/// The commands: the exit code. They print the summary, or one line on stderr.
+int flatten_command(const FlattenArguments& arguments, Options& options);
+int check_command(const CheckArguments& arguments);
+
+/// The arrays as the library takes them; what `triangles` views must outlive it.
+beltrami_mesh view_of(const TriangleView& triangles);
+beltrami_buffer uv_view(const TriangleView& triangles);
+
+/// Whether the UVs rounded to single precision are still injective.
+bool injective_in_float32(const TriangleView& triangles);
+
+/// Vertices that no face of the file uses.
+std::uint64_t unreferenced_vertices(const MeshFile& file);
+
+/// Throws for a status below 0: "path: message (face 3, counted from 0)".
+void require_ok(beltrami_status status, const std::string& path, const char* message,
+                std::int32_t element_kind, std::uint64_t element);
+
+/// The same for a status about a mesh that was read: triangles become faces of the file, and where
+/// it is in pieces only because faces do not share their vertices, the message says how to weld it.
+/// `surface` is of `file`.
+void require_ok_mesh(beltrami_status status, const std::string& path, const char* message,
+                     std::int32_t element_kind, std::uint64_t element, const MeshFile& file,
+                     const Surface& surface);
+
+/// The number of a face of the file for that of a triangle; BELTRAMI_NO_ELEMENT stays.
+void to_face_of(const Surface& surface, std::uint64_t& triangle);
+
+/// Whether two paths lead to one file; "" is no path.
+bool same_file(const std::string& a, const std::string& b);
+
+/// Throws Failure if two of the paths are the same file.
+void require_distinct(const std::vector<std::string>& paths);
+
+/// Throws Failure if standard output is one of the paths: the summary, which follows the files,
+/// would be lost with what was there before them.
+void require_apart_from_stdout(const std::vector<std::string>& paths);
+
+/// Runs `body`, which returns the exit code. Its failures become one line on stderr, an exit code,
+/// and a report at `report_path`, unless that is "" or one of `others`, which must not be lost.
+int run_guarded(Report& report, const std::string& report_path,
+                const std::vector<std::string>& others, const std::function<int()>& body);
+
+/// Seconds since the program started.
+double seconds_so_far();
+
+}  // namespace beltrami::cli

@@ -1,0 +1,209 @@
+#include "commands/options.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <thread>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
+
+#include "process/failure.h"
+
+namespace beltrami::cli {
+namespace {
+
+std::string plain_number(double value) {
+  char digits[64];
+  if (std::abs(value) < 1e15 && value == std::floor(value)) {
+    std::snprintf(digits, sizeof digits, "%.0f", value);
+  } else {
+    std::snprintf(digits, sizeof digits, "%g", value);
+  }
+  return digits;
+}
+
+/// Cores that the process may use: not all that there are, under taskset or a job scheduler.
+std::int64_t usable_cores() {
+#if defined(__linux__)
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
+#endif
+  return std::max<std::int64_t>(1, std::thread::hardware_concurrency());
+}
+
+std::string default_word(const Option& option) {
+  if (option.is_thread_count()) return "all cores";
+  if (option.info.type != BELTRAMI_TYPE_CHOICE) return plain_number(option.info.default_value);
+  const auto value = static_cast<std::size_t>(option.info.default_value);
+  return value < option.choices.size() ? option.choices[value] : plain_number(double(value));
+}
+
+std::string joined_choices(const Option& option, const char* separator) {
+  std::string all;
+  for (const std::string& choice : option.choices) all += (all.empty() ? "" : separator) + choice;
+  return all;
+}
+
+std::string range_of(const Option& option) {
+  return plain_number(option.info.minimum) + " to " + plain_number(option.info.maximum);
+}
+
+/// Breaks lines at blanks: CLI11 indents them, but breaks none itself.
+std::string wrapped(std::string text) {
+  constexpr std::size_t kColumns = 68;
+  for (std::size_t begin = 0; text.size() - begin > kColumns;) {
+    const std::size_t blank = text.rfind(' ', begin + kColumns);
+    if (blank == std::string::npos || blank <= begin) break;
+    text[blank] = '\n';
+    begin = blank + 1;
+  }
+  return text;
+}
+
+std::string help_text(const Option& option) {
+  std::string text = option.info.summary;
+  if (option.is_flag()) return wrapped(text);
+  if (option.is_byte_count())
+    text += " K, M and G behind the number multiply it by powers of 1024.";
+  text += " [";
+  if (option.info.type != BELTRAMI_TYPE_CHOICE) text += range_of(option) + "; ";
+  return wrapped(text + "default " + default_word(option) + "]");
+}
+
+template <class Number>
+std::string parse_number(const std::string& text, const Option& option, Number& value) {
+  Number parsed = 0;
+  const char* end = text.data() + text.size();
+  const auto [past, error] = std::from_chars(text.data(), end, parsed);
+  // Negated so that NaN fails too.
+  if (error == std::errc() && past == end && double(parsed) >= option.info.minimum &&
+      double(parsed) <= option.info.maximum) {
+    value = parsed;
+    return "";
+  }
+  const char* kind = option.info.type == BELTRAMI_TYPE_INT ? "a whole number" : "a number";
+  return "'" + text + "' is not " + kind + " from " + range_of(option);
+}
+
+/// A number of bytes with a unit or without: "1048576", "1024K", "1M".
+std::string parse_bytes(const std::string& text, Option& option) {
+  constexpr std::string_view kUnits = "KMG";
+  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  if (unit == std::string_view::npos) return parse_number(text, option, option.integer);
+  const std::int64_t factor = std::int64_t{1024} << (10 * unit);
+  Option scaled = option;
+  scaled.info.maximum = std::floor(option.info.maximum / static_cast<double>(factor));
+  const std::string number(text, 0, text.size() - 1);
+  if (!parse_number(number, scaled, scaled.integer).empty()) {
+    return "'" + text + "' is not a whole number of bytes from " + range_of(option);
+  }
+  option.integer = scaled.integer * factor;
+  return "";
+}
+
+}  // namespace
+
+std::string parse_option(const std::string& text, Option& option) {
+  if (option.is_byte_count()) return parse_bytes(text, option);
+  if (option.info.type == BELTRAMI_TYPE_INT) return parse_number(text, option, option.integer);
+  if (option.info.type == BELTRAMI_TYPE_FLOAT) return parse_number(text, option, option.real);
+  for (std::size_t i = 0; i < option.choices.size(); ++i) {
+    if (option.choices[i] != text) continue;
+    option.integer = static_cast<std::int64_t>(i);
+    return "";
+  }
+  return "'" + text + "' is not one of " + joined_choices(option, ", ");
+}
+
+Options::Options() {
+  for (std::int32_t key = 0;; ++key) {
+    Option option;
+    option.info.struct_size = sizeof option.info;
+    if (beltrami_option_describe(key, &option.info) != BELTRAMI_OK) break;
+    option.integer = static_cast<std::int64_t>(option.info.default_value);
+    option.real = option.info.default_value;
+    if (option.is_thread_count()) {
+      option.integer = std::min(usable_cores(), static_cast<std::int64_t>(option.info.maximum));
+    }
+    if (option.info.type == BELTRAMI_TYPE_CHOICE) {
+      for (std::int32_t value = 0; const char* name = beltrami_option_choice(key, value); ++value) {
+        option.choices.emplace_back(name);
+      }
+    }
+    options_.push_back(std::move(option));
+  }
+}
+
+void Options::add_to(CLI::App& command) {
+  for (Option& option : options_) {
+    const std::string flag = std::string("--") + option.info.name;
+    if (option.is_flag()) {
+      command.add_flag_callback(
+          flag, [&option] { option.integer = 1; }, help_text(option));
+      continue;
+    }
+    const auto parse = [&option, flag](const std::string& text) {
+      const std::string error = parse_option(text, option);
+      if (!error.empty()) throw CLI::ValidationError(flag, error);
+      option.given = true;
+    };
+    command.add_option_function<std::string>(flag, parse, help_text(option))
+        ->type_name(option.info.type == BELTRAMI_TYPE_CHOICE  ? joined_choices(option, "|")
+                    : option.info.type == BELTRAMI_TYPE_FLOAT ? "X"
+                    : option.is_byte_count()                  ? "BYTES"
+                                                              : "N");
+  }
+}
+
+void Options::apply_to(beltrami_context* context) const {
+  for (const Option& option : options_) {
+    const beltrami_status status = option.info.type == BELTRAMI_TYPE_FLOAT
+                                       ? beltrami_set_float(context, option.info.key, option.real)
+                                       : beltrami_set_int(context, option.info.key, option.integer);
+    if (status < 0) {
+      throw Failure(status,
+                    std::string("--") + option.info.name + ": " + beltrami_error_message(context));
+    }
+  }
+}
+
+OptionValues Options::values() const {
+  OptionValues values;
+  for (const Option& option : options_) {
+    const std::string name = option.info.name;
+    if (option.is_flag()) {
+      values.emplace_back(name, option.integer != 0);
+    } else if (option.info.type == BELTRAMI_TYPE_FLOAT) {
+      values.emplace_back(name, option.real);
+    } else if (option.info.type == BELTRAMI_TYPE_CHOICE) {
+      values.emplace_back(name, option.choices.at(static_cast<std::size_t>(option.integer)));
+    } else {
+      values.emplace_back(name, option.integer);
+    }
+  }
+  return values;
+}
+
+bool Options::use_fewer_threads() {
+  for (Option& option : options_) {
+    if (!option.is_thread_count() || option.given || option.integer == 1) continue;
+    option.integer /= 2;
+    return true;
+  }
+  return false;
+}
+
+std::int64_t Options::integer(std::int32_t key) const {
+  for (const Option& option : options_) {
+    if (option.info.key == key) return option.integer;
+  }
+  return 0;
+}
+
+}  // namespace beltrami::cli

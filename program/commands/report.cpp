@@ -1,0 +1,261 @@
+#include "commands/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#if !defined(_WIN32)
+#include <sys/resource.h>
+#endif
+
+namespace beltrami::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json element(std::uint64_t index) {
+  return index == BELTRAMI_NO_ELEMENT ? Json(nullptr) : Json(index);
+}
+
+template <class T>
+Json optional(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+/// Of the whole process so far; 0 where the system does not say.
+std::uint64_t peak_memory_bytes() {
+#if defined(_WIN32)
+  return 0;
+#else
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+#if defined(__APPLE__)
+  return static_cast<std::uint64_t>(usage.ru_maxrss);
+#else
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
+#endif
+}
+
+Json element_json(const Report& report) {
+  if (report.element_kind == BELTRAMI_ELEMENT_NONE) return nullptr;
+  return {{"kind", report.element_kind == BELTRAMI_ELEMENT_FACE ? "face" : "vertex"},
+          {"index", element(report.element)}};
+}
+
+Json input_json(const Report& report) {
+  return {
+      {"path", report.input_path},
+      {"vertices", optional(report.vertices)},
+      {"faces", optional(report.faces)},
+      {"triangles", optional(report.triangles)},
+      {"boundary_edges", optional(report.boundary_edges)},
+      {"area", report.area ? number(*report.area) : Json(nullptr)},
+      {"unreferenced_vertices", optional(report.unreferenced_vertices)},
+      {"degenerate_faces", report.result ? Json(report.result->degenerate_faces) : Json(nullptr)},
+      {"first_degenerate_face",
+       report.result ? element(report.result->first_degenerate_face) : Json(nullptr)},
+      {"welded_vertices", optional(report.welded_vertices)}};
+}
+
+Json options_json(const Report& report) {
+  Json options = Json::object();
+  for (const auto& [name, value] : report.options) {
+    std::visit([&, &key = name](const auto& known) { options[key] = known; }, value);
+  }
+  return options;
+}
+
+Json injective_json(const Report& report) {
+  if (!report.certificate) return nullptr;
+  const beltrami_certificate& found = *report.certificate;
+  return {{"result", found.injective != 0},
+          {"positive", found.positive},
+          {"negative", found.negative},
+          {"degenerate", found.degenerate},
+          {"boundary_crossings", found.boundary_crossings},
+          {"first_bad_face", element(found.first_bad_face)},
+          {"float32", optional(report.float32_injective)}};
+}
+
+Json energy_json(const Report& report) {
+  if (!report.energy) return nullptr;
+  const beltrami_energy& found = *report.energy;
+  return {{"symmetric_dirichlet", number(found.symmetric_dirichlet)},
+          {"symmetric_arap", number(found.symmetric_arap)},
+          {"max", number(found.max)},
+          {"worst_face", element(found.worst_face)},
+          {"left_out", found.left_out}};
+}
+
+Json repair_json(const Report& report) {
+  if (!report.result) return nullptr;
+  const beltrami_result& run = *report.result;
+  return {{"kernel_fixes", run.kernel_fixes},
+          {"patch_fixes", run.patch_fixes},
+          {"global_fixes", run.global_fixes},
+          {"cleaned_patches", run.cleaned_patches},
+          {"restarts", run.restarts},
+          {"float32_moves", run.float32_moves},
+          {"delaunay_flips", run.delaunay_flips},
+          {"delaunay_refused", run.delaunay_refused}};
+}
+
+Json stages_json(const Report& report) {
+  Json stages = Json::array();
+  for (const StageTime& stage : report.stages) {
+    stages.push_back({{"name", stage.name},
+                      {"seconds", number(stage.seconds)},
+                      {"cpu_seconds", number(stage.cpu_seconds)},
+                      {"iterations", stage.iterations}});
+  }
+  return stages;
+}
+
+std::string library_version() {
+  const std::uint32_t version = beltrami_version();
+  return std::to_string(version / 1000000) + "." + std::to_string(version / 1000 % 1000) + "." +
+         std::to_string(version % 1000);
+}
+
+/// Text by printf, for the summary: streams have no short way to align numbers.
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
+  char line[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  text += line;
+}
+
+void append_verdict(const Report& report, std::string& text) {
+  const beltrami_certificate& found = *report.certificate;
+  if (found.injective) {
+    append(text, "injective  yes%s\n",
+           !report.float32_injective   ? ""
+           : *report.float32_injective ? " (also when rounded to float32)"
+           : report.float32_possible.value_or(false)
+               ? " (NOT when rounded to float32: flatten with --float32 for that)"
+               : " (NOT when rounded to float32: keep the UVs in double precision)");
+    return;
+  }
+  append(text, "injective  NO: %llu flipped, %llu of zero area, %llu boundary crossings",
+         static_cast<unsigned long long>(found.negative),
+         static_cast<unsigned long long>(found.degenerate),
+         static_cast<unsigned long long>(found.boundary_crossings));
+  if (found.first_bad_face != BELTRAMI_NO_ELEMENT) {
+    append(text, "; first bad face %llu", static_cast<unsigned long long>(found.first_bad_face));
+  }
+  text += "\n";
+}
+
+void append_memory(const Report& report, std::string& text) {
+  constexpr double kMebibyte = 1 << 20;
+  const std::uint64_t peak = peak_memory_bytes();
+  if (peak == 0 || !report.estimated_memory_bytes) return;
+  append(text,
+         "memory     %.0f MiB at the peak of the program; %.0f MiB were estimated for the run\n",
+         static_cast<double>(peak) / kMebibyte,
+         static_cast<double>(*report.estimated_memory_bytes) / kMebibyte);
+}
+
+}  // namespace
+
+void Report::set_input(const MeshFile& file, const Surface& surface) {
+  vertices = file.vertex_count();
+  faces = file.polygons.size();
+  triangles = surface.view().face_count();
+  welded_vertices = file.welded_corners + surface.welded_vertices();
+}
+
+void Report::set_failure(const Failure& failure) {
+  status = failure.status;
+  message = failure.what();
+  element_kind = failure.element_kind;
+  element = failure.element;
+}
+
+std::string to_json(const Report& report) {
+  const Json json = {
+      {"schema", kReportSchema},
+      {"version", library_version()},
+      {"command", report.command},
+      {"status", report.status},
+      {"message", report.message.empty() ? Json(nullptr) : Json(report.message)},
+      {"element", element_json(report)},
+      {"input", input_json(report)},
+      {"options", options_json(report)},
+      {"injective", injective_json(report)},
+      {"energy", energy_json(report)},
+      {"coarse_faces", optional(report.coarse_faces)},
+      {"coarse_energy", report.result ? number(report.result->coarse_energy) : Json(nullptr)},
+      {"flips_before_repair", optional(report.flips_before_repair)},
+      {"repair", repair_json(report)},
+      {"not_kept", report.not_kept},
+      {"stages", stages_json(report)},
+      {"seconds", number(report.seconds)},
+      {"peak_memory_bytes", peak_memory_bytes()},
+      {"estimated_memory_bytes", optional(report.estimated_memory_bytes)},
+      {"threads", optional(report.threads)}};
+  // Paths need not be UTF-8, but JSON must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_note(const Report& report, const std::string& written) {
+  if (report.not_kept.empty()) return "";
+  std::string text = "beltrami: note: " + written + " does not keep ";
+  for (std::size_t i = 0; i < report.not_kept.size(); ++i) {
+    text += (i ? ", " : "") + report.not_kept[i];
+  }
+  return one_line(text) + "\n";
+}
+
+std::string to_summary(const Report& report, const std::string& written) {
+  std::string text;
+  append(text, "vertices   %llu\n", static_cast<unsigned long long>(report.vertices.value_or(0)));
+  append(text, "faces      %llu\n", static_cast<unsigned long long>(report.faces.value_or(0)));
+  if (report.triangles.value_or(0) != report.faces.value_or(0)) {
+    append(text, "triangles  %llu\n", static_cast<unsigned long long>(*report.triangles));
+  }
+  if (report.welded_vertices.value_or(0) > 0) {
+    append(text, "welded     %llu\n", static_cast<unsigned long long>(*report.welded_vertices));
+  }
+  if (report.energy && std::isfinite(report.energy->symmetric_dirichlet)) {
+    append(text, "energy     %.6g mean, %.6g max (symmetric Dirichlet; 2 is isometric)\n",
+           report.energy->symmetric_dirichlet, report.energy->max);
+  }
+  if (report.certificate) append_verdict(report, text);
+  if (report.status == "BELTRAMI_NOT_INJECTIVE_FLOAT32") {
+    append(text, "note       injective in double precision only: flatten without --float32\n");
+  }
+  if (report.result && report.result->degenerate_faces > 0) {
+    append(text, "note       %llu faces have no area, the first is %llu (counted from 0)\n",
+           static_cast<unsigned long long>(report.result->degenerate_faces),
+           static_cast<unsigned long long>(report.result->first_degenerate_face));
+  }
+  if (report.result && report.result->delaunay_refused > 0) {
+    append(text, "note       %llu edges are not Delaunay: flipping them would repeat an edge\n",
+           static_cast<unsigned long long>(report.result->delaunay_refused));
+  }
+  if (report.status == "BELTRAMI_NOT_CONVERGED") {
+    append(text, "note       stopped at the iteration limit before it converged\n");
+  }
+  append(text, "time       %.2f s\n", report.seconds);
+  append_memory(report, text);
+  if (!written.empty()) text += "written    " + one_line(written) + "\n";
+  return text;
+}
+
+void StageClock::finish() {
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
+  const double cpu = static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC;
+  report_.stages.push_back({name_, wall.count(), cpu, 0});
+}
+
+}  // namespace beltrami::cli

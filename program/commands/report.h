@@ -1,0 +1,89 @@
+// What a command found, as JSON for other programs (docs/report.md) and as a summary for people.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "files/surface.h"
+#include "process/failure.h"
+
+namespace beltrami::cli {
+
+/// Raised when a key changes its meaning or goes away; new keys alone do not raise it.
+inline constexpr int kReportSchema = 1;
+
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+  double cpu_seconds = 0;
+  int iterations = 0;
+};
+
+/// Options by name. Plain data, for objects of the JSON library need memory to end.
+using OptionValues =
+    std::vector<std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>>;
+
+/// Everything that a command has not come to know is empty, and null in JSON.
+struct Report {
+  std::string command;
+  std::string status = "BELTRAMI_OK";
+  std::string message;  ///< of a failure
+  std::int32_t element_kind = BELTRAMI_ELEMENT_NONE;
+  std::uint64_t element = BELTRAMI_NO_ELEMENT;
+
+  std::string input_path;
+  std::optional<std::uint64_t> vertices, faces, triangles, boundary_edges, unreferenced_vertices,
+      welded_vertices;
+  std::optional<double> area;
+
+  OptionValues options;
+  std::optional<beltrami_certificate> certificate;
+  std::optional<bool> float32_injective;  ///< of the UVs as written, rounded to nearest
+  std::optional<bool> float32_possible;   ///< with the option float32
+  std::optional<beltrami_energy> energy;
+  std::optional<std::uint64_t> coarse_faces, flips_before_repair;
+  std::optional<beltrami_result> result;
+  std::vector<std::string> not_kept;  ///< of the input, in words, by the output
+  std::vector<StageTime> stages;
+  std::optional<std::int64_t> threads;
+  std::optional<std::uint64_t>
+      estimated_memory_bytes;  ///< of the run, see beltrami_estimate_memory
+  double seconds = 0;
+
+  /// Counts of what was read, and of the triangles that it was cut into.
+  void set_input(const MeshFile& file, const Surface& surface);
+  void set_failure(const Failure& failure);
+};
+
+/// The JSON text, with a final line end.
+std::string to_json(const Report& report);
+
+/// The line on stderr that says what of the input `written` does not keep; "" if it keeps all.
+std::string to_note(const Report& report, const std::string& written);
+
+/// The lines for people. `written`: the output path, or "".
+std::string to_summary(const Report& report, const std::string& written);
+
+/// Times a stage from its construction and adds it to a report in finish(); a stage that fails is
+/// not listed.
+class StageClock {
+ public:
+  StageClock(Report& report, const char* name) : report_(report), name_(name) {}
+  void finish();
+
+ private:
+  Report& report_;
+  const char* name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_start_ = std::clock();
+};
+
+}  // namespace beltrami::cli

@@ -1,0 +1,68 @@
+#include "files/mesh_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "process/descriptor.h"
+#include "process/failure.h"
+
+namespace beltrami::cli {
+namespace {
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+  return extension;
+}
+
+/// Brings text from other systems into the one form that the readers know.
+void normalise_text(std::string& text) {
+  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.replace(0, 3, 3, ' ');
+  const bool lone_returns =
+      text.find('\n') == std::string::npos && text.find('\r') != std::string::npos;
+  if (lone_returns) std::replace(text.begin(), text.end(), '\r', '\n');
+}
+
+/// The reader of the format, on the text of the file.
+MeshFile read_text(const std::string& path, Content content) {
+  const MeshFormat format = format_of(path);
+  std::string text = read_file(path);
+  if (text.empty()) throw Failure(path + ": the file is empty");
+  if (format == MeshFormat::kObj || format == MeshFormat::kOff) normalise_text(text);
+  switch (format) {
+    case MeshFormat::kObj:
+      return read_obj(text, path, content);
+    case MeshFormat::kOff:
+      return read_off(text, path, content);
+    case MeshFormat::kPly:
+      return read_ply(text, path, content);
+    default:
+      return read_stl(text, path, content);
+  }
+}
+
+}  // namespace
+
+MeshFormat format_of(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".obj") return MeshFormat::kObj;
+  if (extension == ".off") return MeshFormat::kOff;
+  if (extension == ".ply") return MeshFormat::kPly;
+  if (extension == ".stl") return MeshFormat::kStl;
+  throw Failure(path + ": the format is unknown: use the extension .obj, .off, .ply or .stl");
+}
+
+void require_writable_format(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".obj" || extension == ".ply") return;
+  throw Failure(path + ": results are written as OBJ or PLY: use the extension .obj or .ply");
+}
+
+MeshFile read_mesh(const std::string& path, Content content) {
+  MeshFile mesh = read_text(path, content);
+  mesh.path = path;
+  return mesh;
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,103 @@
+// Meshes in files: OBJ, OFF, PLY and STL.
+//
+// The readers and writers are our own because four things are the point of this program that
+// general mesh libraries do not give: doubles that are correctly rounded in both directions
+// (std::from_chars and std::to_chars), vertices and faces that keep their order and count, what a
+// file carries beside them kept for the output, and errors that say which line, face or vertex of
+// which file. A file is read into memory whole.
+//
+// A reader returns what it has proved: every corner is a vertex that is stored, every polygon has
+// three corners or more, and every column has a value for each of its items.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/column.h"
+#include "files/polygons.h"
+
+namespace beltrami::cli {
+
+inline constexpr std::uint32_t kNoNormal = std::numeric_limits<std::uint32_t>::max();
+/// What the library can index; files with more are refused.
+inline constexpr std::int64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
+
+/// Normals of corners. Those of vertices are the vertex columns nx, ny and nz.
+struct CornerNormals {
+  std::vector<double> values;            ///< x y z each
+  std::vector<std::uint32_t> of_corner;  ///< kNoNormal for none; empty where no corner has one
+};
+
+/// A statement of an OBJ file that holds for, or stands between, the faces: a group, a material.
+struct Statement {
+  std::uint64_t polygon = 0;  ///< it stands before this one
+  std::string text;           ///< as in the file, without the line end
+};
+
+/// A mesh as its file has it. What is computed on is its Surface (surface.h).
+struct MeshFile {
+  std::string path;                  ///< of the file, for messages
+  std::vector<double> positions;     ///< x y z per vertex, in file order
+  Polygons polygons;                 ///< in file order
+  std::vector<double> uvs;           ///< u v per vertex; empty where not asked for
+  bool single_uvs = false;           ///< single precision holds them: PLY stores them so
+  std::uint64_t welded_corners = 0;  ///< STL: corners that fell together with an earlier one
+
+  /// What the file carries beside these, in the names of PLY: colours are red, green, blue and
+  /// alpha, normals nx, ny and nz.
+  std::vector<Column> vertex_columns, face_columns;
+  bool unit_colours = false;  ///< colours go from 0 to 1 whatever their type, as in OBJ
+  CornerNormals normals;
+  std::vector<Statement> statements;  ///< by polygon
+  std::vector<Table> tables;          ///< other elements of a PLY file
+  std::vector<std::string> comments;  ///< of a PLY header, whole lines
+  std::vector<std::string> not_kept;  ///< what the reader passed over, in words
+
+  std::uint64_t vertex_count() const { return positions.size() / 3; }
+};
+
+enum class MeshFormat { kObj, kOff, kPly, kStl };
+
+/// Which parts of a file a command needs.
+enum class Content {
+  kSurface,  ///< all but UVs, which a run replaces
+  kUvs       ///< positions, polygons and one UV per vertex, and nothing else: a file without UVs,
+             ///< or with several for one vertex, fails
+};
+
+/// The format that the extension of `path` names, in any case. Throws Failure for others.
+MeshFormat format_of(const std::string& path);
+
+/// Throws Failure unless `path` has the extension of a format that can hold UVs: OBJ or PLY.
+void require_writable_format(const std::string& path);
+
+/// Reads `path`. Throws Failure for anything unreadable or truncated, and for indices out of range;
+/// std::bad_alloc. Face and vertex numbers in messages count from 0.
+MeshFile read_mesh(const std::string& path, Content content);
+
+/// The readers behind read_mesh: `text` is the whole file, `path` is for messages.
+MeshFile read_obj(std::string_view text, const std::string& path, Content content);
+MeshFile read_off(std::string_view text, const std::string& path, Content content);
+MeshFile read_ply(std::string_view text, const std::string& path, Content content);
+MeshFile read_stl(std::string_view text, const std::string& path, Content content);
+
+/// Receives the bytes of a file in order.
+using Sink = std::function<void(std::string_view)>;
+
+/// Writes `mesh` with its UVs (one per vertex) in the format that `path` names, and of the rest
+/// what that format can hold. Numbers in text have the fewest digits (at most 17) that read back to
+/// the same bits.
+void write_mesh(const MeshFile& mesh, const std::string& path, const Sink& sink);
+
+/// Gives `mesh` other faces, triangles on the same vertices. What belonged to the old ones goes,
+/// and is said in not_kept.
+void replace_faces(MeshFile& mesh, std::vector<std::uint32_t> corners);
+
+/// What write_mesh leaves out, and what the reader did, in words: "groups", "face property flags".
+std::vector<std::string> not_kept(const MeshFile& mesh, const std::string& path);
+
+}  // namespace beltrami::cli

@@ -1,0 +1,319 @@
+// Wavefront OBJ: the faces of the whole file are one mesh. Objects, groups, smoothing groups,
+// materials, lines and points are kept as statements among the faces. Earlier texture coordinates
+// are passed over where a run replaces them, comments and free-form geometry always.
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "files/extra_numbers.h"
+#include "files/mesh_file.h"
+#include "files/text_cursor.h"
+#include "process/failure.h"
+
+namespace beltrami::cli {
+namespace {
+
+constexpr std::uint32_t kNoTexture = std::numeric_limits<std::uint32_t>::max();
+/// Statements that are kept as they are.
+constexpr std::array<std::string_view, 14> kKept = {
+    "g",   "o",        "s",        "usemtl", "mtllib",     "usemap",    "maplib",
+    "lod", "c_interp", "d_interp", "bevel",  "shadow_obj", "trace_obj", "mg"};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const std::string& path, Content content)
+      : text_(text), path_(path), content_(content), cursor_(text, path, true) {}
+
+  MeshFile read() {
+    while (!cursor_.at_end()) read_statement();
+    if (mesh_.positions.empty()) throw Failure(path_ + ": no vertices: is this an OBJ file?");
+    if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
+    require_forward_references();
+    if (content_ == Content::kUvs) {
+      resolve_uvs();
+    } else {
+      finish_attributes();
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_statement() {
+    cursor_.skip_blanks();
+    if (cursor_.at_line_end()) return cursor_.skip_line();
+    const char* begin = cursor_.position();
+    const std::string_view keyword = cursor_.word();
+    if (keyword == "v") {
+      read_vertex();
+    } else if (keyword == "f" || keyword == "fo") {
+      read_face();
+    } else if (keyword == "vt") {
+      if (content_ == Content::kUvs) read_texture();
+    } else if (content_ == Content::kSurface) {
+      return read_other(keyword, begin);
+    } else {
+      require_text(keyword);
+    }
+    cursor_.skip_line();
+  }
+
+  void require_text(std::string_view keyword) const {
+    if (!keyword.empty() && keyword.front() == '\0')
+      cursor_.fail("a zero byte: this is not an OBJ file");
+  }
+
+  void read_vertex() {
+    for (int k = 0; k < 3; ++k) mesh_.positions.push_back(cursor_.number("a coordinate"));
+    if (content_ != Content::kSurface) return;
+    unknown_numbers_ |= extra_.read(cursor_, mesh_.vertex_count() - 1);
+  }
+
+  /// Normals are of no use to a run, so wrong ones are dropped, all of them, and not refused.
+  void read_normal() {
+    for (int k = 0; k < 3; ++k) {
+      const std::optional<double> number = cursor_.number_if_any();
+      bad_normals_ |= !number;
+      mesh_.normals.values.push_back(number.value_or(0));
+    }
+  }
+
+  void read_texture() {
+    textures_.push_back(cursor_.number("a texture coordinate"));
+    cursor_.skip_blanks();
+    // The second coordinate is optional in the format.
+    textures_.push_back(cursor_.at_line_end() ? 0.0 : cursor_.number("a texture coordinate"));
+  }
+
+  /// Goes on to the next line.
+  void read_other(std::string_view keyword, const char* begin) {
+    if (keyword == "vn") {
+      read_normal();
+    } else if (keyword == "l" || keyword == "p") {
+      read_line(keyword);
+    } else if (std::find(kKept.begin(), kKept.end(), keyword) != kKept.end()) {
+      cursor_.skip_line();
+      std::string line(begin, cursor_.position());
+      // A backslash at the end would continue the line into the next one.
+      line.erase(line.find_last_not_of(" \t\r\n\\") + 1);
+      mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+      return;
+    } else {
+      require_text(keyword);
+      note_unknown(keyword);
+    }
+    cursor_.skip_line();
+  }
+
+  void note_unknown(std::string_view keyword) {
+    constexpr std::size_t kMostNames = 8;
+    const std::string note = "statements '" + std::string(keyword.substr(0, 40)) + "'";
+    auto& notes = mesh_.not_kept;
+    if (notes.size() > kMostNames || std::find(notes.begin(), notes.end(), note) != notes.end())
+      return;
+    notes.push_back(notes.size() == kMostNames ? "statements of other kinds" : note);
+  }
+
+  /// A polyline or points, with its numbers made absolute: they must not depend on where it stands.
+  void read_line(std::string_view keyword) {
+    std::string line(keyword);
+    for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
+      const std::int64_t number = cursor_.integer("a vertex number");
+      const std::int64_t index = index_of(number, mesh_.vertex_count());
+      if (index < 0) cursor_.fail("there is no vertex number " + std::to_string(number));
+      line += ' ';
+      line += std::to_string(index + 1);
+      if (cursor_.peek() != '/') continue;
+      cursor_.advance();
+      if (names_number()) cursor_.integer("a texture number");
+      line += '/';
+      line += std::to_string(index + 1);
+    }
+    mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+  }
+
+  void read_face() {
+    for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) read_corner();
+    const std::uint64_t face = mesh_.polygons.size(), corners = mesh_.polygons.open_corners();
+    if (corners < 3) {
+      cursor_.fail("face " + std::to_string(face) + " (counted from 0) has only " +
+                       std::to_string(corners) + " corners: a face needs 3 or more",
+                   BELTRAMI_ELEMENT_FACE, face);
+    }
+    mesh_.polygons.end_polygon();
+  }
+
+  /// After a slash: whether something stands there. Some writers leave slashes behind nothing.
+  bool names_number() const {
+    const char c = cursor_.peek();
+    return c != '/' && c != ' ' && c != '\t' && c != '\r' && !cursor_.at_line_end();
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn.
+  void read_corner() {
+    mesh_.polygons.add_corner(
+        resolve(cursor_.integer("a vertex number"), mesh_.vertex_count(), "vertex"));
+    std::uint32_t texture = kNoTexture, normal = kNoNormal;
+    if (cursor_.peek() == '/') {
+      cursor_.advance();
+      if (names_number()) {
+        const std::int64_t number = cursor_.integer("a texture number");
+        if (content_ == Content::kUvs) {
+          texture = resolve(number, textures_.size() / 2, "texture coordinate");
+        }
+      }
+      if (cursor_.peek() == '/') {
+        cursor_.advance();
+        if (names_number()) normal = read_normal_number();
+      }
+    }
+    if (content_ == Content::kUvs) {
+      corner_textures_.push_back(texture);
+    } else if (normal != kNoNormal || !mesh_.normals.of_corner.empty()) {
+      mesh_.normals.of_corner.resize(mesh_.polygons.corners().size() - 1, kNoNormal);
+      mesh_.normals.of_corner.push_back(normal);
+    }
+  }
+
+  std::uint32_t read_normal_number() {
+    const std::int64_t number = cursor_.integer("a normal number");
+    const std::int64_t index = index_of(number, mesh_.normals.values.size() / 3);
+    bad_normals_ |= index < 0;
+    return index < 0 ? kNoNormal : static_cast<std::uint32_t>(index);
+  }
+
+  /// Numbers count from 1, or backwards from the last item so far. -1 for what cannot be an index.
+  static std::int64_t index_of(std::int64_t number, std::uint64_t count) {
+    if (number == 0 || number < -kMaxIndex || number > kMaxIndex) return -1;
+    if (number > 0) return number - 1;
+    const std::int64_t index = number + static_cast<std::int64_t>(count);
+    return index < kMaxIndex ? index : -1;
+  }
+
+  std::uint32_t resolve(std::int64_t number, std::uint64_t count, const char* what) const {
+    const std::int64_t index = index_of(number, count);
+    if (index < 0) fail_range(cursor_, number, what, mesh_.polygons.size());
+    return static_cast<std::uint32_t>(index);
+  }
+
+  [[noreturn]] static void fail_range(const TextCursor& at, std::int64_t number, const char* what,
+                                      std::uint64_t face) {
+    throw Failure(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                  at.place() + "face " + std::to_string(face) + " (counted from 0) names " + what +
+                      " number " + std::to_string(number) + ", which the file does not have",
+                  BELTRAMI_ELEMENT_FACE, face);
+  }
+
+  /// Faces may name vertices that come later, so the upper end is known now only.
+  void require_forward_references() const {
+    const std::vector<std::uint32_t>& corners = mesh_.polygons.corners();
+    const std::uint64_t vertices = mesh_.vertex_count(), textures = textures_.size() / 2;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const bool named = !corner_textures_.empty() && corner_textures_[i] != kNoTexture;
+      const bool no_texture = named && corner_textures_[i] >= textures;
+      if (corners[i] < vertices && !no_texture) continue;
+      const bool no_vertex = corners[i] >= vertices;
+      const std::uint64_t face = mesh_.polygons.of_corner(i);
+      fail_range(at_face(face), (no_vertex ? corners[i] : corner_textures_[i]) + std::int64_t{1},
+                 no_vertex ? "vertex" : "texture coordinate", face);
+    }
+  }
+
+  /// A cursor on the line of a face, found by walking the file again: lines are not stored.
+  TextCursor at_face(std::uint64_t face) const {
+    TextCursor cursor(text_, path_, true);
+    for (std::uint64_t seen = 0;; cursor.skip_line()) {
+      cursor.skip_blanks();
+      if (cursor.peek() != 'f') continue;
+      const std::string_view keyword = cursor.word();
+      if ((keyword == "f" || keyword == "fo") && seen++ == face) return cursor;
+    }
+  }
+
+  void finish_attributes() {
+    CornerNormals& normals = mesh_.normals;
+    for (const std::uint32_t normal : normals.of_corner) {
+      bad_normals_ |= normal != kNoNormal && normal >= normals.values.size() / 3;
+    }
+    if (bad_normals_) {
+      mesh_.not_kept.emplace_back("normals (one is not a number, or not in the file)");
+    }
+    if (bad_normals_ || normals.of_corner.empty()) {
+      normals = {};
+    } else {
+      normals.of_corner.resize(mesh_.polygons.corners().size(), kNoNormal);
+    }
+    name_extra_numbers();
+  }
+
+  /// One number is a weight, three are a colour, four have an alpha.
+  void name_extra_numbers() {
+    const std::size_t width = extra_.width();
+    std::vector<const char*> names;
+    if (width == 1) names = {"w"};
+    if (width == 3) names = {"red", "green", "blue"};
+    if (width == 4) names = {"red", "green", "blue", "alpha"};
+    if (unknown_numbers_ || (width > 0 && names.empty()))
+      mesh_.not_kept.emplace_back("numbers after the coordinates");
+    mesh_.unit_colours = true;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      mesh_.vertex_columns.push_back(extra_.column(k, names[k], mesh_.vertex_count()));
+    }
+  }
+
+  void resolve_uvs() {
+    bool named = false;
+    for (const std::uint32_t texture : corner_textures_) named |= texture != kNoTexture;
+    if (!named && textures_.size() / 2 == mesh_.vertex_count()) {
+      mesh_.uvs = std::move(textures_);  // some writers pair the vt with the v silently
+      return;
+    }
+    if (!named) throw Failure(path_ + ": no texture coordinates: faces need the form v/vt");
+    mesh_.uvs.assign(2 * mesh_.vertex_count(), 0.0);
+    std::vector<bool> known(mesh_.vertex_count(), false);
+    for (std::size_t i = 0; i < corner_textures_.size(); ++i) assign_uv(i, known);
+  }
+
+  void assign_uv(std::size_t corner, std::vector<bool>& known) {
+    const std::uint32_t vertex = mesh_.polygons.corners()[corner];
+    const std::uint32_t texture = corner_textures_[corner];
+    if (texture == kNoTexture) {
+      const std::uint64_t face = mesh_.polygons.of_corner(corner);
+      at_face(face).fail(
+          "face " + std::to_string(face) + " (counted from 0) has no texture coordinates",
+          BELTRAMI_ELEMENT_FACE, face);
+    }
+    const double u = textures_[2 * std::size_t{texture}];
+    const double v = textures_[2 * std::size_t{texture} + 1];
+    double* uv = &mesh_.uvs[2 * std::size_t{vertex}];
+    // Negated so that NaN passes: the library refuses it with its vertex.
+    if (known[vertex] && (uv[0] < u || uv[0] > u || uv[1] < v || uv[1] > v)) {
+      at_face(mesh_.polygons.of_corner(corner))
+          .fail("vertex " + std::to_string(vertex) +
+                    " (counted from 0) has two different texture coordinates: cut "
+                    "the mesh along its seams first",
+                BELTRAMI_ELEMENT_VERTEX, vertex);
+    }
+    uv[0] = u;
+    uv[1] = v;
+    known[vertex] = true;
+  }
+
+  std::string_view text_;
+  const std::string& path_;
+  Content content_;
+  TextCursor cursor_;
+  MeshFile mesh_;
+  ExtraNumbers extra_;                          ///< after the coordinates of vertices
+  bool unknown_numbers_ = false;                ///< something else stands behind those
+  bool bad_normals_ = false;                    ///< a normal is no number, or not there
+  std::vector<double> textures_;                ///< u v per vt statement
+  std::vector<std::uint32_t> corner_textures_;  ///< one per corner, kNoTexture for none
+};
+
+}  // namespace
+
+MeshFile read_obj(std::string_view text, const std::string& path, Content content) {
+  return ObjReader(text, path, content).read();
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,98 @@
+// The program `beltrami`: the command line.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <exception>
+#include <new>
+#include <sstream>
+
+#include "commands/command.h"
+#include "process/descriptor.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 injective, 3 not injective, 2 unusable arguments, files or mesh, 4 out of\n"
+    "memory or an internal failure, 130 cancelled, 1 files written but no summary on stdout.";
+
+constexpr const char* kKept =
+    "OUT is IN with new texture coordinates: faces stay polygons (triangles for the computation, "
+    "and\n"
+    "for the verdict), and normals, colours, groups, materials and other attributes are kept "
+    "where\n"
+    "the format can hold them; a line says what is not kept.";
+
+CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& options) {
+  CLI::App* command = app.add_subcommand("flatten", "Flatten a disk-like triangle mesh to UVs");
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
+  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
+  command->add_flag("--weld", arguments.weld,
+                    "Flatten vertices at one place (to the last bit) as one; every vertex of the\n"
+                    "file stays in OUT");
+  options.add_to(*command);
+  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--picture", arguments.picture, "Write a picture of the map")
+      ->type_name("FILE.png");
+  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->footer(std::string(kKept) + "\n\n" + kExitCodes);
+  return command;
+}
+
+CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
+  CLI::App* command = app.add_subcommand("check", "Judge the UVs that a mesh file carries");
+  command->add_option("MESH", arguments.input, "Mesh with UVs: .obj or .ply")->required();
+  command->add_flag("--float32", arguments.float32, "Judge the UVs rounded to single precision");
+  command->add_flag("--weld", arguments.weld,
+                    "Judge vertices at one place and with one UV (to the last bit) as one");
+  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--picture", arguments.picture, "Write a picture of the map")
+      ->type_name("FILE.png");
+  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->footer(kExitCodes);
+  return command;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Injective, low-distortion flattening of disk-like triangle meshes", "beltrami");
+  app.set_version_flag("--version", beltrami_build_info());
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  Options options;
+  FlattenArguments flatten;
+  CheckArguments check;
+  const CLI::App* flatten_app = add_flatten(app, flatten, options);
+  add_check(app, check);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    std::ostringstream text, none;
+    const int code = app.exit(help, text, none);
+    return print(text.str(), "the text", code);
+  } catch (const CLI::ParseError& error) {
+    return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
+  }
+  return flatten_app->parsed() ? flatten_command(flatten, options) : check_command(check);
+}
+
+/// Before the static objects of CLI11, which need memory, are made.
+[[gnu::constructor(101)]] void prepare_for_static_objects() {
+  install_terminate_handler();
+}
+
+}  // namespace
+}  // namespace beltrami::cli
+
+int main(int argc, char** argv) {
+  using namespace beltrami::cli;
+  reserve_standard_descriptors();
+  install_signal_handlers();
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return tell(kExitInternal, {"beltrami: out of memory"});
+  } catch (const std::exception& error) {
+    return tell(kExitInternal, {"beltrami: ", error.what()});
+  }
+}

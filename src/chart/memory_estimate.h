@@ -1,0 +1,26 @@
+// What a run will take of memory, from counts alone, before anything is allocated.
+#pragma once
+
+#include <cstdint>
+
+#include "chart/pipeline.h"
+
+namespace beltrami {
+
+/// What a run does on hard meshes only, beyond its estimate, and does without where its memory
+/// limit is too low for it.
+enum class Extra {
+  kHarmonicMap,  ///< beside the metric one, where that flips many faces
+  kNewtonSteps,  ///< after a polish that nearly singular faces block: several times the memory
+  kGlobalFix,    ///< of the repair
+};
+
+/// Bytes at the peak of a run with these options, the context's mesh and results included, extras
+/// not: the least memory limit that the run can do with. It is meant to be enough:
+/// memory_estimate.cpp says what it leaves out. Takes milliseconds for a million faces.
+std::uint64_t estimate_memory(const DiskMesh& mesh, const Options& options);
+
+/// Whether the run stays within its memory limit with this extra.
+bool affords(const DiskMesh& mesh, const Options& options, Extra extra);
+
+}  // namespace beltrami

@@ -1,0 +1,315 @@
+#include "descend/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "exact/crossings.h"
+
+namespace beltrami {
+namespace {
+
+using Box = Eigen::AlignedBox2d;
+
+/// How far the barrier reaches, in edges: far enough for a Newton step to see what it runs into.
+/// With half an edge the steps become twice as many; with three the map ends higher.
+constexpr double kReach = 2;
+/// More contacts than so many for each vertex tell a step nothing new.
+constexpr int kMostContacts = 32;
+/// Of the barrier in an objective, times half the energy: at the end it raises the energy by a
+/// thousandth.
+constexpr double kStrength = 0.01;
+/// Points of one boundary part are near each other: of the way between them along the boundary.
+constexpr double kReachAlong = 0.25;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Where a vertex is nearest to an edge.
+struct Nearest {
+  double share;  ///< of the edge, up to there
+  Vec2 apart;    ///< from there to the vertex
+  double distance;
+  /// Sine of the angle between the edge and `apart`, positive outside, where the edge has the
+  /// surface on its left: 1 or -1 but beyond the ends of the edge.
+  double outside;
+};
+
+Nearest nearest_on_edge(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 edge = b - a, away = p - a;
+  const double length_sq = edge.squaredNorm();
+  const double along = length_sq > 0 ? away.dot(edge) / length_sq : 0.0;
+  const double share = std::clamp(along, 0.0, 1.0);
+  const Vec2 apart = away - share * edge;
+  const double distance = apart.norm(), turn = cross(edge, away);
+  if (share == along) return {share, apart, distance, turn > 0 ? -1.0 : 1.0};
+  const double product = std::sqrt(length_sq) * distance;
+  return {share, apart, distance, product > 0 ? std::clamp(-turn / product, -1.0, 1.0) : 1.0};
+}
+
+double barrier(double x) {
+  if (x >= 1) return 0;
+  const double rest = 1 - x;
+  return x > 0 ? rest * rest * rest / x : std::numeric_limits<double>::infinity();
+}
+
+double barrier_slope(double x) {
+  const double rest = 1 - x;
+  return -rest * rest * (3 + rest / x) / x;
+}
+
+double barrier_curvature(double x) {
+  const double ratio = (1 - x) / x;
+  return 2 * ratio * (3 + 3 * ratio + ratio * ratio);
+}
+
+/// The derivative of the distance by the six coordinates of a pair.
+Vector6 distance_gradient(const Nearest& near) {
+  const Vec2 normal = near.apart / near.distance;
+  Vector6 gradient;
+  gradient << normal, -(1 - near.share) * normal, -near.share * normal;
+  return gradient;
+}
+
+/// The derivative of Nearest::outside, where the vertex is beyond the ends of the edge.
+Vector6 outside_gradient(const Nearest& near, const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 edge = b - a, away = p - a;
+  const double length = edge.norm(), turn = cross(edge, away);
+  const Vec2 by_vertex = Vec2(edge.y(), -edge.x()) / length;
+  const Vec2 by_to = Vec2(-away.y(), away.x()) / length + turn / (length * length * length) * edge;
+  Vector6 by_height;
+  by_height << by_vertex, -by_vertex - by_to, by_to;
+  return (by_height - near.outside * distance_gradient(near)) / near.distance;
+}
+
+/// One pair's term and its gradient. Beyond the ends of the edge the barrier fades out as the
+/// vertex gets behind it, where the next edge takes over.
+struct Term {
+  double value;
+  Vector6 gradient;
+};
+
+Term contact_term(const Contact& c, const Nearest& near, const std::vector<Vec2>& uvs) {
+  const double x = near.distance / c.reach, share = near.outside * near.outside;
+  Term term{c.weight * share * barrier(x),
+            (c.weight * share * barrier_slope(x) / c.reach) * distance_gradient(near)};
+  if (share < 1) {
+    term.gradient += (2 * c.weight * near.outside * barrier(x)) *
+                     outside_gradient(near, uvs[c.vertex], uvs[c.from], uvs[c.to]);
+  }
+  return term;
+}
+
+/// The first t in (0, limit) at which p and the edge a-b, all moving straight, become collinear
+/// with p on the edge, or a rounding error beside it; `limit` if they do not.
+double touch_time(const std::array<Vec2, 3>& place, const std::array<Vec2, 3>& move, double limit) {
+  constexpr double kSlack = 1e-9;
+  const Vec2 edge = place[2] - place[1], away = place[0] - place[1];
+  const Vec2 edge_move = move[2] - move[1], away_move = move[0] - move[1];
+  const double c0 = cross(edge, away), c2 = cross(edge_move, away_move);
+  const double c1 = cross(edge, away_move) + cross(edge_move, away);
+  const double discriminant = c1 * c1 - 4 * c0 * c2;
+  if (!(discriminant >= 0)) return limit;
+  const double q = -0.5 * (c1 + std::copysign(std::sqrt(discriminant), c1));
+  double first = limit;
+  for (const double t : {c0 / q, q / c2}) {
+    if (!(t > 0 && t < first)) continue;  // not numbers neither
+    const Vec2 edge_then = edge + t * edge_move, away_then = away + t * away_move;
+    const double length_sq = edge_then.squaredNorm(), share = away_then.dot(edge_then);
+    if (share >= -kSlack * length_sq && share <= (1 + kSlack) * length_sq) first = t;
+  }
+  return first;
+}
+
+}  // namespace
+
+BoundaryContact::BoundaryContact(const std::vector<Index>& loop, const std::vector<double>& lengths,
+                                 std::vector<double> scales)
+    : loop_(loop), lengths_(lengths), scales_(std::move(scales)), along_(1, 0.0) {
+  for (const double length : lengths_) along_.push_back(along_.back() + length);
+}
+
+double BoundaryContact::reach_of_vertex(Index i) const {
+  return scale_ * kReach * std::min(scales_[before(i)], scales_[i]);
+}
+
+double BoundaryContact::reach(Index i, Index e) const {
+  const auto way_to = [&](Index k) {
+    const double way = std::abs(along_[k] - along_[i]);
+    return std::min(way, along_.back() - way);
+  };
+  return std::min({reach_of_vertex(i), scale_ * kReach * scales_[e],
+                   scale_ * kReachAlong * std::min(way_to(e), way_to(after(e)))});
+}
+
+/// Calls visit(i, e) for the vertices i and the edges e, none that ends there, whose boxes meet,
+/// that of an edge being around the boxes of its ends, until it returns false.
+template <class BoxOf, class Visit>
+void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_end_box,
+                                    const Visit& visit) const {
+  // A binary tree over the edges in their order: near in the loop is near in the plane.
+  const Index count = size_of(loop_);
+  Index leaves = 1;
+  while (leaves < count) leaves *= 2;
+  std::vector<Box> boxes(2 * static_cast<std::size_t>(leaves));
+  for (Index e = 0; e < count; ++e) {
+    boxes[leaves + e] = edge_end_box(e).merged(edge_end_box(after(e)));
+  }
+  for (Index node = leaves - 1; node > 0; --node) {
+    boxes[node] = boxes[2 * node].merged(boxes[2 * node + 1]);
+  }
+  std::vector<Index> stack;
+  PollSometimes poll;
+  for (Index i = 0; i < count; ++i) {
+    const Box box = vertex_box(i);
+    stack.assign(1, 1);
+    while (!stack.empty()) {
+      const Index node = stack.back();
+      stack.pop_back();
+      poll();
+      if (!boxes[node].intersects(box)) continue;
+      const Index e = node - leaves;
+      if (e < 0) {
+        stack.push_back(2 * node + 1);
+        stack.push_back(2 * node);
+      } else if (e != i && after(e) != i && !visit(i, e)) {
+        return;
+      }
+    }
+  }
+}
+
+void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
+  strength_ = 0.5 * kStrength * energy;
+  scale_ = std::min(1.0, std::sqrt(2 / energy));
+  const std::size_t most = kMostContacts * loop_.size();
+  while (scale_ > std::numeric_limits<double>::min() && find(uvs, 1, most + 1).size() > most) {
+    scale_ *= 0.5;
+  }
+}
+
+bool BoundaryContact::is_pressed(const std::vector<Vec2>& uvs) const {
+  const std::size_t most = kMostContacts * loop_.size();
+  const std::size_t near = find(uvs, 1, most + 1).size();
+  return near > 0 && near <= most;
+}
+
+std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin,
+                                           std::size_t most) const {
+  using BoxOf = std::function<Box(Index)>;
+  const BoxOf around_vertex = [&](Index i) {
+    const double reach = margin * reach_of_vertex(i);
+    const Vec2& p = uvs[loop_[i]];
+    return Box(p - Vec2(reach, reach), p + Vec2(reach, reach));
+  };
+  const BoxOf at_vertex = [&](Index i) { return Box(uvs[loop_[i]]); };
+  std::vector<Contact> contacts;
+  for_each_near(around_vertex, at_vertex, [&](Index i, Index e) {
+    const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
+    const double limit = reach(i, e);
+    const Nearest near = nearest_on_edge(uvs[p], uvs[a], uvs[b]);
+    // Behind the edge is the surface, and no contact.
+    if (near.distance >= margin * limit || near.outside <= (margin > 1 ? -0.5 : 0.0)) return true;
+    contacts.push_back({p, a, b, limit, (lengths_[before(i)] + lengths_[i]) * lengths_[e]});
+    return contacts.size() < most;
+  });
+  return contacts;
+}
+
+double BoundaryContact::energy(const std::vector<Vec2>& uvs) const {
+  double sum = 0;
+  for (const Contact& c : find(uvs)) {
+    const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
+    sum += c.weight * near.outside * near.outside * barrier(near.distance / c.reach);
+  }
+  return sum;
+}
+
+double BoundaryContact::add_gradient(const std::vector<Vec2>& uvs, double strength,
+                                     std::vector<Vec2>& gradient) const {
+  double sum = 0;
+  for (const Contact& c : find(uvs)) {
+    const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
+    const Term term = contact_term(c, near, uvs);
+    sum += term.value;
+    gradient[c.vertex] += strength * term.gradient.segment<2>(0);
+    gradient[c.from] += strength * term.gradient.segment<2>(2);
+    gradient[c.to] += strength * term.gradient.segment<2>(4);
+  }
+  return sum;
+}
+
+std::vector<double> BoundaryContact::stiffness(const std::vector<Vec2>& uvs) const {
+  std::vector<double> result(uvs.size(), 0);
+  for (const Contact& c : find(uvs)) {
+    const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
+    const double across = c.weight * near.outside * near.outside *
+                          barrier_curvature(near.distance / c.reach) / (c.reach * c.reach);
+    result[c.vertex] += across;
+    result[c.from] += (1 - near.share) * across;
+    result[c.to] += near.share * across;
+  }
+  return result;
+}
+
+std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
+                                            const std::vector<Vec2>& direction, double limit,
+                                            double all_before) const {
+  std::vector<Touch> found;
+  double first = limit;
+  const std::function<Box(Index)> swept = [&](Index i) {
+    const Vec2 &p = uvs[loop_[i]], &d = direction[loop_[i]];
+    Box box(p);
+    return box.extend(p + limit * d);
+  };
+  for_each_near(swept, swept, [&](Index i, Index e) {
+    const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
+    const double time =
+        touch_time({uvs[p], uvs[a], uvs[b]}, {direction[p], direction[a], direction[b]}, limit);
+    // There may be as many as pairs of edges.
+    if (time < std::max(first, std::min(all_before, limit))) found.push_back({p, a, time});
+    first = std::min(first, time);
+    return true;
+  });
+  return found;
+}
+
+double BoundaryContact::first_touch(const std::vector<Vec2>& uvs,
+                                    const std::vector<Vec2>& direction, double limit) const {
+  for (const Touch& touch : touches(uvs, direction, limit)) limit = std::min(limit, touch.time);
+  return limit;
+}
+
+bool BoundaryContact::is_simple(const std::vector<Vec2>& uvs) const {
+  return beltrami::is_simple(loop_, uvs);
+}
+
+double share_of_reach(const Contact& c, const std::vector<Vec2>& uvs) {
+  return nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]).distance / c.reach;
+}
+
+FaceModel contact_model(const Contact& c, const std::vector<Vec2>& uvs, bool stuck) {
+  const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
+  const double x = near.distance / c.reach;
+  FaceModel model{Vector6::Zero(), Matrix6::Zero()};
+  if (!(x < 1 && near.outside > 0)) return model;
+  // The curvature of the distance itself is left out: it is not positive.
+  const Vector6 by_distance = distance_gradient(near);
+  model.gradient = contact_term(c, near, uvs).gradient;
+  const double across =
+      c.weight * near.outside * near.outside * barrier_curvature(x) / (c.reach * c.reach);
+  model.hessian.noalias() = (across * by_distance) * by_distance.transpose();
+  if (stuck) {
+    const Vec2 tangent(-near.apart.y() / near.distance, near.apart.x() / near.distance);
+    Vector6 along;
+    along << tangent, -(1 - near.share) * tangent, -near.share * tangent;
+    model.hessian.noalias() += (across * along) * along.transpose();
+  }
+  return model;
+}
+
+}  // namespace beltrami

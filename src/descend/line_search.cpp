@@ -1,0 +1,77 @@
+#include "descend/line_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Smallest root of c0 + c1 t + c2 t^2 that is not negative, for c0 >= 0.
+double smallest_positive_root(double c0, double c1, double c2) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double discriminant = c1 * c1 - 4 * c0 * c2;
+  if (discriminant < 0) return kNever;
+  const double root = std::sqrt(discriminant);
+  if (c1 < 0) return 2 * c0 / (root - c1);
+  return c2 < 0 ? (c1 + root) / (-2 * c2) : kNever;
+}
+
+/// Twice the area of a positive face along the way: c0 + c1 t + c2 t^2. Of a face so thin that
+/// roundoff makes its area negative c0 is 0: it may grow only.
+struct AreaPolynomial {
+  double c0, c1, c2;
+};
+
+AreaPolynomial area_along(const Triangle& t, const std::vector<Vec2>& uvs,
+                          const std::vector<Vec2>& direction) {
+  const Vec2 e1 = uvs[t[1]] - uvs[t[0]], e2 = uvs[t[2]] - uvs[t[0]];
+  const Vec2 p1 = direction[t[1]] - direction[t[0]], p2 = direction[t[2]] - direction[t[0]];
+  return {std::max(cross(e1, e2), 0.0), cross(e1, p2) + cross(p1, e2), cross(p1, p2)};
+}
+
+}  // namespace
+
+double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                           const std::vector<Vec2>& direction, int threads) {
+  std::vector<double> smallest(faces.size() / kGrain + 1, std::numeric_limits<double>::infinity());
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double& least = smallest[begin / kGrain];
+    for (std::int64_t f = begin; f < end; ++f) {
+      const auto [c0, c1, c2] = area_along(faces[f], uvs, direction);
+      least = std::min(least, smallest_positive_root(c0, c1, c2));
+    }
+  });
+  return *std::min_element(smallest.begin(), smallest.end());
+}
+
+std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
+                                         const std::vector<Vec2>& uvs,
+                                         const std::vector<Vec2>& direction, double limit,
+                                         int threads, const std::vector<std::uint8_t>* among) {
+  std::vector<std::vector<SingularStep>> found(faces.size() / kGrain + 1);
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = faces[f];
+      if (among && !((*among)[t[0]] | (*among)[t[1]] | (*among)[t[2]])) continue;
+      const auto [c0, c1, c2] = area_along(t, uvs, direction);
+      // Most faces are far from it, and need no root.
+      if (c0 > limit * (std::max(0.0, -c1) + limit * std::max(0.0, -c2))) continue;
+      const double root = smallest_positive_root(c0, c1, c2);
+      if (root < limit) found[begin / kGrain].push_back({static_cast<Index>(f), root});
+    }
+  });
+  std::vector<SingularStep> all;
+  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,59 @@
+// Projected Newton in the space of all piecewise linear maps: composite majorization (Shtengel et
+// al. 2017; paper section 3.2), started by a few steps of SLIM (Rabinovich et al. 2017).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "descend/contact.h"
+#include "energy/energy.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+struct NewtonOptions {
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
+  int max_iterations = 500;
+  int threads = 1;
+  /// SLIM steps at the start, and again whenever a step is blocked by nearly singular faces: five
+  /// save a third of all steps on ordinary meshes, and on hard ones make the difference between 75
+  /// steps and none that helps. 0: composite majorization alone.
+  int proxy_steps = 5;
+  /// Keeps the boundary from touching itself: its barrier joins the energy, a share of it that
+  /// falls with the energy, and steps end before the first touch. The boundary must be simple at
+  /// the start. Null: it may cross itself.
+  const BoundaryContact* contact = nullptr;
+  /// Judges the start and the map after each step, for instance: the boundary is simple. Where that
+  /// does not hold once steps gain less than 1%, the run ends. Anything goes by default.
+  std::function<bool(const std::vector<Vec2>& uvs)> admissible;
+  /// Asked before each step; true ends the run with what there is. Never by default.
+  std::function<bool()> out_of_time;
+};
+
+struct NewtonResult {
+  /// Mean energy at the start and after each step; never rising, but with contact, where that holds
+  /// of its sum with the barrier.
+  std::vector<double> energies;
+  bool converged = false;
+  bool in_contact = false;     ///< boundary parts press on each other at the end
+  bool refused = false;        ///< the map at the end is not admissible; then
+  std::vector<Vec2> admitted;  ///< the last one that was, empty if none
+
+  int iterations() const { return static_cast<int>(energies.size()) - 1; }
+};
+
+/// Minimises the mean energy (weighted by rest area) over the vertices that are
+/// not `fixed`, from `uvs`, in place. No face ever flips: the step is bounded by the first
+/// singular face, then halved until the energy falls sufficiently (Armijo).
+/// Preconditions: every face is positively oriented in `uvs`; at least one vertex is fixed if the
+/// faces are connected (a free map drifts otherwise).
+/// Ends, not converged, where no shift makes a system definite.
+NewtonResult minimise_energy(const std::vector<Triangle>& faces,
+                             const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
+                             std::vector<Vec2>& uvs, const NewtonOptions& options,
+                             const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami

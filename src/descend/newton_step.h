@@ -1,0 +1,254 @@
+// One step of projected Newton over a set of faces, for any density, with or without contact of the
+// boundary.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "descend/assembly.h"
+#include "descend/contact.h"
+#include "descend/line_search.h"
+#include "energy/energy.h"
+#include "linear/spd_solver.h"
+
+namespace beltrami {
+
+/// Energies are compared relative to their value, but not to less than this: the least symmetric
+/// ARAP energy is 0.
+inline constexpr double kLeastEnergy = 0.01;
+
+/// What a step did.
+struct NewtonStep {
+  double length = 0;     ///< share of the Newton step taken; 0: no representable decrease
+  double energy = 0;     ///< mean energy after it
+  double gain = 0;       ///< what it took from the objective: the mean energy and the barrier
+  double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model
+};
+
+/// Newton's method on the mean of a density over `faces`, weighted by rest area, and on demand on a
+/// barrier that keeps the boundary from touching itself. A Density has value(s1, s2), model(s1, s2)
+/// and `kBarrier`: whether it is infinite at s2 = 0, so that steps must stop short of singular
+/// faces. Keeps references to `faces` and `rest`.
+template <class Density>
+class NewtonStepper {
+ public:
+  NewtonStepper(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                const std::vector<bool>& fixed, int threads, Density density = {})
+      : faces_(faces),
+        rest_(rest),
+        fixed_(fixed),
+        weights_(rest.size()),
+        threads_(threads),
+        density_(density),
+        hessian_(size_of(fixed), faces, fixed, 2, threads),
+        solver_(make_spd_solver({Precision::kDouble, threads})) {
+    for (const RestTriangle& r : rest) area_ += r.area();
+    for (std::size_t f = 0; f < rest.size(); ++f) weights_[f] = rest[f].area() / area_;
+  }
+
+  Index free_count() const { return hessian_.free_count(); }
+  void set_density(const Density& density) { density_ = density; }
+  /// From now on the contact's energy joins the objective, and no step lets the boundary touch
+  /// itself. Null: no contact. Keeps the pointer.
+  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
+
+  /// Infinite if a face is not positive under a barrier density.
+  double mean_energy(const std::vector<Vec2>& uvs) const;
+
+  /// Moves `uvs` along the Newton direction; `energy` is the mean energy of `uvs` as they come in.
+  /// Where no shift makes the system definite there is no step, and no telling what it would gain.
+  NewtonStep step(std::vector<Vec2>& uvs, double energy) {
+    return step_with(density_, uvs, energy);
+  }
+
+  /// The same with the Hessian model of another density that has the same value and gradient.
+  template <class Model>
+  NewtonStep step_with(const Model& model, std::vector<Vec2>& uvs, double energy);
+
+ private:
+  static constexpr std::int64_t kGrain = 8192;
+  static constexpr double kSingularShare = 0.8;  // of the way to the first singular face
+  static constexpr double kArmijo = 1e-4;        // sufficient share of the predicted decrease
+  static constexpr double kNoGain = 1e-14;       // relative predicted decrease within the roundoff
+  static constexpr double kShift = 1e-13;        // of the diagonal: see factorize
+  static constexpr double kLargestShift = 1e-3;
+  static constexpr int kMaxHalvings = 40;
+
+  static constexpr double kJammed = 0.25;  // of a step, below which what touches first is stuck
+  static constexpr double kFreed = 0.2;    // of the reach, beyond which it is no more
+  static constexpr double kPatternMargin = 1.5;  // of the reach, up to which pairs have entries
+
+  double strength() const { return contact_->strength() / area_; }
+  void meet_contacts(const std::vector<Vec2>& uvs);
+  double stop_before_touch(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,
+                           double length);
+  template <class Model>
+  void assemble_model(const Model& model, const std::vector<Vec2>& uvs);
+  bool factorize();
+
+  const std::vector<Triangle>& faces_;
+  const std::vector<RestTriangle>& rest_;
+  const std::vector<bool>& fixed_;
+  double area_ = 0;
+  std::vector<double> weights_;  // of the faces in the mean
+  const int threads_;
+  Density density_;
+  const BoundaryContact* contact_ = nullptr;
+  std::vector<Contact> contacts_;            // that the matrix has entries for
+  std::set<std::pair<Index, Index>> stuck_;  // of them, by vertex and first vertex of the edge
+  std::vector<Triangle> with_contacts_;  // the faces, then the vertices of each contact; or empty
+  MeshMatrix hessian_;
+  std::unique_ptr<SpdSolver> solver_;
+  bool analyzed_ = false;
+  Eigen::VectorXd gradient_;
+};
+
+template <class Density>
+double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
+  const auto part = [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = faces_[f];
+      const SingularValues s =
+          singular_values(linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      if (Density::kBarrier && !(s.s2 > 0)) return std::numeric_limits<double>::infinity();
+      sum += weights_[f] * density_.value(s.s1, s.s2);
+    }
+    return sum;
+  };
+  return parallel_sum(threads_, size_of(faces_), kGrain, part);
+}
+
+/// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
+/// motions; a shift relative to the diagonal covers the roundoff at any scale. False where none
+/// does.
+template <class Density>
+bool NewtonStepper<Density>::factorize() {
+  SparseMatrix& matrix = hessian_.matrix();
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
+      matrix.valuePtr()[matrix.outerIndexPtr()[c]] = diagonal[c] * (1 + shift);
+    }
+    if (solver_->factorize(matrix)) return true;
+  }
+  return false;
+}
+
+/// Gives the matrix entries for all pairs that are in contact. Pairs a little beyond their reach
+/// get them too, so that the pattern, and with it the ordering, serves for several steps.
+template <class Density>
+void NewtonStepper<Density>::meet_contacts(const std::vector<Vec2>& uvs) {
+  const auto less = [](const Contact& a, const Contact& b) {
+    return std::pair(a.vertex, a.from) < std::pair(b.vertex, b.from);
+  };
+  std::vector<Contact> now = contact_->find(uvs);
+  std::sort(now.begin(), now.end(), less);
+  if (std::includes(contacts_.begin(), contacts_.end(), now.begin(), now.end(), less)) return;
+  contacts_ = contact_->find(uvs, kPatternMargin);
+  std::sort(contacts_.begin(), contacts_.end(), less);
+  with_contacts_ = faces_;
+  for (const Contact& c : contacts_) with_contacts_.push_back({c.vertex, c.from, c.to});
+  hessian_ = MeshMatrix(size_of(fixed_), with_contacts_, fixed_, 2, threads_);
+  analyzed_ = false;
+}
+
+/// How far of `length` the map may go. Where that is next to nothing, because parts that all but
+/// touch turn against each other, which the model does not see, the next step keeps these together:
+/// the barrier then parts them.
+template <class Density>
+double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
+                                                 const std::vector<Vec2>& direction,
+                                                 double length) {
+  double limit = length / kSingularShare;
+  const std::vector<Touch> touches = contact_->touches(uvs, direction, limit, kJammed * length);
+  for (const Contact& c : contacts_) {
+    if (share_of_reach(c, uvs) > kFreed) stuck_.erase({c.vertex, c.from});
+  }
+  for (const Touch& touch : touches) limit = std::min(limit, touch.time);
+  for (const Touch& touch : touches) {
+    if (touch.time < kJammed * length) stuck_.insert({touch.vertex, touch.from});
+  }
+  return kSingularShare * limit;
+}
+
+template <class Density>
+template <class Model>
+void NewtonStepper<Density>::assemble_model(const Model& model, const std::vector<Vec2>& uvs) {
+  const auto model_of = [&](Index f) {
+    if (f >= size_of(faces_)) {
+      const Contact& contact = contacts_[f - size_of(faces_)];
+      FaceModel pair = contact_model(contact, uvs, stuck_.contains({contact.vertex, contact.from}));
+      pair.gradient *= strength();
+      pair.hessian *= strength();
+      return pair;
+    }
+    const Triangle& t = faces_[f];
+    FaceModel face =
+        face_model(rest_[f], linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]), model);
+    face.gradient *= weights_[f];
+    face.hessian *= weights_[f];
+    return face;
+  };
+  assemble(with_contacts_.empty() ? faces_ : with_contacts_, model_of, threads_, hessian_,
+           gradient_);
+}
+
+template <class Density>
+template <class Model>
+NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
+                                             double energy) {
+  if (contact_) meet_contacts(uvs);
+  assemble_model(model, uvs);
+  if (!analyzed_) solver_->analyze(hessian_.matrix(), hessian_.places(uvs));
+  analyzed_ = true;
+  NewtonStep result;
+  result.energy = energy;
+  if (!factorize()) {
+    result.predicted = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  const Eigen::VectorXd flat = solver_->solve(-gradient_);
+  result.predicted = -gradient_.dot(flat);
+  if (!(result.predicted > kNoGain * std::max(energy, kLeastEnergy))) return result;
+
+  std::vector<Vec2> direction(uvs.size(), Vec2::Zero());
+  for (Index v = 0; v < size_of(uvs); ++v) {
+    if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
+  }
+  double length = 1;
+  if (Density::kBarrier) {
+    length =
+        std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
+  }
+  const auto pressure = [&](const std::vector<Vec2>& map) {
+    return contact_ ? strength() * contact_->energy(map) : 0.0;
+  };
+  if (contact_) length = stop_before_touch(uvs, direction, length);
+  if (!(length > 0)) return result;
+  const double before = energy + pressure(uvs);
+  std::vector<Vec2> trial(uvs.size());
+  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+    for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
+    const double trial_energy = mean_energy(trial);
+    if (!(trial_energy < before)) continue;
+    const double after = trial_energy + pressure(trial);
+    if (after < before && after <= before - kArmijo * length * result.predicted &&
+        (!contact_ || contact_->is_simple(trial))) {
+      uvs.swap(trial);
+      result.length = length;
+      result.energy = trial_energy;
+      result.gain = before - after;
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace beltrami

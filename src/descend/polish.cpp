@@ -1,0 +1,293 @@
+#include "descend/polish.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "descend/line_search.h"
+#include "descend/newton_step.h"
+#include "mesh/vertex_sums.h"
+
+namespace beltrami {
+namespace {
+
+using Field = std::vector<Vec2>;  // one entry per vertex
+
+constexpr std::int64_t kGrain = 16384;
+constexpr std::size_t kHistory = 5;
+constexpr double kSingularShare = 0.8;  // of the way to the first singular face
+constexpr int kPatience = 3;            // steps with contact that gain next to nothing
+constexpr int kHoldRounds = 4;          // after which a few faces hold back the whole map
+constexpr double kArmijo = 1e-4;
+constexpr int kMaxHalvings = 30;
+constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
+
+/// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
+template <class Body>
+double sum_over(const Field& field, int threads, const Body& body) {
+  return parallel_sum(threads, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t i = begin; i < end; ++i) sum += body(static_cast<std::size_t>(i));
+    return sum;
+  });
+}
+
+double dot(const Field& a, const Field& b, int threads) {
+  return sum_over(a, threads, [&](std::size_t i) { return a[i].dot(b[i]); });
+}
+
+void add_multiple(double factor, const Field& a, int threads, Field& sum) {
+  parallel_for(threads, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) sum[i] += factor * a[i];
+  });
+}
+
+/// The mean energy with the barrier of the contact, and its gradient.
+template <class Density>
+class Objective {
+ public:
+  Objective(Index vertex_count, const std::vector<Triangle>& faces,
+            const std::vector<RestTriangle>& rest, int threads)
+      : faces_(faces), rest_(rest), sums_(vertex_count, faces, threads) {
+    const auto area = [&](std::int64_t begin, std::int64_t end) {
+      double sum = 0;
+      for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
+      return sum;
+    };
+    inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
+  }
+
+  /// From now on with contact. Keeps the pointer.
+  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
+
+  /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
+  /// use then.
+  double evaluate(const Field& uvs, Field& gradient) {
+    const auto give = [&](Index f, VertexSums::Terms& terms) {
+      const Triangle& t = faces_[f];
+      const RestTriangle& r = rest_[f];
+      const LinearMap map = linear_map(r, uvs[t[0]], uvs[t[1]], uvs[t[2]]);
+      const double weight = r.area() * inverse_area_;
+      const DensitySlopes slopes = Density::slopes(map);
+      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
+      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
+      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
+      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
+      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2;
+      const Vec2 gx = inverse_x1 * Vec2(by_x.real(), by_x.imag());
+      const Vec2 gy = inverse_y2 * Vec2(i_by_y.imag(), -i_by_y.real());
+      terms[1] = gx - (r.x2 * inverse_x1) * gy;
+      terms[2] = gy;
+      terms[0] = -terms[1] - terms[2];
+      const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
+      return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
+    };
+    const double sum = sums_.add_up(give, gradient);
+    if (!contact_ || !std::isfinite(sum)) return sum;
+    const double strength = contact_->strength() * inverse_area_;
+    return sum + strength * contact_->add_gradient(uvs, strength, gradient);
+  }
+
+ private:
+  const std::vector<Triangle>& faces_;
+  const std::vector<RestTriangle>& rest_;
+  const BoundaryContact* contact_ = nullptr;
+  double inverse_area_;
+  VertexSums sums_;
+};
+
+/// The last steps with the changes of the gradient over them, and the two-loop recursion.
+class History {
+ public:
+  explicit History(int threads) : threads_(threads) {}
+
+  /// Takes `step` and `change` over; what is left in them is of no use.
+  void add(Field& step, Field& change) {
+    const double curvature = dot(step, change, threads_);
+    if (!(curvature > 0)) return;  // would make the model indefinite
+    if (pairs_.size() < kHistory) {
+      pairs_.emplace_back();
+    } else {
+      std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
+    }
+    Pair& pair = pairs_.back();
+    pair.step.swap(step);
+    pair.change.swap(change);
+    pair.inverse_curvature = 1 / curvature;
+  }
+  void clear() { pairs_.clear(); }
+  bool empty() const { return pairs_.empty(); }
+
+  /// Writes the direction of descent; `q` is for its own use.
+  void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
+                      Field& direction) const {
+    q.resize(gradient.size());
+    parallel_for(threads_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
+    });
+    std::array<double, kHistory> alpha{};
+    for (std::size_t i = pairs_.size(); i-- > 0;) {
+      alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, threads_);
+      add_multiple(-alpha[i], pairs_[i].change, threads_, q);
+    }
+    poll_interrupt();
+    precondition(q, direction);
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, direction, threads_);
+      add_multiple(alpha[i] - beta, pairs_[i].step, threads_, direction);
+    }
+  }
+
+ private:
+  struct Pair {
+    Field step, change;
+    double inverse_curvature = 0;
+  };
+  std::vector<Pair> pairs_;
+  int threads_;
+};
+
+/// Moves the face's vertices along more rigidly, so that it does not become singular where it now
+/// does. Vertices that do not move, because they are held, still do not.
+void move_rigidly(const Triangle& face, const SingularStep& singular, Field& direction,
+                  std::vector<std::uint8_t>& changed) {
+  const Vec2 mean = (direction[face[0]] + direction[face[1]] + direction[face[2]]) / 3;
+  for (const Index v : face) {
+    if (direction[v] == Vec2::Zero()) continue;
+    direction[v] = mean + kSingularShare * singular.length * (direction[v] - mean);
+    changed[v] = 1;
+  }
+}
+
+/// Lets the faces that a full step would bring too near to being singular move along more rigidly,
+/// and then those of their neighbours that get there by it. Returns how far the whole map may go
+/// along what is left, and the faces found at first. Without `rigidly` the direction stays as it
+/// is.
+double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads, bool rigidly,
+                 Field& direction, std::vector<Index>& blocking) {
+  constexpr double kLimit = 1 / kSingularShare;
+  std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, threads);
+  blocking.clear();
+  for (const SingularStep& s : singular) blocking.push_back(s.face);
+  std::vector<std::uint8_t> changed;
+  for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
+    changed.resize(uvs.size());
+    for (const SingularStep& s : singular) move_rigidly(faces[s.face], s, direction, changed);
+    singular = singular_steps(faces, uvs, direction, kLimit, threads, &changed);
+  }
+  double length = 1;
+  for (const SingularStep& s : singular) length = std::min(length, kSingularShare * s.length);
+  return length;
+}
+
+/// The buffers of a descent.
+struct Fields {
+  Field gradient, next_gradient, direction, trial, spare;
+};
+
+/// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
+/// is low enough for its slope and the boundary simple, and shortens `length` accordingly. Infinite
+/// if there is none.
+template <class Density>
+double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
+                   const PolishOptions& options, Fields& fields, double& length) {
+  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+    fields.trial = uvs;
+    add_multiple(length, fields.direction, options.threads, fields.trial);
+    const double after = objective.evaluate(fields.trial, fields.next_gradient);
+    const bool low = after < before && after <= before + kArmijo * length * slope;
+    if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+template <class Density>
+PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                     const Precondition& precondition, Field& uvs, const PolishOptions& options,
+                     const Checkpoint& checkpoint) {
+  const int threads = options.threads;
+  Objective<Density> objective(size_of(uvs), faces, rest, threads);
+  PolishResult result;
+  Fields fields;
+  // Not structured bindings, which clang does not let lambdas capture.
+  Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
+  Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
+  double start = objective.evaluate(uvs, gradient);
+  if (options.contact && std::isfinite(start)) {
+    objective.set_contact(options.contact);
+    start = objective.evaluate(uvs, gradient);
+  }
+  result.energies.push_back(start);
+  if (!std::isfinite(start)) return result;
+  History history(threads);
+  bool rigidly = true;  // whether faces may be held back alone
+  // Whether the last step was a full one with little gain, or the last ones had next to none: what
+  // touches shortens nearly all of them.
+  bool settled = false;
+  int little_gains = 0;
+  while (result.iterations() < options.max_iterations) {
+    checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
+    const double before = result.energies.back();
+    history.find_direction(gradient, precondition, spare, direction);
+    double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
+    const double slope = dot(gradient, direction, threads);
+    result.predicted = -slope;
+    result.converged = settled && 0.5 * result.predicted <=
+                                      options.stationary * comparable_energy<Density>(before);
+    if (result.converged) break;
+    if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
+      result.blocked = true;
+      break;
+    }
+    if (options.contact) {
+      const double limit = length / kSingularShare;
+      length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
+    }
+    const double after = slope < 0
+                             ? search_line(objective, uvs, before, slope, options, fields, length)
+                             : std::numeric_limits<double>::infinity();
+    if (!(after < before)) {
+      const bool plain = history.empty() && (!rigidly || result.blocking.empty());
+      result.blocked = plain;
+      if (plain) break;
+      history.clear();
+      rigidly = false;
+      continue;
+    }
+    rigidly = true;
+    result.energies.push_back(after);
+    parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        direction[i] *= length;
+        gradient[i] = next_gradient[i] - gradient[i];
+      }
+    });
+    uvs.swap(trial);
+    // What nearly singular faces do to the gradient says nothing about other steps.
+    if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
+    gradient.swap(next_gradient);
+    const double little = options.tolerance * comparable_energy<Density>(before);
+    const bool next_to_nothing =
+        before - after <= options.stationary * comparable_energy<Density>(before);
+    little_gains = options.contact && next_to_nothing ? little_gains + 1 : 0;
+    settled = (length >= kFullStep && before - after <= little) || little_gains >= kPatience;
+  }
+  return result;
+}
+
+}  // namespace
+
+PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                    const Precondition& precondition, std::vector<Vec2>& uvs,
+                    const PolishOptions& options, const Checkpoint& checkpoint) {
+  return with_density(options.energy, [&]<class Density>(Density) {
+    return descend<Density>(faces, rest, precondition, uvs, options, checkpoint);
+  });
+}
+
+}  // namespace beltrami

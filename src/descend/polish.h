@@ -1,0 +1,52 @@
+// Descending from a good map to the minimum next to it, without another factorization.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "descend/contact.h"
+#include "energy/energy.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+struct PolishOptions {
+  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  double tolerance = 1e-5;   ///< relative energy decrease of a step after which it may end, if
+  double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
+  int max_iterations = 20;
+  bool force_first = true;  ///< whether the first step is taken however short it has to be
+  /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before
+  /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
+  /// cross itself.
+  const BoundaryContact* contact = nullptr;
+  int threads = 1;
+};
+
+struct PolishResult {
+  std::vector<double> energies;  ///< mean energy, with contact the barrier's share included, at
+                                 ///< the start and after each step, never rising
+  bool converged = false;        ///< ended so, after a step of at least 1/2 or, with contact,
+                                 ///< after three that gained as little as the next one would
+  bool blocked = false;          ///< the next step would have had to be shorter than that
+  std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular
+  double predicted = 0;          ///< -gradient . direction of the last step looked at
+  int iterations() const { return static_cast<int>(energies.size()) - 1; }
+};
+
+/// Sets `out` to about the inverse Hessian times `in`, one entry per vertex; linear, symmetric,
+/// definite.
+using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector<Vec2>& out)>;
+
+/// Minimises the mean energy by L-BFGS (Nocedal 1980; history 5) with `precondition` for the
+/// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that move
+/// more rigidly with their neighbours, and where this does not help the whole step is shortened. It
+/// ends where steps become short: clean_outliers mends the faces that block them. Precondition: all
+/// faces of `uvs` are positively oriented.
+PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+                    const Precondition& precondition, std::vector<Vec2>& uvs,
+                    const PolishOptions& options, const Checkpoint& checkpoint = no_checkpoint);
+
+}  // namespace beltrami

@@ -1,0 +1,82 @@
+#include "descend/tutte.h"
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "descend/assembly.h"
+#include "linear/mesh_matrix.h"
+#include "linear/spd_solver.h"
+#include "mesh/boundary.h"
+
+namespace beltrami {
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
+  std::vector<Vec2> uvs(mesh.vertex_count(), Vec2::Zero());
+  const std::vector<Vec2> circle = boundary_on_circle(mesh);
+  for (std::size_t i = 0; i < circle.size(); ++i) uvs[mesh.boundary[i]] = circle[i];
+
+  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+  if (laplacian.free_count() == 0) return uvs;
+  DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
+  const auto one = [](int, int) { return 1.0; };
+  // Each face stands for half of the unit weight of its edges: every edge of a free vertex has two.
+  const auto minus_half = [](int, int) { return -0.5; };
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Triangle& face = mesh.faces[f];
+    for (int k = 0; k < 3; ++k) {
+      const int l = next_corner(k);
+      laplacian.add(f, face, k, k, one);
+      laplacian.add(f, face, k, l, minus_half);
+      const Index rk = laplacian.row(face[k]), rl = laplacian.row(face[l]);
+      if (rk != kNone && rl == kNone) rhs.row(rk) += 0.5 * uvs[face[l]].transpose();
+      if (rl != kNone && rk == kNone) rhs.row(rl) += 0.5 * uvs[face[k]].transpose();
+    }
+  }
+  const auto solver = make_spd_solver();
+  solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
+  if (!solver->factorize(laplacian.matrix())) {
+    throw Error(BELTRAMI_E_SOLVER, "the linear system of the Tutte embedding is not definite");
+  }
+  const DenseMatrix solution = solver->solve(rhs);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (laplacian.row(v) != kNone) uvs[v] = solution.row(laplacian.row(v)).transpose();
+  }
+  return uvs;
+}
+
+double best_scale(Energy energy, const std::vector<Triangle>& faces,
+                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
+  ScaleMoments sum;
+  for (Index f = 0; f < size_of(faces); ++f) {
+    const SingularValues s =
+        singular_values(linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]));
+    if (!(s.s2 > 0)) return 1;
+    const double area = rest[f].area();
+    sum.s1 += area * s.s1;
+    sum.s1_sq += area * s.s1 * s.s1;
+    sum.norm_sq += area * (s.s1 * s.s1 + s.s2 * s.s2);
+    sum.inverse_s2 += area / s.s2;
+    sum.inverse_s2_sq += area / (s.s2 * s.s2);
+    sum.inverse_norm_sq += area / (s.s1 * s.s1) + area / (s.s2 * s.s2);
+  }
+  const double scale = with_density(energy, [&](auto density) { return density.best_scale(sum); });
+  return std::isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+double mean_energy(Energy energy, const std::vector<Triangle>& faces,
+                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
+  return with_density(energy, [&]<class Density>(Density) {
+    double sum = 0, area = 0;
+    for (Index f = 0; f < size_of(faces); ++f) {
+      const Triangle& t = faces[f];
+      const SingularValues s =
+          singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      if (!(s.s2 > 0)) return std::numeric_limits<double>::infinity();
+      sum += rest[f].area() * Density::value(s.s1, s.s2);
+      area += rest[f].area();
+    }
+    return sum / area;
+  });
+}
+
+}  // namespace beltrami

@@ -1,0 +1,151 @@
+#include "energy/measure.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "base/portable_math.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Powers of two whose fourth powers, and those of their inverses, are far from the ends of the
+/// range of numbers.
+constexpr int kModerate = 200;
+
+/// The exponent of a size if it is not moderate; else 0: then nothing needs to be scaled.
+int unit_of(double size) {
+  if (!(size > 0 && std::isfinite(size))) return 0;
+  const int exponent = std::ilogb(size);
+  return std::abs(exponent) > kModerate ? exponent : 0;
+}
+
+/// Times a power of two that need not be a double itself.
+template <class Vector>
+void scale(Vector& v, int exponent) {
+  const int half = exponent / 2;
+  v = v * std::ldexp(1.0, half) * std::ldexp(1.0, exponent - half);
+}
+
+/// Edge k runs from corner k to corner k + 1, in units of 2^unit: so no product leaves the range of
+/// numbers, and the bits are the same in any unit that is a power of two.
+template <class Vector>
+struct Edges {
+  std::array<Vector, 3> edge;
+  int unit = 0;
+
+  explicit Edges(std::array<Vector, 3> p) {
+    constexpr int kBack = 64;  // from where a difference would overflow
+    const auto greatest = [](const std::array<Vector, 3>& v) {
+      return std::max(
+          {v[0].cwiseAbs().maxCoeff(), v[1].cwiseAbs().maxCoeff(), v[2].cwiseAbs().maxCoeff()});
+    };
+    if (greatest(p) > 0x1p1000) {
+      for (Vector& v : p) scale(v, -kBack);
+      unit = kBack;
+    }
+    for (int k = 0; k < 3; ++k) edge[k] = p[next_corner(k)] - p[k];
+    const int by = unit_of(greatest(edge));
+    if (by == 0) return;
+    for (Vector& v : edge) scale(v, -by);
+    unit += by;
+  }
+};
+
+/// The distortion of a face, its area in units of 2^(2 unit).
+FaceDistortion measure(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w, int unit) {
+  const Edges<Vec3> space(p);
+  const Edges<Vec2> plane(w);
+  // The longest edge as x axis keeps the height of slivers accurate.
+  int k = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (space.edge[i].squaredNorm() > space.edge[k].squaredNorm()) k = i;
+  }
+  const Vec3 e1 = space.edge[k], e2 = -space.edge[previous_corner(k)];
+  const double length = e1.norm();
+  const double height = e1.cross(e2).norm() / length;
+  const double along = e1.dot(e2) / length;
+  const double area = 0.5 * length * height;
+  if (!(area > 0)) return {0, kNaN, kNaN, kNaN, kNaN};
+  const Vec2 du = plane.edge[k] / length;
+  const Vec2 dv = (-plane.edge[previous_corner(k)] - along * du) / height;
+  const double det = du.x() * dv.y() - du.y() * dv.x();
+  const double a = 0.5 * portable::hypot(du.x() + dv.y(), du.y() - dv.x());
+  const double b = 0.5 * portable::hypot(du.x() - dv.y(), du.y() + dv.x());
+  const double sum = a + b;
+  // a - b would cancel on stretched faces; the quotient may round to more than the greater one.
+  const double quotient = sum > 0 ? std::clamp(det / sum, -sum, sum) : 0;
+  const double s1 = std::ldexp(sum, plane.unit - space.unit),
+               s2 = std::ldexp(quotient, plane.unit - space.unit);
+  FaceDistortion result{std::ldexp(area, 2 * (space.unit - unit)), s1, s2, kInfinity, kInfinity};
+  if (!(det > 0)) return result;
+  const double energy = 0.5 * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2));
+  if (!std::isfinite(energy)) return result;
+  result.symmetric_dirichlet = energy;
+  result.symmetric_arap = (s1 - 1) * (s1 - 1) + (1 / s2 - 1) * (1 / s2 - 1);
+  return result;
+}
+
+}  // namespace
+
+FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w) {
+  return measure(p, w, 0);
+}
+
+Distortion measure_distortion(const std::vector<Vec3>& positions,
+                              const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                              int threads, double* face_energies) {
+  struct Partial {
+    double area = 0;
+    Distortion sum;
+  };
+  double size = 0;
+  for (const Vec3& p : positions) size = std::max(size, p.cwiseAbs().maxCoeff());
+  const int unit = unit_of(size);  // in which areas are neither too small nor too great to add
+  std::vector<Partial> partials(faces.size() / kGrain + 1);
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Partial& part = partials[begin / kGrain];
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = faces[f];
+      const FaceDistortion d = measure({positions[t[0]], positions[t[1]], positions[t[2]]},
+                                       {uvs[t[0]], uvs[t[1]], uvs[t[2]]}, unit);
+      const bool counts = std::isfinite(d.symmetric_dirichlet);
+      if (face_energies) face_energies[f] = counts ? d.symmetric_dirichlet : kInfinity;
+      if (!counts) {
+        ++part.sum.left_out;
+        continue;
+      }
+      part.area += d.area;
+      part.sum.symmetric_dirichlet += d.area * d.symmetric_dirichlet;
+      part.sum.symmetric_arap += d.area * d.symmetric_arap;
+      if (d.symmetric_dirichlet > part.sum.max) {
+        part.sum.max = d.symmetric_dirichlet;
+        part.sum.worst_face = static_cast<Index>(f);
+      }
+    }
+  });
+  Distortion total;
+  double area = 0;
+  for (const Partial& part : partials) {
+    area += part.area;
+    total.symmetric_dirichlet += part.sum.symmetric_dirichlet;
+    total.symmetric_arap += part.sum.symmetric_arap;
+    total.left_out += part.sum.left_out;
+    if (part.sum.max > total.max) {
+      total.max = part.sum.max;
+      total.worst_face = part.sum.worst_face;
+    }
+  }
+  total.symmetric_dirichlet = area > 0 ? total.symmetric_dirichlet / area : kNaN;
+  total.symmetric_arap = area > 0 ? total.symmetric_arap / area : kNaN;
+  return total;
+}
+
+}  // namespace beltrami

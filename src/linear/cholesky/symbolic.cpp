@@ -1,0 +1,341 @@
+#include "linear/cholesky/symbolic.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr int kRoot = -1;
+
+/// The parent of column j is the first row below the diagonal of column j of L (Liu 1986).
+/// The graph is numbered in the order of elimination.
+std::vector<int> elimination_tree(const Graph& graph) {
+  std::vector<int> parent(graph.count(), kRoot), ancestor(graph.count(), kRoot);
+  for (int k = 0; k < graph.count(); ++k) {
+    for (const int w : graph.neighbours(k)) {
+      for (int i = w; i < k;) {
+        const int next = std::exchange(ancestor[i], k);
+        if (next == k) break;
+        if (next == kRoot) {
+          parent[i] = k;
+          break;
+        }
+        i = next;
+      }
+    }
+  }
+  return parent;
+}
+
+/// The nodes of a forest, children (ascending) before parents, subtrees contiguous.
+std::vector<int> postorder(const std::vector<int>& parent) {
+  const int n = static_cast<int>(parent.size());
+  std::vector<int> child(n, kRoot), sibling(n, kRoot), order, path;
+  for (int v = n - 1; v >= 0; --v) {
+    if (parent[v] == kRoot) continue;
+    sibling[v] = child[parent[v]];
+    child[parent[v]] = v;
+  }
+  order.reserve(n);
+  for (int root = 0; root < n; ++root) {
+    if (parent[root] != kRoot) continue;
+    path.assign(1, root);
+    while (!path.empty()) {
+      const int v = path.back();
+      if (child[v] != kRoot) {
+        path.push_back(std::exchange(child[v], kRoot));
+        continue;
+      }
+      order.push_back(v);
+      path.pop_back();
+      if (sibling[v] != kRoot) path.push_back(sibling[v]);
+    }
+  }
+  return order;
+}
+
+/// Entries of every column of L, diagonal included; `post` is a postorder of the tree.
+std::vector<int> column_counts(const Graph& graph, const std::vector<int>& parent,
+                               const std::vector<int>& post) {
+  const int n = graph.count();
+  std::vector<int> count(n), first(n, kRoot), set(n), last_leaf(n, kRoot), last_first(n, kRoot);
+  for (int p = 0; p < n; ++p) {
+    int v = post[p];
+    count[v] = first[v] == kRoot ? 1 : 0;  // a leaf of the tree starts a count
+    for (; v != kRoot && first[v] == kRoot; v = parent[v]) first[v] = p;
+  }
+  std::iota(set.begin(), set.end(), 0);
+  for (int p = 0; p < n; ++p) {
+    const int j = post[p];
+    if (parent[j] != kRoot) --count[parent[j]];
+    for (const int i : graph.neighbours(j)) {
+      // Row i's pattern is a subtree of the tree; j is one of its leaves if nothing below j is.
+      if (i < j || first[j] <= last_first[i]) continue;
+      last_first[i] = first[j];
+      ++count[j];
+      const int before = std::exchange(last_leaf[i], j);
+      if (before == kRoot) continue;
+      int common = before;  // the least common ancestor of two leaves is counted twice
+      while (common != set[common]) common = set[common];
+      for (int v = before; v != common;) v = std::exchange(set[v], common);
+      --count[common];
+    }
+    if (parent[j] != kRoot) set[j] = parent[j];
+  }
+  for (const int v : post) {
+    if (parent[v] != kRoot) count[parent[v]] += count[v];
+  }
+  return count;
+}
+
+/// Nanoseconds, roughly, that a supernode of k columns with r rows below costs, factor and solves
+/// together. Only ratios matter: they decide which supernodes are merged.
+double cost(double k, double r) {
+  constexpr double kFront = 200, kRow = 4, kUpdate = 0.7, kEntry = 2, kMultiply = 0.1;
+  const double work = k * r * r + k * k * r + k * k * k / 3;
+  return kFront + kRow * (k + r) + kUpdate * r * r + kEntry * k * (k + r) + kMultiply * work;
+}
+
+/// A supernode before its rows are known.
+struct Node {
+  int columns, rows;  // rows: below the diagonal block
+  int parent = kRoot;
+  int merged_into = kRoot;
+};
+
+/// Merges children into their parents where that is cheaper. The columns of L that a child adds to
+/// its parent get the parent's rows; nothing else changes.
+void merge_nodes(std::vector<Node>& nodes, int scale) {
+  const int n = static_cast<int>(nodes.size());
+  std::vector<int> child(n, kRoot), sibling(n, kRoot), candidates;
+  for (int s = 0; s < n; ++s) {
+    Node& node = nodes[s];
+    // The children so far, those with the most rows first: they bring the fewest zeros.
+    candidates.clear();
+    for (int c = child[s]; c != kRoot; c = sibling[c]) candidates.push_back(c);
+    std::sort(candidates.begin(), candidates.end(), [&](int a, int b) {
+      const int ra = nodes[a].rows, rb = nodes[b].rows;
+      return ra > rb || (ra == rb && a < b);
+    });
+    child[s] = kRoot;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const int c = candidates[i];
+      const double apart = cost(scale * nodes[c].columns, scale * nodes[c].rows) +
+                           cost(scale * node.columns, scale * node.rows);
+      if (cost(scale * (nodes[c].columns + node.columns), scale * node.rows) < apart) {
+        node.columns += nodes[c].columns;
+        nodes[c].merged_into = s;
+        for (int g = child[c]; g != kRoot; g = sibling[g]) {
+          nodes[g].parent = s;
+          candidates.push_back(g);
+        }
+      } else {
+        sibling[c] = child[s];
+        child[s] = c;
+      }
+    }
+    if (node.parent != kRoot) {
+      sibling[s] = child[node.parent];
+      child[node.parent] = s;
+    }
+  }
+}
+
+// Subtrees of about this share of all work are the tasks of the threads; smaller matrices than
+// kLeastTaskCost nanoseconds are not worth a second thread.
+constexpr double kTaskShare = 1.0 / 48;
+constexpr double kLeastTaskCost = 3e5;
+
+/// Which nodes lie above the tasks, and in which order the nodes are numbered.
+struct Numbering {
+  std::vector<int> order;  // of nodes
+  std::vector<int> task_sizes;
+};
+
+Numbering number_nodes(const std::vector<Node>& nodes, int scale) {
+  const int n = static_cast<int>(nodes.size());
+  std::vector<double> below(n, 0);
+  double total = 0;
+  std::vector<int> alive, parent;  // without the merged ones
+  std::vector<int> compact(n, kRoot);
+  for (int s = 0; s < n; ++s) {
+    if (nodes[s].merged_into != kRoot) continue;
+    compact[s] = static_cast<int>(alive.size());
+    alive.push_back(s);
+  }
+  for (const int s : alive) {
+    const double own = cost(scale * nodes[s].columns, scale * nodes[s].rows);
+    below[s] += own;
+    total += own;
+    if (nodes[s].parent != kRoot) below[nodes[s].parent] += below[s];
+    parent.push_back(nodes[s].parent == kRoot ? kRoot : compact[nodes[s].parent]);
+  }
+  const double most = std::max(kTaskShare * total, kLeastTaskCost);
+  Numbering result;
+  std::vector<int> top;
+  for (const int c : postorder(parent)) {
+    const int s = alive[c];
+    const bool above = below[s] > most;
+    if (above) {
+      top.push_back(s);
+      continue;
+    }
+    result.order.push_back(s);
+    const bool root = parent[c] == kRoot || below[nodes[s].parent] > most;
+    if (!root) continue;
+    const int before = std::accumulate(result.task_sizes.begin(), result.task_sizes.end(), 0);
+    result.task_sizes.push_back(static_cast<int>(result.order.size()) - before);
+  }
+  result.order.insert(result.order.end(), top.begin(), top.end());
+  return result;
+}
+
+/// Children of every node, ascending, from their parents.
+void list_children(Symbolic& symbolic) {
+  const int n = symbolic.supernode_count();
+  symbolic.child_start.assign(static_cast<std::size_t>(n) + 1, 0);
+  for (const int p : symbolic.parent) {
+    if (p != kRoot) ++symbolic.child_start[p + 1];
+  }
+  for (int s = 0; s < n; ++s) symbolic.child_start[s + 1] += symbolic.child_start[s];
+  symbolic.child.resize(symbolic.child_start[n]);
+  std::vector<int> cursor(symbolic.child_start.begin(), symbolic.child_start.end() - 1);
+  for (int s = 0; s < n; ++s) {
+    if (symbolic.parent[s] != kRoot) symbolic.child[cursor[symbolic.parent[s]]++] = s;
+  }
+}
+
+/// The rows of one supernode: those of the matrix and of its children, below its own columns.
+void find_rows(const Graph& graph, const std::vector<int>& vertex, const std::vector<int>& place,
+               Symbolic& symbolic, int s, std::vector<int>& seen) {
+  const int begin = symbolic.first_column[s], end = symbolic.first_column[s + 1];
+  int* const first = symbolic.rows.data() + symbolic.row_start[s];
+  int* last = first;
+  const auto add = [&](int row) {
+    if (row < end || seen[row] == s) return;
+    seen[row] = s;
+    *last++ = row;
+  };
+  for (const int c : symbolic.children(s)) {
+    for (const int row : symbolic.rows_of(c)) add(row);
+  }
+  for (int j = begin; j < end; ++j) {
+    for (const int w : graph.neighbours(vertex[j])) add(place[w]);
+  }
+  std::sort(first, last);
+}
+
+}  // namespace
+
+Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int block_size,
+                         int threads, const Poll& poll) {
+  const int n = given.count();
+  const Graph graph = renumber(given, order, threads);
+  const std::vector<int> tree = elimination_tree(graph);
+  const std::vector<int> post = postorder(tree);
+  const std::vector<int> counts = column_counts(graph, tree, post);
+  poll();
+
+  Symbolic symbolic;
+  symbolic.block_size = block_size;
+  std::vector<Node> nodes;
+  std::vector<int> node_of(n), node_start;
+  for (int p = 0; p < n; ++p) {
+    const int v = post[p];
+    symbolic.work += static_cast<double>(counts[v]) * counts[v];
+    const bool joins = p > 0 && tree[post[p - 1]] == v && counts[post[p - 1]] == counts[v] + 1;
+    if (!joins) {
+      node_start.push_back(p);
+      nodes.push_back({0, 0});
+    }
+    nodes.back().columns += 1;
+    nodes.back().rows = counts[v] - 1;
+    node_of[v] = static_cast<int>(nodes.size()) - 1;
+  }
+  node_start.push_back(n);
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const int above = tree[post[node_start[s + 1] - 1]];
+    if (above != kRoot) nodes[s].parent = node_of[above];
+  }
+  merge_nodes(nodes, block_size);
+  // A merge changes who is whose parent.
+  std::vector<int> final_of(nodes.size());
+  for (int s = static_cast<int>(nodes.size()); s-- > 0;) {
+    final_of[s] = nodes[s].merged_into == kRoot ? s : final_of[nodes[s].merged_into];
+    if (nodes[s].parent != kRoot) nodes[s].parent = final_of[nodes[s].parent];
+  }
+  const Numbering numbering = number_nodes(nodes, block_size);
+
+  // The columns: of each supernode those of the nodes merged into it, in postorder.
+  const int count = static_cast<int>(numbering.order.size());
+  std::vector<int> rank(nodes.size(), kRoot);
+  symbolic.first_column.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.row_start.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.value_start.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.parent.resize(count);
+  for (int i = 0; i < count; ++i) {
+    const Node& node = nodes[numbering.order[i]];
+    rank[numbering.order[i]] = i;
+    symbolic.first_column[i + 1] = symbolic.first_column[i] + node.columns;
+    symbolic.row_start[i + 1] = symbolic.row_start[i] + node.rows;
+    symbolic.value_start[i + 1] =
+        symbolic.value_start[i] + static_cast<std::int64_t>(block_size * node.columns) *
+                                      (block_size * (node.columns + node.rows));
+  }
+  for (int i = 0; i < count; ++i) {
+    const int above = nodes[numbering.order[i]].parent;
+    symbolic.parent[i] = above == kRoot ? kRoot : rank[above];
+  }
+  list_children(symbolic);
+  int done = 0;
+  for (const int size : numbering.task_sizes) {
+    symbolic.tasks.push_back({done, done + size});
+    done += size;
+  }
+  std::vector<int> cursor(symbolic.first_column.begin(), symbolic.first_column.end() - 1);
+  std::vector<int> column(n), vertex(n);  // per vertex of `graph`, and back
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    int& at = cursor[rank[final_of[s]]];
+    for (int p = node_start[s]; p < node_start[s + 1]; ++p) {
+      column[post[p]] = at;
+      vertex[at++] = post[p];
+    }
+  }
+  symbolic.place.resize(n);
+  for (int v = 0; v < n; ++v) symbolic.place[order[v]] = column[v];
+
+  symbolic.rows.resize(symbolic.row_start[count]);
+  poll();
+  // Subtrees side by side, in as many parts as there are threads, each with marks of its own.
+  const auto tasks = static_cast<std::int64_t>(symbolic.tasks.size());
+  const std::int64_t part = std::max<std::int64_t>(1, (tasks + threads - 1) / threads);
+  parallel_for(threads, tasks, part, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<int> seen(n, kRoot);
+    for (std::int64_t t = begin; t < end; ++t) {
+      for (int s = symbolic.tasks[t].begin; s < symbolic.tasks[t].end; ++s) {
+        find_rows(graph, vertex, column, symbolic, s, seen);
+      }
+    }
+  });
+  std::vector<int> seen(n, kRoot);
+  for (int s = symbolic.top_begin(); s < count; ++s) {
+    find_rows(graph, vertex, column, symbolic, s, seen);
+  }
+  return symbolic;
+}
+
+double factor_work(const Graph& given, const std::vector<int>& order) {
+  const Graph graph = renumber(given, order, 1);
+  const std::vector<int> tree = elimination_tree(graph);
+  double work = 0;
+  for (const int c : column_counts(graph, tree, postorder(tree))) {
+    work += static_cast<double>(c) * c;
+  }
+  return work;
+}
+
+}  // namespace beltrami

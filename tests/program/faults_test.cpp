@@ -1,0 +1,120 @@
+// Allocations that fail, one by one and from one on; and what reaches the disk in which order. By
+// libraries that are loaded before the program's own.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "files/mesh_file.h"
+#include "run_program.h"
+#include "tiny_meshes.h"
+
+namespace beltrami::cli {
+namespace {
+
+/// A command of which every allocation is to fail.
+struct Command {
+  const char* name;
+  std::vector<std::string> arguments;  ///< in.obj, out.obj and the like are files of the test
+  long step;                           ///< between the allocations that fail
+
+  friend void PrintTo(const Command& command, std::ostream* out) { *out << command.name; }
+};
+
+class OutOfMemory : public testing::TestWithParam<Command> {
+ protected:
+  Outcome run_in(const TemporaryDirectory& directory, Surroundings around) const {
+    std::vector<std::string> arguments = GetParam().arguments;
+    for (std::string& argument : arguments) {
+      if (argument.find('.') != std::string::npos) argument = directory.path(argument);
+    }
+    directory.file("in.obj", kSquareWithUvs);
+    directory.file("out.obj", "precious");
+    around.environment.emplace_back("LD_PRELOAD", BELTRAMI_FAIL_ALLOCATIONS);
+    return run(arguments, around);
+  }
+
+  long count_allocations() const {
+    const TemporaryDirectory directory;
+    Surroundings around;
+    around.environment = {{"COUNT_TO", directory.path("count")}};
+    EXPECT_EQ(run_in(directory, around).exit_code, 0);
+    return std::stol(directory.read("count"));
+  }
+
+  bool writes(const std::string& name) const {
+    const auto& arguments = GetParam().arguments;
+    return std::find(arguments.begin(), arguments.end(), name) != arguments.end();
+  }
+
+  void expect_a_clean_end(long at, bool later_ones_too) const {
+    SCOPED_TRACE(testing::Message() << "allocation " << at << (later_ones_too ? " and on" : ""));
+    const TemporaryDirectory directory;
+    Surroundings around;
+    around.environment = {{"FAIL_AT", std::to_string(at)}};
+    if (later_ones_too) around.environment.emplace_back("FAIL_ON", "1");
+    const Outcome outcome = run_in(directory, around);
+    EXPECT_FALSE(has_temporary(directory));
+    if (outcome.exit_code == 0) {  // a library had a way round
+      EXPECT_EQ(outcome.err, "");
+      EXPECT_EQ(directory.read("out.obj") != "precious", writes("out.obj"));
+      EXPECT_EQ(nlohmann::json::parse(directory.read("r.json"))["status"], "BELTRAMI_OK");
+      return;
+    }
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.signal << outcome.err;
+    EXPECT_EQ(outcome.err_lines(), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(directory.read("out.obj"), "precious");
+  }
+};
+
+TEST_P(OutOfMemory, EndsWithOneLineAndLeavesNothing) {
+  const long count = count_allocations();
+  ASSERT_GT(count, 100);
+  for (long at = 1; at <= count; at += GetParam().step) {
+    expect_a_clean_end(at, false);
+    expect_a_clean_end(at, true);
+    if (HasFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Commands, OutOfMemory,
+    testing::Values(
+        Command{"check", {"check", "in.obj", "--report", "r.json"}, 5},
+        Command{
+            "flatten", {"flatten", "in.obj", "out.obj", "--report", "r.json", "--threads", "1"}, 3},
+        Command{"picture", {"check", "in.obj", "--report", "r.json", "--picture", "p.png"}, 499}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST(Disk, HasEveryFileBeforeTheFirstIsReplacedAndEveryNameAtTheEnd) {
+  const TemporaryDirectory directory, log;
+  Surroundings around;
+  around.environment = {{"LD_PRELOAD", BELTRAMI_LOG_SYNCS}, {"LOG_TO", log.path("log")}};
+  ASSERT_EQ(run({"flatten", directory.file("in.obj", kSquare), directory.path("out.obj"),
+                 "--report", directory.path("r.json"), "--picture", directory.path("p.png")},
+                around)
+                .exit_code,
+            0);
+  const std::string folder = std::filesystem::path(directory.path("x")).parent_path().string();
+  std::vector<std::string> stored, renamed;
+  bool named = true;
+  std::istringstream lines(log.read("log"));
+  for (std::string what, from, line; lines >> what >> from && std::getline(lines, line);) {
+    if (what == "sync" && from == folder) {
+      named = true;
+    } else if (what == "sync") {
+      EXPECT_TRUE(renamed.empty()) << from << " is stored after a file was replaced";
+      stored.push_back(from);
+    } else {
+      renamed.push_back(from);
+      named = false;
+    }
+  }
+  EXPECT_EQ(stored, renamed);
+  EXPECT_EQ(renamed.size(), 3u);
+  EXPECT_TRUE(named) << "the folder is not stored after the last rename";
+}
+
+}  // namespace
+}  // namespace beltrami::cli
