@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
@@ -66,9 +67,6 @@ struct Flattening {
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process so far
 };
-
-/// Called on the calling thread; `fraction` never decreases. Returns true to cancel.
-using Progress = std::function<bool(double fraction, const char* stage)>;
 
 /// Flattens a disk that `normalise` has brought to about unit area; `frame` is what it returned.
 /// `cancelled` may be set from another thread. Throws Cancelled, Error SOLVER or std::bad_alloc.

@@ -1,0 +1,55 @@
+#include "base/work.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "base/resources.h"
+
+namespace beltrami {
+
+struct Work::Run {
+  Limits limits;
+  Progress progress;
+  double started = wall_seconds();
+  double fraction = 0;  // that was reported last
+};
+
+Work::Work(int threads) : Work(Limits{.threads = threads}, nullptr) {}
+
+Work::Work(const Limits& limits, Progress progress)
+    : run_(std::make_shared<Run>(Run{limits, std::move(progress)})) {}
+
+int Work::threads() const {
+  return run_->limits.threads;
+}
+
+std::int64_t Work::memory_limit() const {
+  return run_->limits.memory_bytes;
+}
+
+bool Work::out_of_time() const {
+  return run_->limits.seconds > 0 && wall_seconds() - run_->started > run_->limits.seconds;
+}
+
+void Work::report(double fraction) const {
+  const double whole = from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0);
+  run_->fraction = std::max(run_->fraction, whole);
+  if (run_->progress && run_->progress(run_->fraction, name_)) throw Cancelled();
+  poll_interrupt();
+}
+
+Work Work::part(double from, double to) const {
+  Work inner = *this;
+  inner.from_ = from_ + (to_ - from_) * from;
+  inner.to_ = from_ + (to_ - from_) * to;
+  return inner;
+}
+
+Work Work::named(const char* name) const {
+  Work inner = *this;
+  inner.name_ = name;
+  return inner;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,45 @@
+#include "base/work.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/interrupt.h"
+
+namespace {
+
+using beltrami::Work;
+
+TEST(Work, PartsFillTheirShareAndProgressNeverFalls) {
+  std::vector<std::pair<double, std::string>> seen;
+  const Work whole({}, [&](double fraction, const char* stage) {
+    seen.emplace_back(fraction, stage);
+    return false;
+  });
+  const Work second = whole.part(0.5, 1).named("second");
+  whole.part(0, 0.5).named("first").report(1);
+  second.part(0.5, 1).report(0.5);
+  second.report(0);
+  const std::vector<std::pair<double, std::string>> expected = {
+      {0.5, "first"}, {0.875, "second"}, {0.875, "second"}};
+  EXPECT_EQ(seen, expected);
+}
+
+TEST(Work, EndsWhereProgressSaysSo) {
+  const Work work({}, [](double fraction, const char*) { return fraction > 0.5; });
+  work.report(0.5);
+  EXPECT_THROW(work.report(0.75), beltrami::Cancelled);
+}
+
+TEST(Work, TimeRunsOutForAllSharesAlike) {
+  const Work endless;
+  EXPECT_FALSE(endless.part(0.5, 1).out_of_time());
+  const Work short_of_it({.seconds = 1e-9}, nullptr);
+  while (!short_of_it.out_of_time()) {
+  }
+  EXPECT_TRUE(short_of_it.part(0.5, 1).out_of_time());
+}
+
+}  // namespace
