@@ -65,4 +65,11 @@ bool solve_until_simple(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
 }
 
+void put_in_place(const std::vector<bool>& anchored, const std::vector<Vec2>& carried,
+                  std::vector<Vec2>& uvs) {
+  for (std::size_t v = 0; v < anchored.size(); ++v) {
+    if (anchored[v]) uvs[v] = carried[v];
+  }
+}
+
 }  // namespace beltrami

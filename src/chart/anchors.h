@@ -25,4 +25,9 @@ std::vector<bool> vertices_in_contact(const CoarseDisk& coarse, const std::vecto
 bool solve_until_simple(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                         std::vector<bool>& anchored, const std::function<bool()>& solve);
 
+/// Springs leave the vertices `anchored` (per vertex, or empty) a little beside their `carried`
+/// places, which is enough for narrow gaps to close: puts them there.
+void put_in_place(const std::vector<bool>& anchored, const std::vector<Vec2>& carried,
+                  std::vector<Vec2>& uvs);
+
 }  // namespace beltrami

@@ -283,6 +283,7 @@ bool Run::solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
     const auto solve = [&](bool rotate) {
       solve_metric(*disk_, fine.rest, fine.metric, stiffness, *laplacian, anchors, rotate,
                    options_.threads, uvs);
+      put_in_place(anchored, carried, uvs);
       return non_positive_faces(disk_->faces, uvs, options_.threads).size();
     };
     std::size_t flips = solve(false);
@@ -386,6 +387,7 @@ bool Run::polish_map(const FineProblem& fine, std::optional<BoundaryContact> con
       converged = ended.converged;
     }
     clean({});
+    if (contact) scale_best(*disk_, fine.rest, uvs);
   });
   return converged;
 }

@@ -115,13 +115,14 @@ NewtonResult Run::descend(const DiskMesh& mesh, const std::vector<RestTriangle>&
     };
     if (mesh.face_count() >= kContactFaces &&
         energy(uvs) > kFarStart * comparable_energy(newton.energy, free.energies.back())) {
-      std::vector<Vec2> start = contact_from_coarser(mesh, rest, checkpoint);
+      std::vector<Vec2> start = contact_from_coarser(mesh, rest, uvs, checkpoint);
       if (!start.empty() && energy(start) < energy(uvs)) uvs.swap(start);
     }
   }
   newton.contact = &contact;
   newton.tolerance = std::max(newton.tolerance, options_.tolerance);
   NewtonResult pressed = descend_to(mesh, rest, newton, uvs, statistics, checkpoint);
+  scale_best(mesh, rest, uvs);  // without the barrier, which presses outwards
   pressed.in_contact = contact.is_pressed(uvs);
   return pressed;
 }
@@ -166,23 +167,42 @@ void Run::start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
   }
 }
 
-/// The minimum on a mesh of `target` faces, and its metric on the finer one. Nothing where there is
-/// no coarser mesh, or no start on it.
+/// A map of the finer mesh at the vertices of the coarse one, mended. Returns whether all faces are
+/// positive.
+bool Run::restrict_map(const std::vector<Vec2>& fine_uvs, const CoarseDisk& coarse,
+                       const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs) const {
+  uvs.clear();
+  for (const Index v : coarse.fine_vertex) uvs.push_back(fine_uvs[v]);
+  const RepairOptions mend{.threads = options_.threads, .global_fix = false};
+  return repair(coarse.mesh, rest, uvs, mend).flips_after == 0;
+}
+
+/// The minimum on a mesh of `target` faces, and its metric on the finer one; with contact from
+/// `start`, a map of the finer one, where that serves, else from a start of its own. Nothing where
+/// there is no coarser mesh, or no start on it.
 std::optional<CoarserMinimum> Run::minimise_coarser(const DiskMesh& mesh, Index target, bool simple,
-                                                    double tolerance,
-                                                    const Checkpoint& checkpoint) {
+                                                    double tolerance, const Checkpoint& checkpoint,
+                                                    const std::vector<Vec2>* start) {
   CoarserMinimum minimum{simplify(mesh, target, options_.threads), {}, {}};
   const DiskMesh& coarse = minimum.coarse.mesh;
   // Simplification may get stuck far above its target.
   if (coarse.face_count() > kLeastReduction * mesh.face_count()) return std::nullopt;
   const auto rest = rest_triangles(coarse.positions, coarse.faces, options_.threads);
-  minimum.uvs = start_map(coarse, rest, checkpoint);
-  if (!non_positive_faces(coarse.faces, minimum.uvs, 1).empty()) return std::nullopt;
-  scale_best(coarse, rest, minimum.uvs);
   NewtonOptions newton = newton_options();
   newton.tolerance = std::max(newton.tolerance, tolerance);
   StageStatistics unused{"coarse"};
-  descend(coarse, rest, newton, simple, minimum.uvs, unused, checkpoint);
+  const std::vector<double> lengths = boundary_lengths(coarse);
+  const BoundaryContact contact(coarse.boundary, lengths, lengths);
+  if (start && restrict_map(*start, minimum.coarse, rest, minimum.uvs) &&
+      contact.is_simple(minimum.uvs)) {
+    newton.contact = &contact;
+    descend_to(coarse, rest, newton, minimum.uvs, unused, checkpoint);
+  } else {
+    minimum.uvs = start_map(coarse, rest, checkpoint);
+    if (!non_positive_faces(coarse.faces, minimum.uvs, 1).empty()) return std::nullopt;
+    scale_best(coarse, rest, minimum.uvs);
+    descend(coarse, rest, newton, simple, minimum.uvs, unused, checkpoint);
+  }
   minimum.metric = prolong_metric(coarse, face_metrics(coarse.faces, rest, minimum.uvs), mesh,
                                   minimum.coarse.nearby, options_.threads);
   return minimum;
@@ -216,13 +236,16 @@ std::vector<Vec2> Run::start_from_coarser(const DiskMesh& mesh,
   return {};
 }
 
-/// The minimum with contact of a mesh of a quarter of the faces, carried over: steps with contact
-/// are many, and cheap there. Empty where it is not injective here.
+/// The minimum with contact of a mesh of a quarter of the faces, from the map `start` of this one,
+/// carried over: steps with contact are many, and cheap there. Empty where it is not injective
+/// here.
 std::vector<Vec2> Run::contact_from_coarser(const DiskMesh& mesh,
                                             const std::vector<RestTriangle>& rest,
+                                            const std::vector<Vec2>& start,
                                             const Checkpoint& checkpoint) {
-  const auto minimum = minimise_coarser(mesh, mesh.face_count() / kContactReduction, true,
-                                        kLeadTolerance, [&](double) { checkpoint(0.5); });
+  const auto minimum = minimise_coarser(
+      mesh, mesh.face_count() / kContactReduction, true, kLeadTolerance,
+      [&](double) { checkpoint(0.5); }, &start);
   if (!minimum) return {};
   const std::vector<Vec2> carried = carry_boundary(mesh, minimum->coarse, minimum->uvs);
   const auto stiffness = energy_stiffness(options_.energy, rest, minimum->metric, options_.threads);
@@ -244,6 +267,7 @@ std::vector<Vec2> Run::contact_from_coarser(const DiskMesh& mesh,
     uvs = carried;
     solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false,
                  options_.threads, uvs);
+    put_in_place(anchored, carried, uvs);
     const RepairOptions mend{.threads = options_.threads, .global_fix = false};
     return repair(mesh, rest, uvs, mend).flips_after == 0;
   };

@@ -89,10 +89,14 @@ class Run {
                               const Checkpoint& checkpoint);
   std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                        const Checkpoint& checkpoint);
+  bool restrict_map(const std::vector<Vec2>& fine_uvs, const CoarseDisk& coarse,
+                    const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs) const;
   std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index target, bool simple,
-                                                 double tolerance, const Checkpoint& checkpoint);
+                                                 double tolerance, const Checkpoint& checkpoint,
+                                                 const std::vector<Vec2>* start = nullptr);
   std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh,
                                          const std::vector<RestTriangle>& rest,
+                                         const std::vector<Vec2>& start,
                                          const Checkpoint& checkpoint);
   void refine(std::vector<Vec2>& uvs);
   NewtonOptions newton_options() const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -22,11 +21,19 @@ constexpr int kMostContacts = 32;
 /// Of the barrier in an objective, times half the energy: at the end it raises the energy by a
 /// thousandth.
 constexpr double kStrength = 0.01;
+/// The reach grows as the energy falls: this is what it grows by in a step that is not the first.
+constexpr double kAhead = 1.2;
 /// Points of one boundary part are near each other: of the way between them along the boundary.
 constexpr double kReachAlong = 0.25;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+/// A pair with the reach at scale 1, at another.
+Contact at_scale(Contact contact, double scale) {
+  contact.reach *= scale;
+  return contact;
 }
 
 /// Where a vertex is nearest to an edge.
@@ -104,6 +111,11 @@ Term contact_term(const Contact& c, const Nearest& near, const std::vector<Vec2>
   return term;
 }
 
+double stiffness_across(const Contact& c, const Nearest& near) {
+  return c.weight * near.outside * near.outside * barrier_curvature(near.distance / c.reach) /
+         (c.reach * c.reach);
+}
+
 /// The first t in (0, limit) at which p and the edge a-b, all moving straight, become collinear
 /// with p on the edge, or a rounding error beside it; `limit` if they do not.
 double touch_time(const std::array<Vec2, 3>& place, const std::array<Vec2, 3>& move, double limit) {
@@ -133,8 +145,13 @@ BoundaryContact::BoundaryContact(const std::vector<Index>& loop, const std::vect
   for (const double length : lengths_) along_.push_back(along_.back() + length);
 }
 
+std::size_t BoundaryContact::most() const {
+  return kMostContacts * loop_.size();
+}
+
+/// At scale 1; so are those of pairs.
 double BoundaryContact::reach_of_vertex(Index i) const {
-  return scale_ * kReach * std::min(scales_[before(i)], scales_[i]);
+  return kReach * std::min(scales_[before(i)], scales_[i]);
 }
 
 double BoundaryContact::reach(Index i, Index e) const {
@@ -142,14 +159,14 @@ double BoundaryContact::reach(Index i, Index e) const {
     const double way = std::abs(along_[k] - along_[i]);
     return std::min(way, along_.back() - way);
   };
-  return std::min({reach_of_vertex(i), scale_ * kReach * scales_[e],
-                   scale_ * kReachAlong * std::min(way_to(e), way_to(after(e)))});
+  return std::min({reach_of_vertex(i), kReach * scales_[e],
+                   kReachAlong * std::min(way_to(e), way_to(after(e)))});
 }
 
 /// Calls visit(i, e) for the vertices i and the edges e, none that ends there, whose boxes meet,
 /// that of an edge being around the boxes of its ends, until it returns false.
-template <class BoxOf, class Visit>
-void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_end_box,
+template <class BoxOf, class EndBoxOf, class Visit>
+void BoundaryContact::for_each_near(const BoxOf& vertex_box, const EndBoxOf& edge_end_box,
                                     const Visit& visit) const {
   // A binary tree over the edges in their order: near in the loop is near in the plane.
   const Index count = size_of(loop_);
@@ -184,49 +201,82 @@ void BoundaryContact::for_each_near(const BoxOf& vertex_box, const BoxOf& edge_e
 }
 
 void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy) {
+  Neighbours unknown;
+  fit(uvs, energy, unknown);
+}
+
+void BoundaryContact::fit(const std::vector<Vec2>& uvs, double energy, Neighbours& known) {
   strength_ = 0.5 * kStrength * energy;
   scale_ = std::min(1.0, std::sqrt(2 / energy));
-  const std::size_t most = kMostContacts * loop_.size();
-  while (scale_ > std::numeric_limits<double>::min() && find(uvs, 1, most + 1).size() > most) {
+  if (known.scale < scale_) known = neighbours(uvs);
+  if (known.scale >= scale_ && find(uvs, known).size() <= most()) return;
+  while (scale_ > std::numeric_limits<double>::min() && find(uvs, 1, most() + 1).size() > most()) {
     scale_ *= 0.5;
   }
 }
 
 bool BoundaryContact::is_pressed(const std::vector<Vec2>& uvs) const {
-  const std::size_t most = kMostContacts * loop_.size();
-  const std::size_t near = find(uvs, 1, most + 1).size();
-  return near > 0 && near <= most;
+  const std::size_t near = find(uvs, 1, most() + 1).size();
+  return near > 0 && near <= most();
 }
 
-std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin,
-                                           std::size_t most) const {
-  using BoxOf = std::function<Box(Index)>;
-  const BoxOf around_vertex = [&](Index i) {
-    const double reach = margin * reach_of_vertex(i);
+/// Calls visit(contact, near), the contact's reach being that at scale 1, for the pairs nearer than
+/// their reach at `scale` whose vertex is no further behind the edge than `behind`, until it
+/// returns false.
+template <class Visit>
+void BoundaryContact::for_each_pair(const std::vector<Vec2>& uvs, double scale, double behind,
+                                    const Visit& visit) const {
+  const auto around_vertex = [&](Index i) {
+    const double reach = scale * reach_of_vertex(i);
     const Vec2& p = uvs[loop_[i]];
     return Box(p - Vec2(reach, reach), p + Vec2(reach, reach));
   };
-  const BoxOf at_vertex = [&](Index i) { return Box(uvs[loop_[i]]); };
-  std::vector<Contact> contacts;
+  const auto at_vertex = [&](Index i) { return Box(uvs[loop_[i]]); };
   for_each_near(around_vertex, at_vertex, [&](Index i, Index e) {
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double limit = reach(i, e);
     const Nearest near = nearest_on_edge(uvs[p], uvs[a], uvs[b]);
-    // Behind the edge is the surface, and no contact.
-    if (near.distance >= margin * limit || near.outside <= (margin > 1 ? -0.5 : 0.0)) return true;
-    contacts.push_back({p, a, b, limit, (lengths_[before(i)] + lengths_[i]) * lengths_[e]});
-    return contacts.size() < most;
+    if (near.distance >= scale * limit || near.outside <= behind) return true;
+    return visit(Contact{p, a, b, limit, (lengths_[before(i)] + lengths_[i]) * lengths_[e]}, near);
   });
+}
+
+std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs, double margin,
+                                           std::size_t most) const {
+  std::vector<Contact> contacts;
+  // Behind the edge is the surface, and no contact.
+  for_each_pair(uvs, margin * scale_, margin > 1 ? -0.5 : 0.0,
+                [&](const Contact& c, const Nearest&) {
+                  contacts.push_back(at_scale(c, scale_));
+                  return contacts.size() < most;
+                });
+  return contacts;
+}
+
+Neighbours BoundaryContact::neighbours(const std::vector<Vec2>& uvs) const {
+  Neighbours known{{}, std::min(1.0, kAhead * scale_), {}};
+  for_each_pair(uvs, known.scale, 0, [&](const Contact& c, const Nearest& near) {
+    known.pairs.push_back(c);
+    known.distances.push_back(near.distance);
+    return known.pairs.size() <= 2 * most();
+  });
+  if (known.pairs.size() > 2 * most()) known = {};
+  return known;
+}
+
+std::vector<Contact> BoundaryContact::find(const std::vector<Vec2>& uvs,
+                                           const Neighbours& known) const {
+  if (known.scale < scale_) return find(uvs);
+  std::vector<Contact> contacts;
+  for (std::size_t k = 0; k < known.pairs.size(); ++k) {
+    const Contact c = at_scale(known.pairs[k], scale_);
+    if (known.distances[k] < c.reach) contacts.push_back(c);
+  }
   return contacts;
 }
 
 double BoundaryContact::energy(const std::vector<Vec2>& uvs) const {
-  double sum = 0;
-  for (const Contact& c : find(uvs)) {
-    const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
-    sum += c.weight * near.outside * near.outside * barrier(near.distance / c.reach);
-  }
-  return sum;
+  return contact_energy(find(uvs), uvs);
 }
 
 double BoundaryContact::add_gradient(const std::vector<Vec2>& uvs, double strength,
@@ -247,8 +297,7 @@ std::vector<double> BoundaryContact::stiffness(const std::vector<Vec2>& uvs) con
   std::vector<double> result(uvs.size(), 0);
   for (const Contact& c : find(uvs)) {
     const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
-    const double across = c.weight * near.outside * near.outside *
-                          barrier_curvature(near.distance / c.reach) / (c.reach * c.reach);
+    const double across = stiffness_across(c, near);
     result[c.vertex] += across;
     result[c.from] += (1 - near.share) * across;
     result[c.to] += near.share * across;
@@ -261,17 +310,20 @@ std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
                                             double all_before) const {
   std::vector<Touch> found;
   double first = limit;
-  const std::function<Box(Index)> swept = [&](Index i) {
+  const auto until = [&] { return std::max(first, std::min(all_before, limit)); };
+  const auto swept = [&](Index i, double time) {
     const Vec2 &p = uvs[loop_[i]], &d = direction[loop_[i]];
     Box box(p);
-    return box.extend(p + limit * d);
+    return box.extend(p + time * d);
   };
-  for_each_near(swept, swept, [&](Index i, Index e) {
+  const auto vertex_swept = [&](Index i) { return swept(i, until()); };
+  const auto end_swept = [&](Index i) { return swept(i, limit); };
+  for_each_near(vertex_swept, end_swept, [&](Index i, Index e) {
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double time =
         touch_time({uvs[p], uvs[a], uvs[b]}, {direction[p], direction[a], direction[b]}, limit);
     // There may be as many as pairs of edges.
-    if (time < std::max(first, std::min(all_before, limit))) found.push_back({p, a, time});
+    if (time < until()) found.push_back({p, a, time});
     first = std::min(first, time);
     return true;
   });
@@ -288,6 +340,19 @@ bool BoundaryContact::is_simple(const std::vector<Vec2>& uvs) const {
   return beltrami::is_simple(loop_, uvs);
 }
 
+double contact_energy(const std::vector<Contact>& contacts, const std::vector<Vec2>& uvs) {
+  double sum = 0;
+  for (const Contact& c : contacts) {
+    const Nearest near = nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]);
+    sum += c.weight * near.outside * near.outside * barrier(near.distance / c.reach);
+  }
+  return sum;
+}
+
+double contact_stiffness(const Contact& c, const std::vector<Vec2>& uvs) {
+  return stiffness_across(c, nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]));
+}
+
 double share_of_reach(const Contact& c, const std::vector<Vec2>& uvs) {
   return nearest_on_edge(uvs[c.vertex], uvs[c.from], uvs[c.to]).distance / c.reach;
 }
@@ -300,8 +365,7 @@ FaceModel contact_model(const Contact& c, const std::vector<Vec2>& uvs, bool stu
   // The curvature of the distance itself is left out: it is not positive.
   const Vector6 by_distance = distance_gradient(near);
   model.gradient = contact_term(c, near, uvs).gradient;
-  const double across =
-      c.weight * near.outside * near.outside * barrier_curvature(x) / (c.reach * c.reach);
+  const double across = stiffness_across(c, near);
   model.hessian.noalias() = (across * by_distance) * by_distance.transpose();
   if (stuck) {
     const Vec2 tangent(-near.apart.y() / near.distance, near.apart.x() / near.distance);

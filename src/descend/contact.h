@@ -20,6 +20,13 @@ struct Contact {
   double weight;           ///< of the barrier: an area of the surface
 };
 
+/// The pairs near each other in one map, some way beyond their reach: they serve while it grows.
+struct Neighbours {
+  std::vector<Contact> pairs;     ///< with their reach at scale 1
+  double scale = 0;               ///< up to which none is missing; 0: there are too many
+  std::vector<double> distances;  ///< of the pairs
+};
+
 /// A boundary vertex that meets an edge on a way.
 struct Touch {
   Index vertex, from;  ///< vertices of the mesh
@@ -44,6 +51,9 @@ class BoundaryContact {
   /// and one with more parts near each other than the barrier needs, too.
   void fit(const std::vector<Vec2>& uvs, double energy);
 
+  /// The same, with what is known of this map; looks again if that does not reach as far.
+  void fit(const std::vector<Vec2>& uvs, double energy, Neighbours& known);
+
   /// What the barrier's energy counts in an objective, times the inverse area of the surface: it
   /// must hold against what presses.
   double strength() const { return strength_; }
@@ -53,6 +63,12 @@ class BoundaryContact {
   /// others.
   std::vector<Contact> find(const std::vector<Vec2>& uvs, double margin = 1,
                             std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+
+  /// Pairs that `find` might see after the next fit().
+  Neighbours neighbours(const std::vector<Vec2>& uvs) const;
+
+  /// The same as find(uvs), from `known` of `uvs` where that reaches far enough.
+  std::vector<Contact> find(const std::vector<Vec2>& uvs, const Neighbours& known) const;
 
   /// Whether parts of the boundary are near each other, and not as many as in a shape that is made
   /// so: a star of long teeth does not press on itself.
@@ -84,10 +100,15 @@ class BoundaryContact {
  private:
   Index after(Index i) const { return i + 1 == size_of(loop_) ? 0 : i + 1; }
   Index before(Index i) const { return i == 0 ? size_of(loop_) - 1 : i - 1; }
+  std::size_t most() const;
   double reach_of_vertex(Index i) const;
   double reach(Index i, Index e) const;
-  template <class BoxOf, class Visit>
-  void for_each_near(const BoxOf& vertex_box, const BoxOf& edge_end_box, const Visit& visit) const;
+  template <class Visit>
+  void for_each_pair(const std::vector<Vec2>& uvs, double scale, double behind,
+                     const Visit& visit) const;
+  template <class BoxOf, class EndBoxOf, class Visit>
+  void for_each_near(const BoxOf& vertex_box, const EndBoxOf& edge_end_box,
+                     const Visit& visit) const;
 
   const std::vector<Index>& loop_;
   std::vector<double> lengths_, scales_;
@@ -95,6 +116,12 @@ class BoundaryContact {
   double strength_ = 1;
   std::vector<double> along_;  // of each vertex along the loop, and the whole length at the end
 };
+
+/// The sum of the pairs' terms: an area. Infinite if two touch.
+double contact_energy(const std::vector<Contact>& contacts, const std::vector<Vec2>& uvs);
+
+/// How stiff a pair's term is across.
+double contact_stiffness(const Contact& contact, const std::vector<Vec2>& uvs);
 
 /// The distance of a pair over its reach.
 double share_of_reach(const Contact& contact, const std::vector<Vec2>& uvs);

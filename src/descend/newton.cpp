@@ -1,7 +1,6 @@
 #include "descend/newton.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "descend/newton_step.h"
 
@@ -27,7 +26,7 @@ bool is_stationary(const NewtonStep& step, double energy, double tolerance) {
 }
 
 /// Relative gain of a step below which a map that is not admissible is not going to be.
-constexpr double kSettled = 1e-2;
+constexpr double kSettled = 0.05;
 
 /// Steps below this length are blocked by faces that are nearly singular.
 constexpr double kBlockedStep = 0.02;
@@ -45,8 +44,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
-  std::optional<BoundaryContact> contact;
-  if (options.contact) stepper.set_contact(&contact.emplace(*options.contact));
+  if (options.contact) stepper.set_contact(*options.contact);
   // Their long steps take no heed of parts that turn towards each other, which then jam.
   const int all_proxy_steps = options.contact ? 0 : options.proxy_steps;
   int proxy_steps = all_proxy_steps;
@@ -62,7 +60,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
     checkpoint(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
-    if (contact) contact->fit(uvs, comparable_energy<Density>(before));
+    if (options.contact) stepper.fit_contact(uvs, comparable_energy<Density>(before));
     const NewtonStep step = proxy ? stepper.step_with(typename Density::Proxy{}, uvs, before)
                                   : stepper.step(uvs, before);
     if (step.length > 0) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -54,9 +56,14 @@ class NewtonStepper {
 
   Index free_count() const { return hessian_.free_count(); }
   void set_density(const Density& density) { density_ = density; }
-  /// From now on the contact's energy joins the objective, and no step lets the boundary touch
-  /// itself. Null: no contact. Keeps the pointer.
-  void set_contact(const BoundaryContact* contact) { contact_ = contact; }
+  /// From now on the contact's energy joins the objective, no step lets the boundary touch itself,
+  /// and each begins where the last one ended.
+  void set_contact(const BoundaryContact& contact) { contact_.emplace(contact); }
+  /// See BoundaryContact::fit; for the steps from `uvs` on. Precondition: set_contact.
+  void fit_contact(const std::vector<Vec2>& uvs, double energy) {
+    contact_->fit(uvs, energy, neighbours_);
+    loose_share_ = std::min(kLooseShare, last_gain_ / energy);
+  }
 
   /// Infinite if a face is not positive under a barrier density.
   double mean_energy(const std::vector<Vec2>& uvs) const;
@@ -82,10 +89,13 @@ class NewtonStepper {
 
   static constexpr double kJammed = 0.25;  // of a step, below which what touches first is stuck
   static constexpr double kFreed = 0.2;    // of the reach, beyond which it is no more
-  static constexpr double kPatternMargin = 1.5;  // of the reach, up to which pairs have entries
+  static constexpr double kPatternMargin = 1.3;  // of the reach, up to which pairs have entries
+  static constexpr double kLooseShare = 0.05;    // of all stiffness, of pairs that lack them; and
+                                                 // no more than what the last step gained
 
   double strength() const { return contact_->strength() / area_; }
-  void meet_contacts(const std::vector<Vec2>& uvs);
+  std::vector<Contact> meet_contacts(const std::vector<Vec2>& uvs);
+  void add_loose(const std::vector<Vec2>& uvs);
   double stop_before_touch(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,
                            double length);
   template <class Model>
@@ -99,8 +109,12 @@ class NewtonStepper {
   std::vector<double> weights_;  // of the faces in the mean
   const int threads_;
   Density density_;
-  const BoundaryContact* contact_ = nullptr;
-  std::vector<Contact> contacts_;            // that the matrix has entries for
+  std::optional<BoundaryContact> contact_;
+  Neighbours neighbours_;          // in the map that the last step left, if there was one
+  std::vector<Contact> contacts_;  // that the matrix has entries for
+  std::vector<Contact> loose_;     // without
+  double last_gain_ = std::numeric_limits<double>::infinity();
+  double loose_share_ = kLooseShare;
   std::set<std::pair<Index, Index>> stuck_;  // of them, by vertex and first vertex of the edge
   std::vector<Triangle> with_contacts_;  // the faces, then the vertices of each contact; or empty
   MeshMatrix hessian_;
@@ -141,22 +155,34 @@ bool NewtonStepper<Density>::factorize() {
   return false;
 }
 
-/// Gives the matrix entries for all pairs that are in contact. Pairs a little beyond their reach
-/// get them too, so that the pattern, and with it the ordering, serves for several steps.
+/// Gives the matrix entries for the pairs in contact, which are returned. Pairs a little beyond
+/// their reach get them too, so that the pattern, and with it the ordering, serves for several
+/// steps; and it serves on where those that lack entries are weak.
 template <class Density>
-void NewtonStepper<Density>::meet_contacts(const std::vector<Vec2>& uvs) {
+std::vector<Contact> NewtonStepper<Density>::meet_contacts(const std::vector<Vec2>& uvs) {
   const auto less = [](const Contact& a, const Contact& b) {
     return std::pair(a.vertex, a.from) < std::pair(b.vertex, b.from);
   };
-  std::vector<Contact> now = contact_->find(uvs);
+  const std::vector<Contact> found = contact_->find(uvs, neighbours_);
+  std::vector<Contact> now = found;
   std::sort(now.begin(), now.end(), less);
-  if (std::includes(contacts_.begin(), contacts_.end(), now.begin(), now.end(), less)) return;
+  loose_.clear();
+  std::set_difference(now.begin(), now.end(), contacts_.begin(), contacts_.end(),
+                      std::back_inserter(loose_), less);
+  const auto stiffness = [&](const std::vector<Contact>& pairs) {
+    double sum = 0;
+    for (const Contact& c : pairs) sum += contact_stiffness(c, uvs);
+    return sum;
+  };
+  if (loose_.empty() || stiffness(loose_) <= loose_share_ * stiffness(now)) return found;
+  loose_.clear();
   contacts_ = contact_->find(uvs, kPatternMargin);
   std::sort(contacts_.begin(), contacts_.end(), less);
   with_contacts_ = faces_;
   for (const Contact& c : contacts_) with_contacts_.push_back({c.vertex, c.from, c.to});
   hessian_ = MeshMatrix(size_of(fixed_), with_contacts_, fixed_, 2, threads_);
   analyzed_ = false;
+  return found;
 }
 
 /// How far of `length` the map may go. Where that is next to nothing, because parts that all but
@@ -198,13 +224,38 @@ void NewtonStepper<Density>::assemble_model(const Model& model, const std::vecto
   };
   assemble(with_contacts_.empty() ? faces_ : with_contacts_, model_of, threads_, hessian_,
            gradient_);
+  add_loose(uvs);
+}
+
+/// Pairs without entries hold their vertices to their places: of a term k (sum_i c_i n . x_i)^2 the
+/// blocks on the diagonal, times sum_j |c_j| / |c_i|, are a bound from above.
+template <class Density>
+void NewtonStepper<Density>::add_loose(const std::vector<Vec2>& uvs) {
+  for (const Contact& contact : loose_) {
+    const FaceModel pair =
+        contact_model(contact, uvs, stuck_.contains({contact.vertex, contact.from}));
+    const Triangle corners = {contact.vertex, contact.from, contact.to};
+    Eigen::Vector3d weight;
+    for (int k = 0; k < 3; ++k) {
+      weight[k] = std::sqrt(std::max(0.0, pair.hessian.block<2, 2>(2 * k, 2 * k).trace()));
+    }
+    for (int k = 0; k < 3; ++k) {
+      const Index row = hessian_.row(corners[k]);
+      if (row == kNone || !(weight[k] > 0)) continue;
+      gradient_.segment<2>(2 * row) += strength() * pair.gradient.segment<2>(2 * k);
+      const double bound = strength() * weight.sum() / weight[k];
+      hessian_.add_diagonal(
+          row, [&](int r, int c) { return bound * pair.hessian(2 * k + r, 2 * k + c); });
+    }
+  }
 }
 
 template <class Density>
 template <class Model>
 NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
                                              double energy) {
-  if (contact_) meet_contacts(uvs);
+  std::vector<Contact> touching;
+  if (contact_) touching = meet_contacts(uvs);
   assemble_model(model, uvs);
   if (!analyzed_) solver_->analyze(hessian_.matrix(), hessian_.places(uvs));
   analyzed_ = true;
@@ -227,24 +278,30 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
     length =
         std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
   }
-  const auto pressure = [&](const std::vector<Vec2>& map) {
-    return contact_ ? strength() * contact_->energy(map) : 0.0;
+  const auto pressure = [&](const std::vector<Vec2>& map, const std::vector<Contact>& contacts) {
+    return contact_ ? strength() * contact_energy(contacts, map) : 0.0;
   };
   if (contact_) length = stop_before_touch(uvs, direction, length);
   if (!(length > 0)) return result;
-  const double before = energy + pressure(uvs);
+  const double before = energy + pressure(uvs, touching);
   std::vector<Vec2> trial(uvs.size());
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
     const double trial_energy = mean_energy(trial);
     if (!(trial_energy < before)) continue;
-    const double after = trial_energy + pressure(trial);
+    Neighbours neighbours;
+    if (contact_) {
+      neighbours = contact_->neighbours(trial);
+      touching = contact_->find(trial, neighbours);
+    }
+    const double after = trial_energy + pressure(trial, touching);
     if (after < before && after <= before - kArmijo * length * result.predicted &&
         (!contact_ || contact_->is_simple(trial))) {
       uvs.swap(trial);
+      neighbours_ = std::move(neighbours);
       result.length = length;
       result.energy = trial_energy;
-      result.gain = before - after;
+      result.gain = last_gain_ = before - after;
       break;
     }
   }

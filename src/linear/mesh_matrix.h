@@ -36,6 +36,14 @@ class MeshMatrix {
     for_each_entry(face, corners, i, j, block,
                    [](Index, double& entry, double term) { entry += term; });
   }
+  /// Adds to the block of a row against itself.
+  template <class Block>
+  void add_diagonal(Index row, const Block& block) {
+    for (int c = 0; c < block_size_; ++c) {
+      double* column = matrix_.valuePtr() + matrix_.outerIndexPtr()[block_size_ * row + c];
+      for (int r = c; r < block_size_; ++r) column[r - c] += block(r, c);
+    }
+  }
   /// For every face calls `give(face, add)`, which adds blocks of that face by add(i, j, block), in
   /// parallel; the same bits at any number of threads. `faces` are those of the constructor.
   template <class Give>

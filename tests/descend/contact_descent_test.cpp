@@ -136,12 +136,13 @@ TEST(MinimiseEnergyWithContact, LowersTheEnergyWithItsBarrierInEveryStep) {
   });
 }
 
-TEST(MinimiseEnergyWithContact, EndsAtTheBestScale) {
+/// But for what the barrier presses.
+TEST(MinimiseEnergyWithContact, EndsNearTheBestScale) {
   for_each_overlap([](const std::string& where, const DiskMesh& mesh, const BoundaryContact&,
                       const NewtonOptions& options, const Way& way) {
     const Minimum minimum = minimise(mesh, way.start, options);
     const auto rest = disks::rest_of(mesh);
-    EXPECT_NEAR(best_scale(options.energy, mesh.faces, rest, minimum.uvs), 1, 1e-3) << where;
+    EXPECT_NEAR(best_scale(options.energy, mesh.faces, rest, minimum.uvs), 1, 2e-3) << where;
   });
 }
 
