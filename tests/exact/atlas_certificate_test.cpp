@@ -11,6 +11,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -73,16 +74,26 @@ Rational twice_area(const RationalPoint& a, const RationalPoint& b, const Ration
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
+std::array<RationalPoint, 3> rational_corners(const Atlas& atlas, Index f) {
+  std::array<RationalPoint, 3> points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& w = atlas.uvs[atlas.faces[f][k]];
+    points[k] = {Rational(w.x()), Rational(w.y())};
+  }
+  return points;
+}
+
+int rational_sign(const Atlas& atlas, Index f) {
+  const auto [a, b, c] = rational_corners(atlas, f);
+  return static_cast<int>(CGAL::sign(twice_area(a, b, c)));
+}
+
 /// Counter-clockwise; empty if it has no area.
 std::vector<RationalPoint> rational_triangle(const Atlas& atlas, Index f) {
-  std::vector<RationalPoint> points;
-  for (const Index v : atlas.faces[f]) {
-    points.push_back({Rational(atlas.uvs[v].x()), Rational(atlas.uvs[v].y())});
-  }
-  const auto sign = CGAL::sign(twice_area(points[0], points[1], points[2]));
-  if (sign == CGAL::ZERO) return {};
-  if (sign == CGAL::NEGATIVE) std::swap(points[1], points[2]);
-  return points;
+  const int sign = rational_sign(atlas, f);
+  const auto [a, b, c] = rational_corners(atlas, f);
+  if (sign == 0) return {};
+  return sign > 0 ? std::vector{a, b, c} : std::vector{a, c, b};
 }
 
 /// What of a convex polygon is on the left of a line (Sutherland & Hodgman 1974).
@@ -105,7 +116,7 @@ std::vector<RationalPoint> clip(const std::vector<RationalPoint>& polygon, const
 bool overlap_in_rationals(const std::vector<RationalPoint>& f,
                           const std::vector<RationalPoint>& g) {
   std::vector<RationalPoint> common = f;
-  for (int k = 0; k < 3; ++k) common = clip(common, g[k], g[(k + 1) % 3]);
+  for (std::size_t k = 0; k < 3; ++k) common = clip(common, g[k], g[(k + 1) % 3]);
   Rational area(0);
   for (std::size_t i = 2; i < common.size(); ++i) {
     area += twice_area(common[0], common[i - 1], common[i]);
@@ -130,27 +141,26 @@ std::vector<Pair> overlaps_by_force(const Atlas& atlas) {
   return pairs;
 }
 
-/// Whether an edge of a face is used by other than one face on each side.
-bool at_boundary(const Atlas& atlas, Index f) {
-  const auto directed = [&](Index g, int k) -> Pair {
-    const Triangle& t = atlas.faces[g];
-    const Vec2 u = atlas.uvs[t[1]] - atlas.uvs[t[0]], v = atlas.uvs[t[2]] - atlas.uvs[t[0]];
-    const double area = u.x() * v.y() - u.y() * v.x();  // exact on small grids
-    if (area == 0) return {kNone, kNone};
-    return area > 0 ? Pair{t[k], t[(k + 1) % 3]} : Pair{t[(k + 1) % 3], t[k]};
+/// Per face, whether an edge of it is used by other than one face on each side.
+std::vector<bool> faces_at_boundary(const Atlas& atlas) {
+  std::map<Pair, int> uses;
+  const auto directed = [&](Index f, int sign, std::size_t k) {
+    const Triangle& t = atlas.faces[f];
+    return sign > 0 ? Pair{t[k], t[(k + 1) % 3]} : Pair{t[(k + 1) % 3], t[k]};
   };
-  for (int k = 0; k < 3; ++k) {
-    const Pair edge = directed(f, k);
-    int same = 0, opposite = 0;
-    for (Index g = 0; g < size_of(atlas.faces); ++g) {
-      for (int l = 0; l < 3; ++l) {
-        same += directed(g, l) == edge;
-        opposite += directed(g, l) == Pair{edge[1], edge[0]};
-      }
-    }
-    if (same != 1 || opposite != 1) return true;
+  std::vector<int> signs;
+  for (Index f = 0; f < size_of(atlas.faces); ++f) {
+    signs.push_back(rational_sign(atlas, f));
+    for (std::size_t k = 0; k < 3 && signs[f] != 0; ++k) ++uses[directed(f, signs[f], k)];
   }
-  return false;
+  std::vector<bool> at_boundary(signs.size(), false);
+  for (Index f = 0; f < size_of(signs); ++f) {
+    for (std::size_t k = 0; k < 3 && signs[f] != 0; ++k) {
+      const auto [a, b] = directed(f, signs[f], k);
+      if (uses[{a, b}] != 1 || uses[{b, a}] != 1) at_boundary[f] = true;
+    }
+  }
+  return at_boundary;
 }
 
 /// The verdict is that of force; so are the pairs of faces, and boundary edges cross in theirs.
@@ -160,10 +170,10 @@ void expect_as_by_force(const Atlas& atlas, int& injective) {
   ASSERT_EQ(found.overlaps.faces == 0, all.empty());
   injective += all.empty();
   if (all.empty()) return;
+  const std::vector<bool> at_boundary = faces_at_boundary(atlas);
   std::vector<Pair> expected;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(expected), [&](const Pair& p) {
-    return at_boundary(atlas, p[0]) || at_boundary(atlas, p[1]);
-  });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(expected),
+               [&](const Pair& p) { return at_boundary[p[0]] || at_boundary[p[1]]; });
   ASSERT_TRUE(found.overlaps.complete);
   ASSERT_EQ(found.overlaps.first_faces, expected);
   ASSERT_EQ(found.overlaps.faces, static_cast<std::int64_t>(expected.size()));
@@ -252,7 +262,7 @@ TEST(AtlasCertificate, LetsTheChartsOfAMosaicTouchInAnyWay) {
 TEST(AtlasCertificate, AgreesWithAreasWhereAVertexOrAFaceOfAMosaicIsMisplaced) {
   Random random(3);
   int injective = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 600; ++i) {
     Atlas atlas = random_mosaic(random);
     if (atlas.faces.empty()) continue;
     const auto any_place = [&] { return atlas.uvs[random.below(size_of(atlas.uvs))]; };
@@ -264,8 +274,21 @@ TEST(AtlasCertificate, AgreesWithAreasWhereAVertexOrAFaceOfAMosaicIsMisplaced) {
     }
     ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
   }
-  EXPECT_GT(injective, 100);
-  EXPECT_LT(injective, 1400);
+  EXPECT_GT(injective, 50);
+  EXPECT_LT(injective, 550);
+}
+
+TEST(AtlasCertificate, AgreesWithAreasWhereRoundingMovesVerticesOffTheEdgesThatTheyTouched) {
+  Random random(5);
+  int injective = 0;
+  for (int i = 0; i < 600; ++i) {
+    Atlas atlas = random_mosaic(random);
+    const double x = random.unit(), y = random.unit();
+    for (Vec2& w : atlas.uvs) w = {x * w.x() - y * w.y(), y * w.x() + x * w.y()};
+    ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
+  }
+  EXPECT_GT(injective, 50);
+  EXPECT_LT(injective, 550);
 }
 
 // ---- Charts within and beside each other ------------------------------------------------------
