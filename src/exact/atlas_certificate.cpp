@@ -52,9 +52,8 @@ std::vector<bool> mirrored_faces(const SignedTriangles& triangles, const Work& w
 
 void count_signs(const SignedTriangles& triangles, const AtlasRules& rules, const Work& work,
                  AtlasCertificate& result) {
-  const std::vector<Index> bad =
-      parallel_filter(work.threads(), size_of(triangles.faces), kGrain,
-                      [&](Index f) { return triangles.signs[f] <= 0; });
+  const std::vector<Index> bad = parallel_filter(work.threads(), size_of(triangles.faces), kGrain,
+                                                 [&](Index f) { return triangles.signs[f] <= 0; });
   std::vector<bool> mirrored;
   if (rules.allow_mirrored && !bad.empty()) {
     mirrored = mirrored_faces(triangles, work, result.mirrored_charts);
@@ -76,8 +75,8 @@ void count_signs(const SignedTriangles& triangles, const AtlasRules& rules, cons
   }
 }
 
-void count_not_finite(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                      int threads, AtlasCertificate& result) {
+void count_not_finite(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs, int threads,
+                      AtlasCertificate& result) {
   const std::vector<Index> bad =
       parallel_filter(threads, size_of(uvs), kGrain, [&](Index v) { return !uvs[v].allFinite(); });
   if (bad.empty()) return;
@@ -105,13 +104,12 @@ AtlasCertificate certify_atlas(const std::vector<Triangle>& faces, const std::ve
   work.report(0.05);
   const UvBoundary boundary = uv_boundary(triangles, work);
   work.report(0.2);
-  const Index suspect =
-      boundary.first_doubled != kNone
-          ? boundary.edges[boundary.first_doubled].corner
-          : find_double_cover(triangles, boundary.edges, work.part(0.2, 0.7));
+  const Index suspect = boundary.first_doubled != kNone
+                            ? boundary.edges[boundary.first_doubled].corner
+                            : find_double_cover(triangles, boundary.edges, work.part(0.2, 0.7));
   if (suspect != kNone) {
-    result.overlaps = list_overlaps(triangles, boundary.edges, suspect / 3, rules.most_listed,
-                                    work.part(0.7, 1));
+    result.overlaps =
+        list_overlaps(triangles, boundary.edges, suspect / 3, rules.most_listed, work.part(0.7, 1));
   }
   work.report(1);
   return result;

@@ -29,12 +29,13 @@ struct AtlasRules {
 };
 
 struct AtlasCertificate {
-  Orientations orientations;         ///< of the judged faces, after mirroring
+  Orientations orientations;  ///< of the judged faces, after mirroring
   std::int64_t excepted_faces = 0;
   std::int64_t mirrored_charts = 0, mirrored_faces = 0;  ///< where that is allowed
-  std::int64_t not_finite = 0;       ///< UV vertices of faces that have a coordinate that is no number
+  std::int64_t not_finite = 0;  ///< UV vertices of faces that have a coordinate that is no number
   Index first_not_finite = kNone;
-  /// Among the judged faces that have an area, taken as positive. Looked for where triangles overlap.
+  /// Among the judged faces that have an area, taken as positive. Looked for where triangles
+  /// overlap.
   Overlaps overlaps;
   bool injective() const {
     return not_finite == 0 && orientations.negative == 0 && orientations.degenerate == 0 &&
@@ -43,9 +44,9 @@ struct AtlasCertificate {
 };
 
 /// Judges the atlas of `faces`, given as indices of its UV vertices `uvs`: an edge is in the inside
-/// of a chart where two faces use the same two indices. Doubles are taken as they are; what is to be
-/// delivered in single precision is to be rounded before. O(m + n log n) for m faces, n edges at the
-/// boundary. Precondition: indices in range. Never fails: UVs that are no numbers are counted.
+/// of a chart where two faces use the same two indices. Doubles are taken as they are; what is to
+/// be delivered in single precision is to be rounded before. O(m + n log n) for m faces, n edges at
+/// the boundary. Precondition: indices in range. Never fails: UVs that are no numbers are counted.
 AtlasCertificate certify_atlas(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
                                const AtlasRules& rules, const Work& work);
 

@@ -1,5 +1,5 @@
-// After Bentley & Ottmann 1979, "Algorithms for reporting and counting geometric intersections", but
-// that it needs no point of intersection: it ends where the first would be.
+// After Bentley & Ottmann 1979, "Algorithms for reporting and counting geometric intersections",
+// but that it needs no point of intersection: it ends where the first would be.
 #include "exact/covering.h"
 
 #include <algorithm>
@@ -20,12 +20,12 @@ constexpr Index kReportEvery = 1 << 16;
 /// by the places where they begin. Vertices with equal coordinates share a place.
 struct Events {
   std::vector<Vec2> places;
-  std::vector<Segment> segments;        ///< per edge, in the order of their left ends
-  std::vector<UvEdge> edges;            ///< likewise
-  std::vector<Index> right;             ///< place of the right end, likewise
-  std::vector<std::uint8_t> goes_right; ///< whether its triangle is above it, likewise
-  std::vector<Index> begins, end_start; ///< ranges per place: of edges, and of `ending`
-  std::vector<Index> ending;            ///< edges by the places of their right ends
+  std::vector<Segment> segments;         ///< per edge, in the order of their left ends
+  std::vector<UvEdge> edges;             ///< likewise
+  std::vector<Index> right;              ///< place of the right end, likewise
+  std::vector<std::uint8_t> goes_right;  ///< whether its triangle is above it, likewise
+  std::vector<Index> begins, end_start;  ///< ranges per place: of edges, and of `ending`
+  std::vector<Index> ending;             ///< edges by the places of their right ends
 };
 
 /// Place of each vertex that the edges use.
@@ -65,9 +65,8 @@ Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edge
   BucketSort<Index> begin(threads, count, places, events.begins,
                           [&](std::int64_t e, const auto& visit) { visit(left(edges[e])); });
   events.edges.resize(edges.size());
-  begin.place([&](std::int64_t e, const auto& visit) {
-    events.edges[visit(left(edges[e]))] = edges[e];
-  });
+  begin.place(
+      [&](std::int64_t e, const auto& visit) { events.edges[visit(left(edges[e]))] = edges[e]; });
   events.segments.resize(edges.size());
   events.right.resize(edges.size());
   events.goes_right.resize(edges.size());
@@ -89,8 +88,8 @@ Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edge
 }
 
 /// Invariant: of the edges on the line no two cross at or before it, and no two neighbours on it
-/// cross anywhere, so their order along the line is the same all the way; edges that lie on one line
-/// are neighbours. `above_` holds, for the highest of those, the number of triangles above it.
+/// cross anywhere, so their order along the line is the same all the way; edges that lie on one
+/// line are neighbours. `above_` holds, for the highest of those, the number of triangles above it.
 class Sweep {
  public:
   explicit Sweep(const Events& events)

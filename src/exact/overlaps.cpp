@@ -27,9 +27,8 @@ std::uint64_t spread(std::uint64_t x) {
 /// Faces with a sign along a Z-shaped curve, on which those that are near are mostly near.
 std::vector<Index> along_curve(const SignedTriangles& triangles, const std::vector<Box2>& boxes,
                                int threads) {
-  const std::vector<Index> faces =
-      parallel_filter(threads, size_of(triangles.faces), kGrain,
-                      [&](Index f) { return triangles.signs[f] != 0; });
+  const std::vector<Index> faces = parallel_filter(
+      threads, size_of(triangles.faces), kGrain, [&](Index f) { return triangles.signs[f] != 0; });
   Box2 whole;
   for (const Index f : faces) whole.extend(boxes[f]);
   // Halves, as the difference of the greatest numbers is none.
@@ -154,8 +153,7 @@ class Search {
   static bool cross(const std::array<Vec2, 2>& e, const std::array<Vec2, 2>& f) {
     const int e_f0 = orientation(e[0], e[1], f[0]), e_f1 = orientation(e[0], e[1], f[1]);
     if (e_f0 != 0 || e_f1 != 0) {
-      return e_f0 * e_f1 < 0 &&
-             orientation(f[0], f[1], e[0]) * orientation(f[0], f[1], e[1]) < 0;
+      return e_f0 * e_f1 < 0 && orientation(f[0], f[1], e[0]) * orientation(f[0], f[1], e[1]) < 0;
     }
     const Segment s = segment_between(e[0], e[1]), t = segment_between(f[0], f[1]);
     const bool one_direction = is_before(e[0], e[1]) == is_before(f[0], f[1]);

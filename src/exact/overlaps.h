@@ -16,7 +16,7 @@ struct Overlaps {
   /// Pairs of boundary edges, as corners (see UvEdge), whose interiors cross, or that lie on each
   /// other in one direction.
   std::int64_t edges = 0;
-  bool complete = true;  ///< all pairs were counted
+  bool complete = true;                                        ///< all pairs were counted
   std::vector<std::array<Index, 2>> first_faces, first_edges;  ///< the lowest of them, in order
 };
 

@@ -14,8 +14,7 @@ namespace {
 /// meet anywhere. Hence their order along the line is the same all the way.
 class Sweep {
  public:
-  Sweep(const ClosedPolygon& polygon, Index most)
-      : polygon_(polygon), most_(most) {}
+  Sweep(const ClosedPolygon& polygon, Index most) : polygon_(polygon), most_(most) {}
 
   std::vector<TakenOut> run() {
     const Index count = polygon_.edge_count();

@@ -44,11 +44,11 @@ EdgeBuckets bucket_edges(const SignedTriangles& triangles, int threads) {
   });
   parallel_for(threads, size_of(triangles.uvs), kGrain, [&](std::int64_t from, std::int64_t until) {
     for (std::int64_t v = from; v < until; ++v) {
-      sort_interruptibly(
-          buckets.edges.begin() + buckets.start[v], buckets.edges.begin() + buckets.start[v + 1],
-          [](const BucketEdge& a, const BucketEdge& b) {
-            return a.higher != b.higher ? a.higher < b.higher : a.corner < b.corner;
-          });
+      sort_interruptibly(buckets.edges.begin() + buckets.start[v],
+                         buckets.edges.begin() + buckets.start[v + 1],
+                         [](const BucketEdge& a, const BucketEdge& b) {
+                           return a.higher != b.higher ? a.higher < b.higher : a.corner < b.corner;
+                         });
     }
   });
   return buckets;

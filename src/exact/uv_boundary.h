@@ -26,7 +26,8 @@ struct UvEdge {
 struct UvBoundary {
   std::vector<UvEdge> edges;  ///< by their lower vertex, then the higher one, then the corner
   /// First edge with another one between the same vertices in the same direction, so that their
-  /// triangles lie on each other; kNone if there is none. All between those vertices are in `edges`.
+  /// triangles lie on each other; kNone if there is none. All between those vertices are in
+  /// `edges`.
   Index first_doubled = kNone;
 };
 

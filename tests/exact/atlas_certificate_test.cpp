@@ -57,7 +57,8 @@ struct Atlas {
 
   Atlas& add_grid(Index nx, Index ny, const Vec2& corner, double cell = 1) {
     return add_cells(
-        nx, ny, [](Index, Index) { return true; }, [&](Vec2 p) -> Vec2 { return corner + cell * p; });
+        nx, ny, [](Index, Index) { return true; },
+        [&](Vec2 p) -> Vec2 { return corner + cell * p; });
   }
 };
 
@@ -437,8 +438,12 @@ TEST(AtlasCertificate, IsDecidedExactly) {
 
 Atlas with_a_mirrored_chart() {
   Atlas atlas;
-  return atlas.add_grid(2, 2, {0, 0}).add_cells(
-      2, 2, [](Index, Index) { return true; }, [](Vec2 p) -> Vec2 { return {-1 - p.x(), p.y()}; });
+  return atlas.add_grid(2, 2, {0, 0})
+      .add_cells(
+          2, 2, [](Index, Index) { return true; },
+          [](Vec2 p) -> Vec2 {
+            return {-1 - p.x(), p.y()};
+          });
 }
 
 TEST(AtlasCertificate, TakesWholeChartsThatAreMirroredWhereItIsAllowed) {
