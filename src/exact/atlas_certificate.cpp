@@ -104,9 +104,15 @@ AtlasCertificate certify_atlas(const std::vector<Triangle>& faces, const std::ve
   work.report(0.05);
   const UvBoundary boundary = uv_boundary(triangles, work);
   work.report(0.2);
-  const Index suspect = boundary.first_doubled != kNone
-                            ? boundary.edges[boundary.first_doubled].corner
-                            : find_double_cover(triangles, boundary.edges, work.part(0.2, 0.7));
+  Index suspect = kNone;
+  if (boundary.first_doubled != kNone) {
+    suspect = boundary.edges[boundary.first_doubled].corner;
+  } else {
+    const Covering covering = sweep_covering(triangles, boundary.edges, work.part(0.2, 0.7));
+    suspect = covering.doubled;
+    result.touching_places = covering.touching_places;
+    result.first_touching = covering.first_touching;
+  }
   if (suspect != kNone) {
     result.overlaps =
         list_overlaps(triangles, boundary.edges, suspect / 3, rules.most_listed, work.part(0.7, 1));

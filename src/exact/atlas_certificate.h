@@ -4,7 +4,8 @@
 // the winding number of their boundary around it. So no two of them overlap, in one chart or in
 // two, in holes and bays, if and only if that number is 0 or 1 in every cell of the boundary's
 // arrangement, which a sweep over the boundary alone decides. Triangles overlap if their interiors
-// have a point in common; they may share any points of their borders, so charts may touch.
+// have a point in common; they may share any points of their borders, so charts may touch, which is
+// counted.
 #pragma once
 
 #include <array>
@@ -32,11 +33,15 @@ struct AtlasCertificate {
   Orientations orientations;  ///< of the judged faces, after mirroring
   std::int64_t excepted_faces = 0;
   std::int64_t mirrored_charts = 0, mirrored_faces = 0;  ///< where that is allowed
-  std::int64_t not_finite = 0;  ///< UV vertices of faces that have a coordinate that is no number
+  std::int64_t not_finite = 0;  ///< UV vertices of faces with a coordinate that is no number
   Index first_not_finite = kNone;
-  /// Among the judged faces that have an area, taken as positive. Looked for where triangles
-  /// overlap.
+  /// Of the judged faces that have an area, taken as positive. Counted where some overlap.
   Overlaps overlaps;
+  /// Places where boundaries touch, and the lowest UV vertex there: a vertex on another one or on
+  /// an edge. None: charts, and the sides of a seam, are apart. Counted in full if the atlas is
+  /// injective.
+  std::int64_t touching_places = 0;
+  Index first_touching = kNone;
   bool injective() const {
     return not_finite == 0 && orientations.negative == 0 && orientations.degenerate == 0 &&
            overlaps.faces == 0;

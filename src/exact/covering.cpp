@@ -99,13 +99,13 @@ class Sweep {
         on_line_(order_),
         at_(events.edges.size(), on_line_.end()) {}
 
-  Index run(const Work& work) {
+  Covering run(const Work& work) {
     const Index count = size_of(events_.places);
     for (Index place = 0; place < count; ++place) {
       if (place % kReportEvery == 0) work.report(static_cast<double>(place) / count);
-      if (!visit(place)) return found_;
+      if (!visit(place)) break;
     }
-    return kNone;
+    return found_;
   }
 
  private:
@@ -126,6 +126,7 @@ class Sweep {
     for (auto at = first; at != last; ++at) {
       if (events_.right[*at] != place) leaving_.push_back(*at);
     }
+    note_touching(place);
     for (std::size_t i = 1; i < leaving_.size(); ++i) {
       if (turn(here, leaving_[i - 1], leaving_[i]) != 0) return refuse(leaving_[i]);
     }
@@ -139,6 +140,28 @@ class Sweep {
     if (leaving_.empty()) return !has_below || !has_above || keep_apart(*below, *last);
     return (!has_below || keep_apart(*below, leaving_.front())) &&
            (!has_above || keep_apart(leaving_.back(), *last));
+  }
+
+  /// Counts a place that an edge goes through, or where edges end that do not share their vertex.
+  /// Boundaries that touch and do not cross have such a place in common.
+  void note_touching(Index place) {
+    Index vertex = kNone;
+    bool touching = !leaving_.empty();
+    const auto meet = [&](Index v) {
+      touching = touching || (vertex != kNone && v != vertex);
+      vertex = vertex == kNone ? v : std::min(v, vertex);
+    };
+    for (Index e = events_.begins[place]; e < events_.begins[place + 1]; ++e) {
+      meet(events_.goes_right[e] ? events_.edges[e].from : events_.edges[e].to);
+    }
+    for (Index i = events_.end_start[place]; i < events_.end_start[place + 1]; ++i) {
+      const Index e = events_.ending[i];
+      meet(events_.goes_right[e] ? events_.edges[e].to : events_.edges[e].from);
+    }
+    if (!touching) return;
+    const Index known = found_.first_touching;
+    found_.first_touching = known == kNone ? vertex : std::min(known, vertex);
+    ++found_.touching_places;
   }
 
   /// The edges on the line that a place lies on, its right ends included.
@@ -196,7 +219,7 @@ class Sweep {
   }
 
   bool refuse(Index edge) {
-    found_ = edge;
+    found_.doubled = events_.edges[edge].corner;
     return false;
   }
 
@@ -206,16 +229,15 @@ class Sweep {
   Line on_line_;
   std::vector<Line::iterator> at_;
   std::vector<Index> leaving_;  // edges that go on from a place or begin there, upwards
-  Index found_ = kNone;
+  Covering found_;
 };
 
 }  // namespace
 
-Index find_double_cover(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
+Covering sweep_covering(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
                         const Work& work) {
   const Events events = make_events(triangles.uvs, boundary, work.threads());
-  const Index found = Sweep(events).run(work);
-  return found == kNone ? kNone : events.edges[found].corner;
+  return Sweep(events).run(work);
 }
 
 }  // namespace beltrami

@@ -5,13 +5,22 @@
 
 namespace beltrami {
 
-/// The corner (see UvEdge) of an edge whose triangle has an open set in common with another one;
-/// kNone if there is no such pair. The number of triangles over a point is the winding number of
-/// their boundary, which the sweep follows through all cells of its arrangement: edges may touch,
-/// end on each other, and lie on each other in opposite directions. It stops where edges cross or
-/// the number exceeds one. Exact, in O(n log n) for n edges whatever they are.
+struct Covering {
+  /// Corner (see UvEdge) of an edge whose triangle has an open set in common with another one;
+  /// kNone if there is no such pair.
+  Index doubled = kNone;
+  /// Places where boundaries touch, that is a vertex on an edge or vertices upon each other, and
+  /// the first vertex in such a place. Those to the left of the first overlap, if there is one.
+  std::int64_t touching_places = 0;
+  Index first_touching = kNone;
+};
+
+/// The number of triangles over a point is the winding number of their boundary, which a sweep
+/// follows through all cells of its arrangement: edges may touch, end on each other, and lie on
+/// each other in opposite directions. It stops where edges cross or the number exceeds one. Exact,
+/// in O(n log n) for n edges whatever they are.
 /// Precondition: `boundary` is that of `triangles` (uv_boundary), and no edge of it is doubled.
-Index find_double_cover(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
+Covering sweep_covering(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
                         const Work& work);
 
 }  // namespace beltrami
