@@ -96,7 +96,7 @@ class Sweep {
       : events_(events),
         order_(events.segments),
         above_(events.edges.size(), 0),
-        on_line_(order_),
+        on_line_(SlotOrder{order_}),
         at_(events.edges.size(), on_line_.end()) {}
 
   Covering run(const Work& work) {
@@ -112,9 +112,15 @@ class Sweep {
   /// An edge on the line, in whose place another may come.
   struct Slot {
     mutable Index edge;
-    operator Index() const { return edge; }  // for LineOrder
   };
-  using Line = std::set<Slot, LineOrder>;
+  struct SlotOrder {
+    using is_transparent = void;
+    LineOrder order;
+    bool operator()(const Slot& e, const Slot& f) const { return order(e.edge, f.edge); }
+    bool operator()(const Slot& e, const Vec2& p) const { return order(e.edge, p); }
+    bool operator()(const Vec2& p, const Slot& e) const { return order(p, e.edge); }
+  };
+  using Line = std::set<Slot, SlotOrder>;
 
   /// Takes the edges through a place off the line that end there, and puts those on that begin.
   bool visit(Index place) {
@@ -124,7 +130,7 @@ class Sweep {
     const auto below = has_below ? std::prev(first) : last;
     leaving_.clear();
     for (auto at = first; at != last; ++at) {
-      if (events_.right[*at] != place) leaving_.push_back(*at);
+      if (events_.right[at->edge] != place) leaving_.push_back(at->edge);
     }
     note_touching(place);
     for (std::size_t i = 1; i < leaving_.size(); ++i) {
@@ -135,11 +141,11 @@ class Sweep {
       const int side = turn(here, e, f);
       return side > 0 || (side == 0 && e < f);
     });
-    if (!count_up(here, has_below ? above_[*below] : 0)) return false;
+    if (!count_up(here, has_below ? above_[below->edge] : 0)) return false;
     put_on_line(first, last);
-    if (leaving_.empty()) return !has_below || !has_above || keep_apart(*below, *last);
-    return (!has_below || keep_apart(*below, leaving_.front())) &&
-           (!has_above || keep_apart(leaving_.back(), *last));
+    if (leaving_.empty()) return !has_below || !has_above || keep_apart(below->edge, last->edge);
+    return (!has_below || keep_apart(below->edge, leaving_.front())) &&
+           (!has_above || keep_apart(leaving_.back(), last->edge));
   }
 
   /// Counts a place that an edge goes through, or where edges end that do not share their vertex.
@@ -171,8 +177,8 @@ class Sweep {
     const bool none_ends = ending == events_.end_start[place + 1];
     auto first = none_ends ? on_line_.lower_bound(here) : at_[events_.ending[ending]];
     auto last = first;
-    while (last != on_line_.end() && order_.side(*last, here) == 0) ++last;
-    while (first != on_line_.begin() && order_.side(*std::prev(first), here) == 0) --first;
+    while (last != on_line_.end() && order_.side(last->edge, here) == 0) ++last;
+    while (first != on_line_.begin() && order_.side(std::prev(first)->edge, here) == 0) --first;
     return {first, last};
   }
 

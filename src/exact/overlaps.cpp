@@ -140,10 +140,10 @@ class Search {
 
   bool separated(Index f, Index g) const {
     for (Index k = 0; k < 3; ++k) {
-      const auto [a, b] = edge(f, k);
+      const std::array<Vec2, 2> e = edge(f, k);
       const Triangle& other = triangles_.faces[g];
       if (std::all_of(other.begin(), other.end(),
-                      [&](Index v) { return orientation(a, b, triangles_.uvs[v]) <= 0; })) {
+                      [&](Index v) { return orientation(e[0], e[1], triangles_.uvs[v]) <= 0; })) {
         return true;
       }
     }
