@@ -1,7 +1,6 @@
 #include "exact/crossings.h"
 
 #include <algorithm>
-#include <bit>
 #include <functional>
 
 #include "base/interrupt.h"
@@ -11,39 +10,31 @@
 namespace beltrami {
 namespace {
 
-/// Bounds of a listing: pairs, and boxes looked at per edge and level of the tree.
-constexpr std::int64_t kPairsPerEdge = 4, kFewPairs = 65536;
-constexpr std::int64_t kBoxesPerEdge = 8, kFewBoxes = 1 << 20;
-
 using Pair = std::array<Index, 2>;
 
 /// Lists pairs within the bounds.
 class Listing {
  public:
-  explicit Listing(const ClosedPolygon& polygon) : polygon_(polygon), tree_(polygon) {
-    const Index count = polygon.edge_count();
-    const std::int64_t levels = std::bit_width(static_cast<std::uint32_t>(tree_.leaf_count()));
-    boxes_left_ = std::max(kFewBoxes, kBoxesPerEdge * levels * count);
-    pairs_left_ = std::max(kFewPairs, kPairsPerEdge * count);
-  }
+  explicit Listing(const ClosedPolygon& polygon)
+      : polygon_(polygon), tree_(polygon), bounds_(polygon.edge_count()) {}
 
   /// Appends the pairs of `edge` with the edges that it meets, but for later ones that are `listed`
   /// on their own. False if a bound was reached.
   bool list(Index edge, const std::vector<bool>& listed, std::vector<Pair>& pairs) {
     return tree_.for_each_near(
-        edge, [&] { return --boxes_left_ >= 0; },
+        edge, [&] { return bounds_.look(); },
         [&](Index other) {
           const bool later = listed[other] && other > edge;
           if (other == edge || later || !polygon_.meet(edge, other)) return true;
           pairs.push_back({std::min(edge, other), std::max(edge, other)});
-          return --pairs_left_ >= 0;
+          return bounds_.pair();
         });
   }
 
  private:
   const ClosedPolygon& polygon_;
   EdgeTree tree_;
-  std::int64_t boxes_left_ = 0, pairs_left_ = 0;
+  ListingBounds bounds_;
 };
 
 }  // namespace

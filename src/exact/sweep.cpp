@@ -5,22 +5,16 @@
 #include <set>
 
 #include "base/interrupt.h"
+#include "exact/line_order.h"
 
 namespace beltrami {
 namespace {
-
-/// The order in which the line reaches points: from left to right, and on a vertical upwards, as if
-/// it leaned a little. No edge is then parallel to it.
-bool is_before(const Vec2& a, const Vec2& b) {
-  return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-}
 
 /// Invariant: of the edges on the line no two meet at or before it, and no two neighbours on it
 /// meet anywhere. Hence their order along the line is the same all the way.
 class Sweep {
  public:
-  Sweep(const ClosedPolygon& polygon, Index most)
-      : polygon_(polygon), most_(most), on_line_(Below{this}) {}
+  Sweep(const ClosedPolygon& polygon, Index most) : polygon_(polygon), most_(most) {}
 
   std::vector<TakenOut> run() {
     const Index count = polygon_.edge_count();
@@ -28,8 +22,7 @@ class Sweep {
     place_.assign(count, on_line_.end());
     segments_.reserve(count);
     for (Index e = 0; e < count; ++e) {
-      const Vec2 &a = polygon_.start(e), &b = polygon_.end(e);
-      segments_.push_back(is_before(a, b) ? Segment{a, b} : Segment{b, a});
+      segments_.push_back(segment_between(polygon_.start(e), polygon_.end(e)));
     }
     take_out_folds();
     std::vector<Index> order(count);
@@ -49,40 +42,10 @@ class Sweep {
   }
 
  private:
-  /// Edges from below upwards; also against a point. An edge that the point lies on is neither.
-  struct Below {
-    using is_transparent = void;
-    const Sweep* sweep;
-    bool operator()(Index e, Index f) const { return sweep->is_below(e, f); }
-    bool operator()(Index e, const Vec2& p) const { return sweep->side(e, p) > 0; }
-    bool operator()(const Vec2& p, Index e) const { return sweep->side(e, p) < 0; }
-  };
-  using Line = std::set<Index, Below>;
-
-  /// An edge as the line meets it.
-  struct Segment {
-    Vec2 left, right;
-  };
+  using Line = std::set<Index, LineOrder>;
 
   const Vec2& left(Index e) const { return segments_[e].left; }
-  const Vec2& right(Index e) const { return segments_[e].right; }
-  /// 1 if the point is above the edge, -1 below it, 0 on its line.
-  int side(Index e, const Vec2& p) const {
-    poll_();
-    return orientation(left(e), right(e), p);
-  }
-
-  /// For edges that do not meet, but for neighbours at their common end.
-  bool is_below(Index e, Index f) const {
-    if (e == f) return false;
-    const bool f_later = is_before(left(e), left(f));
-    const Index earlier = f_later ? e : f, later = f_later ? f : e;
-    int above = side(earlier, left(later));  // of the later one
-    if (above == 0) above = side(earlier, right(later));
-    // One ends where the other begins and goes straight on: any order will do.
-    if (above == 0) return e < f;
-    return f_later == (above > 0);
-  }
+  int side(Index e, const Vec2& p) const { return order_.side(e, p); }
 
   bool enough() const { return size_of(found_) >= most_; }
 
@@ -144,11 +107,12 @@ class Sweep {
 
   const ClosedPolygon& polygon_;
   const Index most_;
-  mutable PollSometimes poll_;
+  PollSometimes poll_;
   std::vector<TakenOut> found_;
   std::vector<bool> out_;
   std::vector<Segment> segments_;
-  Line on_line_;
+  const LineOrder order_{segments_};
+  Line on_line_{order_};
   std::vector<Line::iterator> place_;
 };
 

@@ -1,0 +1,65 @@
+// A binary tree of bounding boxes over items in a given order.
+#pragma once
+
+#include <vector>
+
+#include "base/interrupt.h"
+#include "base/types.h"
+
+namespace beltrami {
+
+using Box2 = Eigen::AlignedBox2d;
+
+/// A good hierarchy where items that are near in their order are near in the plane.
+class BoxTree {
+ public:
+  explicit BoxTree(const std::vector<Box2>& boxes);
+
+  const Box2& box(Index item) const { return boxes_[leaf_count_ + item]; }
+
+  /// Gives an item another box.
+  void update(Index item, const Box2& box);
+
+  /// Calls visit(item) for the items whose boxes meet `box`, and look() for each box on the way,
+  /// until one of them returns false; then returns false.
+  template <class Look, class Visit>
+  bool for_each_near(const Box2& box, const Look& look, const Visit& visit) {
+    stack_.assign(1, 1);
+    while (!stack_.empty()) {
+      const Index node = stack_.back();
+      stack_.pop_back();
+      poll_();
+      if (!look()) return false;
+      if (!boxes_[node].intersects(box)) continue;
+      if (node >= leaf_count_) {
+        if (!visit(node - leaf_count_)) return false;
+        continue;
+      }
+      stack_.push_back(2 * node + 1);
+      stack_.push_back(2 * node);
+    }
+    return true;
+  }
+
+ private:
+  Index leaf_count_;
+  std::vector<Box2> boxes_;
+  std::vector<Index> stack_;
+  PollSometimes poll_;
+};
+
+/// What a listing of pairs may cost, so that it takes O(n log n) whatever the items.
+class ListingBounds {
+ public:
+  explicit ListingBounds(Index items);
+
+  /// Whether another box may be looked at.
+  bool look() { return --boxes_left_ >= 0; }
+  /// Whether there is room after another pair.
+  bool pair() { return --pairs_left_ >= 0; }
+
+ private:
+  std::int64_t boxes_left_, pairs_left_;
+};
+
+}  // namespace beltrami
