@@ -16,7 +16,10 @@
 namespace beltrami {
 namespace {
 
-constexpr int kRoots = 6;
+/// Roots on the best cut so far make shorter ones at once; more than six gain little. Components of
+/// more than kRootFaces / kMostRoots faces try fewer.
+constexpr int kLeastRoots = 3, kMostRoots = 6;
+constexpr Index kRootFaces = 4'000'000;
 
 /// The graph of a surface on which cuts are sought, and room for the search; components use parts
 /// of their own. A joined loop is one node, its first vertex; every other vertex is one.
@@ -29,10 +32,11 @@ struct Graph {
 
   // Per node: the shortest-path tree, and the cut.
   std::vector<double> distance;
-  std::vector<Index> parent;           ///< the edge towards the root, or kNone
-  std::vector<std::uint8_t> is_taken;  ///< whether the cut has the path to the root
-  std::vector<Index> degree;           ///< in the cut
-  std::vector<Index> incident;         ///< its edges there, combined by exclusive or
+  std::vector<Index> parent;             ///< the edge towards the root, or kNone
+  std::vector<std::uint8_t> is_taken;    ///< whether the cut has the path to the root
+  std::vector<Index> degree;             ///< in the cut
+  std::vector<Index> incident;           ///< its edges there, combined by exclusive or
+  std::vector<std::uint8_t> is_in_tree;  // per half-edge, those of an edge alike
   // Per face, then per filled loop, which counts as a face: the dual graph off the tree.
   std::vector<Index> crossings;  ///< edges to faces that are not stripped
   DisjointSets sets;
@@ -48,6 +52,7 @@ struct Graph {
         is_taken(node.size(), 0),
         degree(node.size(), 0),
         incident(node.size(), 0),
+        is_in_tree(surface.twin.size(), 0),
         crossings(surface.faces.size() + filled.size()),
         sets(size_of(crossings)) {
     for (Index v = 0; v < size_of(node); ++v) node[v] = v;
@@ -89,17 +94,17 @@ struct Graph {
     for (const Index h : halfedges_of(loop_of_vertex[n])) at_vertex(surface.origin(h));
   }
 
-  bool is_in_tree(Index h) const {
-    const Index e = surface.edge(h);
-    return parent[start_node(h)] == e || parent[end_node(h)] == e;
+  void set_in_tree(Index h, bool is) {
+    is_in_tree[h] = is ? 1 : 0;
+    if (surface.twin[h] != kNone) is_in_tree[surface.twin[h]] = is_in_tree[h];
   }
   /// The face, or filled loop, beyond an edge off the tree; kNone in the tree and on joined loops.
   Index across(Index h) const {
+    if (is_in_tree[h] != 0) return kNone;
     const Index twin = surface.twin[h];
-    const Index loop = twin == kNone ? loop_of_vertex[surface.origin(h)] : kNone;
-    if (loop != kNone && !filled[loop]) return kNone;
-    if (is_in_tree(h)) return kNone;
-    return loop == kNone ? twin / 3 : surface.face_count() + loop;
+    if (twin != kNone) return twin / 3;
+    const Index loop = loop_of_vertex[surface.origin(h)];
+    return filled[loop] ? surface.face_count() + loop : kNone;
   }
   /// Calls visit(half-edge, other face) for each edge off the tree of a face or filled loop.
   template <class Visit>
@@ -112,7 +117,7 @@ struct Graph {
       return;
     }
     for (const Index h : halfedges_of(face - surface.face_count())) {
-      if (!is_in_tree(h)) visit(h, h / 3);
+      if (is_in_tree[h] == 0) visit(h, h / 3);
     }
   }
 };
@@ -149,14 +154,16 @@ class Opening {
     int root = 0;
     if (!loop_nodes_.empty()) {
       best = open_from(loop_nodes_);
-      root = has_handles ? 1 : kRoots;
+      if (!has_handles) return std::move(best.edges);
+      ++root;
     }
-    // The far ends of the component first, then along the best cut so far.
-    for (Index next = graph_.node[vertices_.front()]; root < kRoots; ++root) {
+    // The ends of the component first, then along the best cut so far.
+    const int roots = std::clamp(kRootFaces / component_.faces, kLeastRoots, kMostRoots);
+    for (Index next = graph_.node[vertices_.front()]; root < roots; ++root) {
       Cut cut = open_from({next});
       const Index far = farthest();
       if (cut.length < best.length) best = std::move(cut);
-      next = root < 2 ? far : graph_.start_node(best.edges[best.edges.size() * root / kRoots]);
+      next = root == 0 ? far : graph_.start_node(best.edges[best.edges.size() * root / roots]);
     }
     return std::move(best.edges);
   }
@@ -246,8 +253,16 @@ std::vector<Index> Opening::open_sphere() {
 /// A cut graph of edges of the tree from the roots and as few others as there must be, pruned.
 Cut Opening::open_from(const std::vector<Index>& roots) {
   grow_tree(roots);
+  const auto mark_tree = [&](bool is) {
+    for (const Index v : vertices_) {
+      poll_();
+      if (graph_.parent[v] != kNone) graph_.set_in_tree(graph_.parent[v], is);
+    }
+  };
   Cut cut;
+  mark_tree(true);
   cut.edges = closing_edges();
+  mark_tree(false);
   const std::size_t closing = cut.edges.size();
   for (std::size_t i = 0; i < closing; ++i) {
     const Index h = cut.edges[i];

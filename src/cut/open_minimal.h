@@ -12,8 +12,8 @@ namespace beltrami {
 /// Marks a short cut graph for each component that is no disk: cut along it, every component is
 /// one. A sphere is cut along a path of two edges or more between vertices far apart. Boundary loop
 /// i of the topology counts as closed by a face if filled[i]; the others are joined to the cut.
-/// After the greedy cut system of Erickson & Whittlesey (SODA 2005), from the best of six roots;
-/// with two loops or more their union is the first of these. Time: six shortest-path trees.
+/// The greedy system of loops of Erickson & Whittlesey (SODA 2005), from the best of three to six
+/// roots, the first of them all joined loops together. Time: as many shortest-path trees.
 /// Preconditions: `topology` is the surface's; one flag per loop, or none; lengths far from the
 /// ends of the range of numbers. May mark edges of a filled loop.
 EdgeMarks open_minimal(const Surface& surface, const Topology& topology,
