@@ -120,8 +120,12 @@ std::vector<Index> weld_near(const std::vector<Vec3>& positions, double distance
 
   const std::vector<Vec3> offsets = later_neighbours();
   DisjointSets sets(count);
-  for (Index i = 0; i < count; ++i) sets.make(i);
-  for (Index i = 0; i < count; ++i) sets.unite(cell[i], i);
+  PollSometimes poll;
+  for (Index i = 0; i < count; ++i) {
+    poll();
+    sets.make(i);
+    sets.unite(cell[i], i);  // the first of its cell, made before
+  }
   std::vector<std::vector<std::array<Index, 2>>> near(kBlock / kGrain);
   for (std::int64_t first = 0; first < count; first += kBlock) {
     parallel_for(threads, std::min(kBlock, count - first), kGrain,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <span>
 #include <utility>
@@ -36,7 +37,7 @@ struct Graph {
   std::vector<std::uint8_t> is_taken;    ///< whether the cut has the path to the root
   std::vector<Index> degree;             ///< in the cut
   std::vector<Index> incident;           ///< its edges there, combined by exclusive or
-  std::vector<std::uint8_t> is_in_tree;  // per half-edge, those of an edge alike
+  std::vector<std::uint8_t> is_in_tree;  ///< per half-edge, those of an edge alike
   // Per face, then per filled loop, which counts as a face: the dual graph off the tree.
   std::vector<Index> crossings;  ///< edges to faces that are not stripped
   DisjointSets sets;
@@ -55,7 +56,7 @@ struct Graph {
         is_in_tree(surface.twin.size(), 0),
         crossings(surface.faces.size() + filled.size()),
         sets(size_of(crossings)) {
-    for (Index v = 0; v < size_of(node); ++v) node[v] = v;
+    std::iota(node.begin(), node.end(), 0);
     for (Index loop = 0; loop < loops.count(); ++loop) {
       const Index first = surface.origin(loops.halfedge[loops.start[loop]]);
       for (const Index h : halfedges_of(loop)) {
@@ -162,7 +163,7 @@ class Opening {
     for (Index next = graph_.node[vertices_.front()]; root < roots; ++root) {
       Cut cut = open_from({next});
       const Index far = farthest();
-      if (cut.length < best.length) best = std::move(cut);
+      if (best.edges.empty() || cut.length < best.length) best = std::move(cut);
       next = root == 0 ? far : graph_.start_node(best.edges[best.edges.size() * root / roots]);
     }
     return std::move(best.edges);
@@ -204,6 +205,7 @@ void Opening::grow_tree(const std::vector<Index>& roots) {
     queue.pop();
     if (reached > graph_.distance[n]) continue;
     graph_.for_each_edge_at(n, [&, reached = reached, n = n](Index h) {
+      poll_();  // a hub or a loop may have all edges
       const Index other = graph_.other_end(h, n);
       const double through = reached + graph_.length(h);
       if (!(through < graph_.distance[other])) return;

@@ -22,8 +22,8 @@ std::string quoted(Index index) {
   return std::to_string(index);
 }
 
-/// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned, at the first edge that
-/// pair_spokes refuses.
+/// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned, at the first edge with
+/// more than two half-edges, or two in the same direction.
 [[noreturn]] void throw_edge_defect(const std::vector<Triangle>& faces,
                                     const HalfedgeBuckets& buckets) {
   // For the larger end vertex: the half-edges seen in the current bucket, in each direction.

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <set>
@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "support/meshes.h"
+#include "support/polls.h"
 #include "support/surfaces.h"
 
 namespace beltrami {
@@ -234,6 +235,15 @@ TEST(Admit, TheOrderOfFacesChangesNoClass) {
     TriangleList other = mesh;
     for (Index f = 0; f < size_of(order); ++f) other.faces[f] = mesh.faces[order[f]];
     EXPECT_EQ(corner_classes(admitted(other), order), expected);
+  }
+}
+
+TEST(Admit, CanBeCancelledAnywhere) {
+  const TriangleList mesh = meshes::soup(meshes::torus(100));
+  const std::int64_t polls = count_polls([&] { admitted(mesh); });
+  EXPECT_GT(polls, 50);
+  for (const std::int64_t last : {polls / 3, polls / 2, polls}) {
+    EXPECT_THROW(count_polls([&] { admitted(mesh); }, last), Cancelled);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "admit/admit.h"
 #include "cut/cut_into_charts.h"
 #include "support/meshes.h"
+#include "support/polls.h"
 #include "support/surfaces.h"
 
 namespace beltrami {
@@ -167,6 +169,18 @@ TEST(OpenMinimal, IsTheSameAtAnyThreadCount) {
   for (std::size_t c = 0; c < one.cut.charts.size(); ++c) {
     EXPECT_EQ(one.cut.charts[c].mesh.faces, two.cut.charts[c].mesh.faces);
     EXPECT_EQ(one.cut.charts[c].input_vertex, two.cut.charts[c].input_vertex);
+  }
+}
+
+TEST(OpenMinimal, CanBeCancelledAnywhere) {
+  const TriangleList mesh = meshes::torus(100);
+  const Surface surface = build_surface(mesh.positions, mesh.faces, Work(1));
+  const Topology topology = topology_of(surface, Work(1));
+  const auto open = [&] { open_minimal(surface, topology, {}, Work(1)); };
+  const std::int64_t polls = count_polls(open);
+  EXPECT_GT(polls, 50);
+  for (const std::int64_t last : {polls / 3, polls / 2, polls}) {
+    EXPECT_THROW(count_polls(open, last), Cancelled);
   }
 }
 
