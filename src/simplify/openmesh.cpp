@@ -37,12 +37,12 @@ struct Traits : OpenMesh::DefaultTraits {
 };
 
 /// The surface as OpenMesh has it. Its handles are the indices of the fine mesh.
-class Surface : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
+class Decimated : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
  public:
   using Base = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
   /// Keeps a reference to the mesh. Throws Error INTERNAL if OpenMesh refuses a face.
-  explicit Surface(const DiskMesh& fine);
+  explicit Decimated(const DiskMesh& fine);
 
   /// Replaces that of OpenMesh's mesh in the decimater, which asks when it lists a collapse and
   /// again when it is due: by then the boundary may have shrunk to its least, and faces be gone
@@ -80,7 +80,7 @@ class Surface : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
   std::vector<Index> valence_;  // live faces per vertex
 };
 
-Surface::Surface(const DiskMesh& fine)
+Decimated::Decimated(const DiskMesh& fine)
     : fine_(fine),
       live_faces_(fine.face_count()),
       live_vertices_(fine.vertex_count()),
@@ -105,7 +105,7 @@ Surface::Surface(const DiskMesh& fine)
 }
 
 /// Whether no vertex ends up with too few faces, and none has too many to look at.
-bool Surface::keeps_valences(HalfedgeHandle edge) const {
+bool Decimated::keeps_valences(HalfedgeHandle edge) const {
   const VertexHandle from = from_vertex_handle(edge), to = to_vertex_handle(edge);
   if (std::max(valence_[from.idx()], valence_[to.idx()]) > kMaxValence) return false;
   Index gone = 0;
@@ -120,7 +120,7 @@ bool Surface::keeps_valences(HalfedgeHandle edge) const {
 
 /// Whether an interior edge between boundary vertices would come up. A boundary vertex that may
 /// move is no bridge end, so that its ring brings none along.
-bool Surface::makes_bridge(HalfedgeHandle edge) const {
+bool Decimated::makes_bridge(HalfedgeHandle edge) const {
   const VertexHandle from = from_vertex_handle(edge), to = to_vertex_handle(edge);
   if (is_boundary(from) || !is_boundary(to)) return false;
   const VertexHandle left = to_vertex_handle(next_halfedge_handle(edge));
@@ -131,14 +131,14 @@ bool Surface::makes_bridge(HalfedgeHandle edge) const {
   });
 }
 
-bool Surface::is_collapse_ok(HalfedgeHandle edge) {
+bool Decimated::is_collapse_ok(HalfedgeHandle edge) {
   const bool shortens = is_boundary(from_vertex_handle(edge));
   if (shortens && boundary_count_ <= min_boundary_) return false;
   return keeps_valences(edge) && Base::is_collapse_ok(edge) && !makes_bridge(edge);
 }
 
-void Surface::note_collapse(VertexHandle from, VertexHandle to, VertexHandle left,
-                            VertexHandle right) {
+void Decimated::note_collapse(VertexHandle from, VertexHandle to, VertexHandle left,
+                              VertexHandle right) {
   Index gone = 0;
   for (const VertexHandle apex : {left, right}) {
     if (!apex.is_valid()) continue;
@@ -154,7 +154,7 @@ void Surface::note_collapse(VertexHandle from, VertexHandle to, VertexHandle lef
 
 // --- What collapses cost ------------------------------------------------------------------------
 
-using PlainQuadrics = OpenMesh::Decimater::ModQuadricT<Surface>;
+using PlainQuadrics = OpenMesh::Decimater::ModQuadricT<Decimated>;
 
 /// OpenMesh's quadrics of the faces, with those that it lacks: of the boundary, which would shrink
 /// for nothing where the surface is flat, and of faces without area. Refuses what ruins faces.
@@ -162,7 +162,7 @@ class Quadrics : public PlainQuadrics {
  public:
   using Handle = OpenMesh::Decimater::ModHandleT<Quadrics>;
 
-  explicit Quadrics(Surface& surface) : PlainQuadrics(surface) {}
+  explicit Quadrics(Decimated& surface) : PlainQuadrics(surface) {}
 
   void set_limits(const ShapeLimits& limits) { limits_ = limits; }
 
@@ -213,7 +213,7 @@ void Quadrics::postprocess_collapse(const CollapseInfo& edge) {
 /// Tells the checkpoint of the progress, and the decimater when to stop.
 class Watch : public OpenMesh::Decimater::Observer {
  public:
-  Watch(const Surface& surface, Index target_faces, const Checkpoint& checkpoint)
+  Watch(const Decimated& surface, Index target_faces, const Checkpoint& checkpoint)
       : Observer(1), surface_(surface), target_(target_faces), checkpoint_(checkpoint) {}
 
   void notify(std::size_t step) override {
@@ -228,13 +228,13 @@ class Watch : public OpenMesh::Decimater::Observer {
  private:
   static constexpr std::size_t kCheckpointInterval = 100;  // collapses: some milliseconds
 
-  const Surface& surface_;
+  const Decimated& surface_;
   Index target_;
   const Checkpoint& checkpoint_;
 };
 
-void decimate(Surface& surface, Index target_faces, const Checkpoint& checkpoint) {
-  OpenMesh::Decimater::DecimaterT<Surface> decimater(surface);
+void decimate(Decimated& surface, Index target_faces, const Checkpoint& checkpoint) {
+  OpenMesh::Decimater::DecimaterT<Decimated> decimater(surface);
   Quadrics::Handle quadrics;
   decimater.add(quadrics);
   decimater.initialize();
@@ -254,7 +254,7 @@ void decimate(Surface& surface, Index target_faces, const Checkpoint& checkpoint
 }
 
 /// What is left, renumbered in order.
-CoarseDisk collect(const DiskMesh& fine, const Surface& surface) {
+CoarseDisk collect(const DiskMesh& fine, const Decimated& surface) {
   std::vector<Index> fine_vertex, coarse_vertex(fine.positions.size(), kNone);
   for (const auto v : surface.vertices()) {
     coarse_vertex[v.idx()] = size_of(fine_vertex);
@@ -288,7 +288,7 @@ CoarseDisk simplify_by_openmesh(const DiskMesh& fine, Index target_faces,
                                 const Checkpoint& checkpoint) {
   if (target_faces >= fine.face_count()) return whole_disk(fine);
   const DiskMesh centred = around_origin(fine);
-  Surface surface(centred);
+  Decimated surface(centred);
   decimate(surface, target_faces, checkpoint);
   return collect(fine, surface);
 }

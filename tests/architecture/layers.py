@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterable
 LIBRARY = [
     {"base"},
     {"mesh", "exact"},
-    {"energy", "linear", "prolong", "ring", "simplify"},
-    {"descend"},
+    {"admit", "energy", "linear", "prolong", "ring", "simplify"},
+    {"cut", "descend"},
     {"flatten", "repair"},
     {"chart"},
     {"abi"},

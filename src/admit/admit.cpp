@@ -1,0 +1,200 @@
+#include "admit/admit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+
+#include "admit/orient.h"
+#include "admit/weld.h"
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/locality.h"
+#include "mesh/split_fans.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 16384;
+/// Of the largest face, or of the square of the longest edge: what rounding makes of no area at
+/// all is a hundredth of it.
+constexpr double kLeastArea = 1e-14;
+
+/// Names the welded vertices instead of those welded to them.
+std::vector<Triangle> welded(const std::vector<Vec3>& positions, std::vector<Triangle> faces,
+                             const AdmitOptions& options, const Work& work, AdmitCounts& counts) {
+  if (!options.weld_distance) return faces;
+  const std::vector<Index> first = weld(positions, *options.weld_distance, work);
+  for (Index v = 0; v < size_of(first); ++v) counts.welded_vertices += first[v] != v ? 1 : 0;
+  parallel_for(work.threads(), size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (Index& v : faces[f]) v = first[v];
+    }
+  });
+  return faces;
+}
+
+Index unused_vertices(Index vertex_count, const std::vector<Triangle>& faces) {
+  std::vector<bool> used(vertex_count, false);
+  PollSometimes poll;
+  for (const Triangle& face : faces) {
+    poll();
+    for (const Index v : face) used[v] = true;
+  }
+  return static_cast<Index>(std::count(used.begin(), used.end(), false));
+}
+
+bool names_twice(const Triangle& face) {
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+/// The power of two that brings the greatest coordinate to about 1: areas then neither over- nor
+/// underflow. The power itself may lie beyond the numbers.
+int unit_exponent(const std::vector<Vec3>& positions) {
+  double greatest = 0;
+  PollSometimes poll;
+  for (const Vec3& p : positions) {
+    poll();
+    greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
+  }
+  return greatest > 0 ? -std::ilogb(greatest) : 0;
+}
+
+struct Size {
+  double area = 0, longest_edge_sq = 0;
+};
+
+/// Sizes of the faces, at about unit scale; none for those that name a vertex twice.
+std::vector<Size> sizes_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                           const Work& work) {
+  const int exponent = unit_exponent(positions);
+  const double half = std::ldexp(1.0, exponent / 2),
+               rest = std::ldexp(1.0, exponent - exponent / 2);
+  std::vector<Size> sizes(faces.size());
+  parallel_for(work.threads(), size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      if (names_twice(faces[f])) continue;
+      std::array<Vec3, 3> corner;
+      for (int k = 0; k < 3; ++k) corner[k] = positions[faces[f][k]] * half * rest;
+      sizes[f].area = triangle_area(corner[0], corner[1], corner[2]);
+      for (int k = 0; k < 3; ++k) {
+        sizes[f].longest_edge_sq =
+            std::max(sizes[f].longest_edge_sq, (corner[next_corner(k)] - corner[k]).squaredNorm());
+      }
+    }
+  });
+  return sizes;
+}
+
+/// Keeps the faces with area, in their order, and notes the others.
+std::vector<Triangle> faces_with_area(const std::vector<Vec3>& positions,
+                                      const std::vector<Triangle>& faces, const Work& work,
+                                      Admitted& admitted) {
+  const std::vector<Size> sizes = sizes_of(positions, faces, work);
+  double largest = 0;
+  for (const Size& size : sizes) largest = std::max(largest, size.area);
+  std::vector<Triangle> kept;
+  kept.reserve(faces.size());
+  PollSometimes poll;
+  for (Index f = 0; f < size_of(faces); ++f) {
+    poll();
+    const Size& size = sizes[f];
+    if (size.area > kLeastArea * std::max(largest, size.longest_edge_sq)) {
+      kept.push_back(faces[f]);
+      admitted.input_face.push_back(f);
+      continue;
+    }
+    admitted.set_aside.push_back(f);
+    ++(names_twice(faces[f]) ? admitted.counts.repeated_faces : admitted.counts.faces_without_area);
+  }
+  if (kept.empty()) {
+    throw Error(BELTRAMI_E_ZERO_AREA,
+                "the surface has no area: every face is degenerate (check the vertex positions)");
+  }
+  return kept;
+}
+
+/// Per face, how many of the faces before it have the same vertices; notes these.
+std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& faces,
+                             const Work& work, Admitted& admitted) {
+  struct Entry {
+    Triangle corners;  // in increasing order
+    Index face;
+  };
+  const std::vector<Index> order = by_least_vertex(vertex_count, faces, work.threads());
+  std::vector<Index> layers(faces.size(), 0);
+  std::vector<Entry> entries;
+  PollSometimes poll;
+  for (Index i = 0; i < size_of(order);) {
+    entries.clear();
+    for (; i < size_of(order); ++i) {
+      poll();
+      Entry entry{faces[order[i]], order[i]};
+      std::sort(entry.corners.begin(), entry.corners.end());
+      if (!entries.empty() && entry.corners[0] != entries[0].corners[0]) break;
+      entries.push_back(entry);
+    }
+    sort_interruptibly(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.corners, a.face) < std::tie(b.corners, b.face);
+    });
+    for (std::size_t e = 1, first = 0; e < entries.size(); ++e) {
+      if (entries[e].corners != entries[first].corners) {
+        first = e;
+        continue;
+      }
+      layers[entries[e].face] = static_cast<Index>(e - first);
+      admitted.copies.push_back(
+          {admitted.input_face[entries[e].face], admitted.input_face[entries[first].face]});
+    }
+  }
+  std::sort(admitted.copies.begin(), admitted.copies.end(),
+            [](const auto& a, const auto& b) { return a.face < b.face; });
+  admitted.counts.copies = size_of(admitted.copies);
+  return layers;
+}
+
+void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
+  counts.reversed_faces =
+      static_cast<Index>(std::count(admitted.reversed.begin(), admitted.reversed.end(), true));
+  const std::vector<Index>& vertex = admitted.input_vertex;
+  for (std::size_t i = 1; i < vertex.size(); ++i) {
+    const bool second = vertex[i] == vertex[i - 1] && (i == 1 || vertex[i - 1] != vertex[i - 2]);
+    counts.split_vertices += second ? 1 : 0;
+  }
+  counts.components = size_of(admitted.topology.components);
+  for (const Component& component : admitted.topology.components) {
+    counts.closed_components += component.loops == 0 ? 1 : 0;
+    counts.holes += std::max(0, component.loops - 1);
+  }
+}
+
+}  // namespace
+
+Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+               const AdmitOptions& options, const Work& work) {
+  const Index vertex_count = size_of(positions);
+  validate_indices(vertex_count, faces, work.threads(), RepeatedVertices::kAllowed);
+  validate_positions(positions, work.threads());
+  Admitted admitted;
+  AdmitCounts& counts = admitted.counts;
+  counts.unused_vertices = unused_vertices(vertex_count, faces);
+  std::vector<Triangle> kept =
+      faces_with_area(positions, welded(positions, faces, options, work, counts), work, admitted);
+  Gluing gluing = glue(vertex_count, kept, layers_of(vertex_count, kept, work, admitted), work);
+  counts.crowded_edges = gluing.crowded_edges;
+  Orientation orientation = orient(kept, gluing.twin, work);
+  counts.one_sided_edges = orientation.one_sided_edges;
+  admitted.reversed = std::move(orientation.reversed);
+  SplitSurface split = split_fans(positions, kept, gluing.twin, work);
+  admitted.surface = std::move(split.surface);
+  admitted.input_vertex = std::move(split.vertex);
+  admitted.topology = topology_of(admitted.surface, work);
+  count_pieces(admitted, counts);
+  return admitted;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,63 @@
+// Any list of triangles as oriented manifold pieces: what every later stage works on.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+struct AdmitOptions {
+  /// Vertices no further apart become one, see weld; 0: those at one place; nothing: none.
+  std::optional<double> weld_distance = 0;
+};
+
+/// What was done to the input. Faces and vertices are the input's.
+struct AdmitCounts {
+  Index unused_vertices = 0;     ///< that no face names
+  Index welded_vertices = 0;     ///< that became one with a vertex before them
+  Index repeated_faces = 0;      ///< set aside: they name a vertex twice, after welding
+  Index faces_without_area = 0;  ///< set aside: no more than 1e-14 of the largest face, or of the
+                                 ///< square of their longest edge
+  Index copies = 0;              ///< faces with the vertices of a face before them, either way
+                                 ///< round: each further copy lies in a further layer
+  Index crowded_edges = 0;       ///< of more than two faces of a layer, which part there
+  Index one_sided_edges = 0;     ///< where the sides of a one-sided surface part
+  Index split_vertices = 0;      ///< that became several, one for each fan of faces
+  Index reversed_faces = 0;      ///< turned over to agree with most faces of their component
+  Index components = 0;
+  Index closed_components = 0;  ///< without a boundary
+  Index holes = 0;              ///< boundary loops but for the first of each component
+};
+
+/// The input as a surface. Corner k of its face f is corner input_corner(f, k) of the face
+/// input_face[f] of the input.
+struct Admitted {
+  /// A face with the vertices of another one.
+  struct Copy {
+    Index face, first;  ///< of the input
+  };
+
+  Surface surface;  ///< its vertices are fans of corners; all are used
+  Topology topology;
+  std::vector<Index> input_vertex;  ///< per vertex, the least of those welded, increasing
+  std::vector<Index> input_face;    ///< per face, increasing
+  std::vector<bool> reversed;       ///< per face of the surface
+  std::vector<Index> set_aside;     ///< faces of the input that the surface lacks, increasing
+  std::vector<Copy> copies;         ///< by their face
+  AdmitCounts counts;
+
+  int input_corner(Index face, int k) const { return reversed[face] ? (3 - k) % 3 : k; }
+};
+
+/// Makes oriented manifold pieces of any triangles: sets faces without area aside, glues faces
+/// across edges that exactly two of a layer share, orients each component breadth first, and gives
+/// each fan of faces a vertex of its own. Throws Error EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, or
+/// ZERO_AREA where no face has any.
+Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+               const AdmitOptions& options, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,33 @@
+// Faces glued across their edges, and turned to agree.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+
+namespace beltrami {
+
+/// Half-edges 3 * face + corner, in pairs that may still run in the same direction.
+struct Gluing {
+  std::vector<Index> twin;  ///< per half-edge: the other one, or kNone
+  Index crowded_edges = 0;  ///< of more than two faces of a layer
+};
+
+/// Glues the faces of a layer (one number per face) across edges that exactly two of them share.
+/// Precondition: no face names a vertex twice.
+Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
+            const std::vector<Index>& layers, const Work& work);
+
+struct Orientation {
+  std::vector<bool> reversed;  ///< per face
+  Index one_sided_edges = 0;   ///< that were glued and no longer are
+};
+
+/// Turns faces, breadth first from the least one of each component, so that twins run against each
+/// other, and most faces of a component stay as they are (the least one where it is half of them).
+/// Where that is impossible, the edge parts. Turns a face (a, b, c) into (a, c, b), its half-edges
+/// and those in `twin` with it.
+Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin, const Work& work);
+
+}  // namespace beltrami

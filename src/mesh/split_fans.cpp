@@ -1,0 +1,82 @@
+#include "mesh/split_fans.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "base/bucket_sort.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 16384;
+
+struct Fans {
+  std::vector<Index> of_corner;
+  std::vector<Index> vertex;  ///< per fan
+};
+
+/// Fans in the order of their least corners.
+Fans walk_fans(const std::vector<Triangle>& faces, const std::vector<Index>& twin) {
+  Fans fans;
+  fans.of_corner.assign(twin.size(), kNone);
+  PollSometimes poll;
+  for (Index corner = 0; corner < size_of(twin); ++corner) {
+    if (fans.of_corner[corner] != kNone) continue;
+    const Index fan = size_of(fans.vertex);
+    fans.vertex.push_back(faces[corner / 3][corner % 3]);
+    const auto take = [&](Index h) {
+      poll();
+      fans.of_corner[h] = fan;
+    };
+    Index h = corner;
+    do {
+      take(h);
+      h = twin[Surface::previous(h)];
+    } while (h != kNone && h != corner);
+    if (h == corner) continue;
+    for (h = twin[corner]; h != kNone; h = twin[h]) {
+      h = Surface::next(h);
+      take(h);
+    }
+  }
+  return fans;
+}
+
+/// Per fan its number in the order of the vertices.
+std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, int threads) {
+  std::vector<Index> start, number(fans.vertex.size());
+  BucketSort<Index> sort(threads, size_of(fans.vertex), vertex_count, start,
+                         [&](std::int64_t fan, const auto& count) { count(fans.vertex[fan]); });
+  sort.place([&](std::int64_t fan, const auto& place) { number[fan] = place(fans.vertex[fan]); });
+  return number;
+}
+
+}  // namespace
+
+SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                        const std::vector<Index>& twin, const Work& work) {
+  const int threads = work.threads();
+  const Fans fans = walk_fans(faces, twin);
+  const std::vector<Index> number = by_vertex(fans, size_of(positions), threads);
+  SplitSurface split;
+  split.vertex.resize(number.size());
+  std::vector<Vec3> places(number.size());
+  parallel_for(threads, size_of(number), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t fan = begin; fan < end; ++fan) {
+      split.vertex[number[fan]] = fans.vertex[fan];
+      places[number[fan]] = positions[fans.vertex[fan]];
+    }
+  });
+  std::vector<Triangle> renumbered(faces.size());
+  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (int k = 0; k < 3; ++k) renumbered[f][k] = number[fans.of_corner[3 * f + k]];
+    }
+  });
+  split.surface = build_surface(std::move(places), std::move(renumbered), work);
+  return split;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,26 @@
+// A vertex for every fan of faces: what a triangle list becomes where some of its faces part.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+/// A surface whose vertices are fans around vertices of another one.
+struct SplitSurface {
+  Surface surface;            ///< its faces are those given
+  std::vector<Index> vertex;  ///< per vertex the one that it stands for, increasing
+};
+
+/// Unites the corners of `faces` across glued half-edges: `twin` has the opposite one, or kNone.
+/// Fans at one vertex come in the order of their least corners. Two sides left apart that run
+/// between the same two fans are one edge in the result: a slit that nothing holds open closes.
+/// Preconditions: twins run against each other between the same two vertices; no other pair of
+/// vertices has two edges in one fan.
+SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                        const std::vector<Index>& twin, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,146 @@
+// Adjacency and shape in the large of any oriented manifold.
+#include "mesh/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "base/error.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/split_fans.h"
+#include "support/meshes.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::TriangleList;
+
+Surface built(const TriangleList& mesh, int threads = 1) {
+  return build_surface(mesh.positions, mesh.faces, Work(threads));
+}
+
+Topology shape_of(const TriangleList& mesh) {
+  return topology_of(built(mesh), Work(1));
+}
+
+/// Expects one component with so many handles and boundary loops.
+void expect_shape(const TriangleList& mesh, Index genus, Index loops) {
+  const Topology topology = shape_of(mesh);
+  ASSERT_EQ(topology.components.size(), 1u);
+  EXPECT_EQ(topology.components[0].genus(), genus);
+  EXPECT_EQ(topology.components[0].loops, loops);
+  EXPECT_EQ(topology.components[0].euler(), 2 - 2 * genus - loops);
+}
+
+TEST(Surface, KnowsHandlesAndLoops) {
+  expect_shape(meshes::tetrahedron(), 0, 0);
+  expect_shape(meshes::fan(5), 0, 1);
+  expect_shape(meshes::annulus(7), 0, 2);
+  expect_shape(meshes::torus(4), 1, 0);
+  expect_shape(meshes::torus_with_hole(4), 1, 1);
+  expect_shape(meshes::double_torus(4), 2, 0);
+}
+
+TEST(Surface, LoopsRunWithTheSurfaceOnTheirLeft) {
+  const Surface surface = built(meshes::annulus(7));
+  const BoundaryLoops loops = boundary_loops(surface, Work(1));
+  ASSERT_EQ(loops.count(), 2);
+  std::set<Index> met;
+  for (Index loop = 0; loop < 2; ++loop) {
+    for (Index i = loops.start[loop]; i < loops.start[loop + 1]; ++i) {
+      const Index h = loops.halfedge[i];
+      const Index after = i + 1 < loops.start[loop + 1] ? i + 1 : loops.start[loop];
+      EXPECT_EQ(surface.twin[h], kNone);
+      EXPECT_EQ(surface.target(h), surface.origin(loops.halfedge[after]));
+      EXPECT_LE(loops.halfedge[loops.start[loop]], h) << "a loop starts at its least half-edge";
+      met.insert(h);
+    }
+  }
+  EXPECT_EQ(met.size(), 14u);
+}
+
+TEST(Surface, CountsWhatEachComponentHas) {
+  const TriangleList mesh =
+      meshes::together({meshes::torus(3), meshes::triangle(), meshes::annulus(5)});
+  const Topology topology = shape_of(mesh);
+  ASSERT_EQ(topology.components.size(), 3u);
+  const Component &torus = topology.components[0], &triangle = topology.components[1],
+                  &annulus = topology.components[2];
+  EXPECT_EQ(torus.faces, 18);
+  EXPECT_EQ(torus.vertices, 9);
+  EXPECT_EQ(triangle.first_face, 18);
+  EXPECT_TRUE(triangle.is_disk());
+  EXPECT_EQ(annulus.boundary_edges, 10);
+  EXPECT_FALSE(annulus.is_disk());
+  EXPECT_EQ(topology.component_of_loop, (std::vector<Index>{1, 2, 2}));
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    EXPECT_EQ(topology.component_of_face[f], f < 18 ? 0 : f == 18 ? 1 : 2);
+  }
+}
+
+TEST(Surface, AnUnusedVertexIsInNoComponent) {
+  const Surface surface = built(meshes::with_unused_in_front(meshes::torus(3), 2));
+  EXPECT_EQ(surface.outgoing[1], kNone);
+  EXPECT_EQ(topology_of(surface, Work(1)).components[0].vertices, 9);
+}
+
+TEST(Surface, RefusesWhatIsNoOrientedManifold) {
+  const auto status_of = [](const TriangleList& mesh) -> beltrami_status {
+    try {
+      built(mesh);
+    } catch (const Error& error) {
+      return error.status();
+    }
+    return BELTRAMI_OK;
+  };
+  EXPECT_EQ(status_of(meshes::three_on_an_edge()), BELTRAMI_E_NON_MANIFOLD_EDGE);
+  EXPECT_EQ(status_of(meshes::against_each_other()), BELTRAMI_E_ORIENTATION);
+  EXPECT_EQ(status_of(meshes::bowtie()), BELTRAMI_E_NON_MANIFOLD_VERTEX);
+  EXPECT_EQ(status_of(meshes::moebius(5)), BELTRAMI_E_ORIENTATION);
+  EXPECT_EQ(status_of({}), BELTRAMI_E_EMPTY);
+}
+
+TEST(Surface, IsTheSameAtAnyThreadCount) {
+  TriangleList mesh = meshes::together({meshes::torus(120), meshes::grid(150, 100)});
+  const std::vector<Index> order = meshes::shuffled(size_of(mesh.faces), 1);
+  std::vector<Triangle> faces;
+  for (const Index f : order) faces.push_back(mesh.faces[f]);
+  mesh.faces = faces;
+  const Surface one = built(mesh, 1), two = built(mesh, 2);
+  EXPECT_EQ(one.twin, two.twin);
+  EXPECT_EQ(one.outgoing, two.outgoing);
+  EXPECT_EQ(one.on_boundary, two.on_boundary);
+  EXPECT_EQ(connected_faces(one, Work(1)), connected_faces(two, Work(2)));
+  EXPECT_EQ(boundary_loops(one, Work(1)).halfedge, boundary_loops(two, Work(2)).halfedge);
+}
+
+TEST(ProveDisk, IsWhatADiskIsBuiltBy) {
+  const TriangleList mesh = meshes::grid(6, 5);
+  const DiskMesh proven = prove_disk(built(mesh), Work(1));
+  const DiskMesh disk = build_disk(mesh.positions, mesh.faces);
+  EXPECT_EQ(proven.boundary, disk.boundary);
+  EXPECT_EQ(proven.twin, disk.twin);
+}
+
+TEST(SplitFans, GivesEachFanAVertexOfItsOwn) {
+  const TriangleList mesh = meshes::bowtie();
+  const SplitSurface split =
+      split_fans(mesh.positions, mesh.faces, std::vector<Index>(6, kNone), Work(1));
+  EXPECT_EQ(split.vertex, (std::vector<Index>{0, 0, 1, 2, 3, 4}));
+  EXPECT_EQ(split.surface.faces[0][0], 0);
+  EXPECT_EQ(split.surface.faces[1][0], 1);
+}
+
+TEST(SplitFans, ClosesASlitOfOneEdge) {
+  const TriangleList mesh = meshes::octahedron();
+  Surface surface = built(mesh);
+  const Index h = 0, other = surface.twin[h];
+  surface.twin[h] = surface.twin[other] = kNone;
+  const SplitSurface split = split_fans(mesh.positions, mesh.faces, surface.twin, Work(1));
+  EXPECT_EQ(split.surface.vertex_count(), 6);
+  EXPECT_EQ(split.surface.twin[h], other);
+}
+
+}  // namespace
+}  // namespace beltrami
