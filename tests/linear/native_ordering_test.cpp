@@ -6,7 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "linear/cholesky/ordering.h"
+#include "linear/cholesky/graph.h"
+#include "linear/cholesky/minimum_degree.h"
+#include "linear/cholesky/nested_dissection.h"
 #include "linear/cholesky/symbolic.h"
 #include "linear/cholesky/vertex_separator.h"
 #include "support/disks.h"

@@ -8,8 +8,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "linear/cholesky/graph.h"
+#include "linear/cholesky/minimum_degree.h"
 #include "linear/cholesky/multifrontal.h"
-#include "linear/cholesky/ordering.h"
+#include "linear/cholesky/nested_dissection.h"
 #include "linear/cholesky/symbolic.h"
 
 namespace beltrami {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "linear/cholesky/ordering.h"
+#include "linear/cholesky/graph.h"
 
 namespace beltrami {
 

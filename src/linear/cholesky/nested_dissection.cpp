@@ -1,247 +1,23 @@
-#include "linear/cholesky/ordering.h"
+#include "linear/cholesky/nested_dissection.h"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <numeric>
 #include <tuple>
+#include <utility>
 
-#include "base/bucket_sort.h"
 #include "base/parallel.h"
-#include "base/processor.h"
+#include "linear/cholesky/minimum_degree.h"
 #include "linear/cholesky/vertex_separator.h"
-
-#if defined(__GNUC__) && defined(__x86_64__)
-#define BELTRAMI_DISPATCH_POPCNT 1
-#else
-#define BELTRAMI_DISPATCH_POPCNT 0
-#endif
 
 namespace beltrami {
 namespace {
 
 // Parts of up to this many vertices are ordered by minimum degree: they fit into the nearest cache.
 constexpr int kLeaf = 256;
-// Leaves see so many vertices in all, those of their separators included.
-constexpr int kMostInLeaf = 448;
 // A part is split further on one thread; above, parts of a level are split side by side.
 constexpr int kParts = 64;
-
-/// Exact minimum degree on one leaf, with sets of vertices as bits. The vertices around the leaf
-/// (already separators) count in the degrees, so that the leaf is eliminated from its inside out.
-class LeafOrder {
- public:
-  /// Reorders `vertices`. `local` is negative for them, and left so; of other vertices it is only
-  /// read, since leaves that touch the same separators are at work side by side.
-  void run(const Graph& graph, std::span<int> vertices, std::vector<int>& local) {
-    count_ = static_cast<int>(vertices.size());
-    all_.assign(vertices.begin(), vertices.end());
-    for (int i = 0; i < count_; ++i) local[vertices[i]] = i;
-    edges_.clear();
-    around_.fill({-1, -1});
-    for (int i = 0; i < count_; ++i) {
-      for (const int w : graph.neighbours(all_[i])) {
-        const int j = local[w] >= 0 ? local[w] : number_around(w);
-        if (j >= 0) edges_.emplace_back(i, j);
-      }
-    }
-    words_ = (all_.size() + 63) / 64;
-    rows_.assign(words_ * count_, 0);
-    for (const auto& [i, j] : edges_) row(i)[j / 64] |= std::uint64_t{1} << (j % 64);
-    for (const int v : vertices) local[v] = -1;
-    eliminate(vertices);
-  }
-
- private:
-  /// The number of a vertex around the leaf, a new one at need; -1: there is no room left.
-  int number_around(int v) {
-    std::size_t at = static_cast<std::size_t>(v) * 0x9E3779B1U % around_.size();
-    while (around_[at].first != v) {
-      if (around_[at].first < 0) {
-        if (all_.size() >= kMostInLeaf) return -1;
-        around_[at] = {v, static_cast<int>(all_.size())};
-        all_.push_back(v);
-        break;
-      }
-      at = (at + 1) % around_.size();
-    }
-    return around_[at].second;
-  }
-
-  const bool popcnt_ = has_popcnt();
-
-  std::uint64_t* row(int i) { return rows_.data() + words_ * i; }
-
-#if BELTRAMI_DISPATCH_POPCNT
-  [[gnu::target("popcnt")]] void eliminate_popcnt(std::span<int> order) {
-    eliminate_with(order);
-  }
-#endif
-
-  void eliminate(std::span<int> order) {
-#if BELTRAMI_DISPATCH_POPCNT
-    if (popcnt_) {
-      eliminate_popcnt(order);
-      return;
-    }
-#endif
-    eliminate_with(order);
-  }
-
-  [[gnu::always_inline]] void eliminate_with(std::span<int> order) {
-    constexpr std::int16_t kGone = std::numeric_limits<std::int16_t>::max();
-    degree_.resize(count_);
-    alive_.assign(words_, 0);
-    for (std::size_t i = 0; i < all_.size(); ++i) alive_[i / 64] |= std::uint64_t{1} << (i % 64);
-    pivot_.resize(words_);
-    for (int i = 0; i < count_; ++i) degree_[i] = degree_of(i);
-    int done = 0;
-    const auto take = [&](int i) {
-      order[done++] = all_[i];
-      degree_[i] = kGone;
-      alive_[i / 64] &= ~(std::uint64_t{1} << (i % 64));
-    };
-    while (done < count_) {
-      std::int16_t least = kGone;
-      for (const std::int16_t d : degree_) least = std::min(least, d);
-      const int p =
-          static_cast<int>(std::find(degree_.begin(), degree_.end(), least) - degree_.begin());
-      take(p);
-      std::int16_t clique = 0;
-      for (std::size_t w = 0; w < words_; ++w) {
-        pivot_[w] = row(p)[w] & alive_[w];
-        clique = static_cast<std::int16_t>(clique + std::popcount(pivot_[w]));
-      }
-      touched_.clear();
-      for_each_bit([&](int i) {
-        if (i >= count_) return;
-        std::uint64_t* r = row(i);
-        for (std::size_t w = 0; w < words_; ++w) r[w] |= pivot_[w];
-        r[i / 64] &= ~(std::uint64_t{1} << (i % 64));
-        degree_[i] = degree_of(i);
-        touched_.push_back(i);
-      });
-      // Those whose neighbours are the rest of the clique cause no fill any more.
-      bool taken = false;
-      for (const int i : touched_) {
-        if (degree_[i] != clique - 1) continue;
-        take(i);
-        taken = true;
-      }
-      if (!taken) continue;
-      for (const int i : touched_) {
-        if (degree_[i] != kGone) degree_[i] = degree_of(i);
-      }
-    }
-  }
-
-  [[gnu::always_inline]] std::int16_t degree_of(int i) {
-    int sum = 0;
-    for (std::size_t w = 0; w < words_; ++w) sum += std::popcount(row(i)[w] & alive_[w]);
-    return static_cast<std::int16_t>(sum);
-  }
-
-  template <class Visit>
-  [[gnu::always_inline]] void for_each_bit(Visit&& visit) {
-    for (std::size_t w = 0; w < words_; ++w) {
-      for (std::uint64_t bits = pivot_[w]; bits != 0; bits &= bits - 1) {
-        visit(static_cast<int>(64 * w) + std::countr_zero(bits));
-      }
-    }
-  }
-
-  int count_ = 0;
-  std::size_t words_ = 0;
-  std::vector<int> all_, touched_;  // all_: the leaf, then what is around it
-  std::vector<std::pair<int, int>> edges_;
-  std::array<std::pair<int, int>, 1024> around_;  // hash table of the latter: vertex, number
-  std::vector<std::uint64_t> rows_, alive_, pivot_;
-  std::vector<std::int16_t> degree_;
-};
-
-/// A graph of connected clusters of vertices.
-struct Coarse {
-  Graph graph;
-  std::vector<int> cluster;  // per vertex of the finest graph
-};
-
-/// Puts each vertex that is left together with its neighbours that are left: about five each. No
-/// cluster reaches from one chunk of vertices into another, so that chunks go side by side.
-Coarse coarsen(const Graph& graph, int threads) {
-  constexpr int kChunk = 1 << 15, kMany = 64;
-  struct Chunk {
-    std::vector<int> start, member;  // by cluster of the chunk
-    std::vector<int> degree, neighbour;
-    int first = 0;  // its clusters
-  };
-  Coarse coarse;
-  std::vector<int>& cluster = coarse.cluster;
-  cluster.resize(graph.count());
-  std::vector<Chunk> chunks((graph.count() + kChunk - 1) / kChunk);
-  const auto for_each_chunk = [&](const auto& body) {
-    parallel_for(threads, graph.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
-      body(chunks[begin / kChunk], static_cast<int>(begin), static_cast<int>(end));
-    });
-  };
-  for_each_chunk([&](Chunk& chunk, int begin, int end) {
-    std::fill(cluster.begin() + begin, cluster.begin() + end, -1);
-    chunk.member.reserve(end - begin);
-    const auto put = [&](int v) {
-      cluster[v] = static_cast<int>(chunk.start.size()) - 1;
-      chunk.member.push_back(v);
-    };
-    for (int v = begin; v < end; ++v) {
-      if (cluster[v] >= 0) continue;
-      chunk.start.push_back(static_cast<int>(chunk.member.size()));
-      put(v);
-      for (const int w : graph.neighbours(v)) {
-        if (w >= begin && w < end && cluster[w] < 0) put(w);
-      }
-    }
-    chunk.start.push_back(static_cast<int>(chunk.member.size()));
-  });
-  int count = 0;
-  for (Chunk& chunk : chunks) {
-    chunk.first = count;
-    count += static_cast<int>(chunk.start.size()) - 1;
-  }
-  for_each_chunk([&](Chunk& chunk, int begin, int end) {
-    for (int v = begin; v < end; ++v) cluster[v] += chunk.first;
-  });
-  for_each_chunk([&](Chunk& chunk, int, int) {
-    for (std::size_t c = 0; c + 1 < chunk.start.size(); ++c) {
-      const int own = chunk.first + static_cast<int>(c);
-      const std::ptrdiff_t first = std::ssize(chunk.neighbour);
-      for (int i = chunk.start[c]; i < chunk.start[c + 1]; ++i) {
-        for (const int w : graph.neighbours(chunk.member[i])) {
-          const int other = cluster[w];
-          if (other == own) continue;
-          // As long as they are few, a look along the list is cheaper than sorting it.
-          const auto known = chunk.neighbour.begin() + first, end = chunk.neighbour.end();
-          const bool many = end - known >= kMany;
-          if (many || std::find(known, end, other) == end) chunk.neighbour.push_back(other);
-        }
-      }
-      if (std::ssize(chunk.neighbour) - first > kMany) {
-        const auto known = chunk.neighbour.begin() + first;
-        std::sort(known, chunk.neighbour.end());
-        chunk.neighbour.erase(std::unique(known, chunk.neighbour.end()), chunk.neighbour.end());
-      }
-      chunk.degree.push_back(static_cast<int>(std::ssize(chunk.neighbour) - first));
-    }
-  });
-  coarse.graph.start.reserve(static_cast<std::size_t>(count) + 1);
-  coarse.graph.start.push_back(0);
-  for (const Chunk& chunk : chunks) {
-    for (const int d : chunk.degree) coarse.graph.start.push_back(coarse.graph.start.back() + d);
-    coarse.graph.neighbour.insert(coarse.graph.neighbour.end(), chunk.neighbour.begin(),
-                                  chunk.neighbour.end());
-  }
-  return coarse;
-}
 
 struct Part {
   int begin, end;  // of the members
@@ -456,7 +232,7 @@ class Dissection {
   /// The same from a separator among clusters: the band is those clusters and the ones next to
   /// them. False: the clusters are too few to have sides.
   bool label_by_clusters(int level, Scratch& scratch) {
-    const Coarse& coarse = coarse_[level];
+    const ClusterGraph& coarse = coarse_[level];
     std::vector<int>& number = scratch.number[level];
     if (number.empty()) number.assign(coarse.graph.count(), -1);
     auto& clusters = scratch.clusters;
@@ -617,95 +393,11 @@ class Dissection {
 
   const Graph& graph_;
   std::vector<int> label_;  // per vertex; parts at work side by side share no vertex and no edge
-  std::vector<Coarse> coarse_;
+  std::vector<ClusterGraph> coarse_;
   std::vector<Member> members_;
 };
 
 }  // namespace
-
-int block_size_of(const SparseMatrix& lower) {
-  const int n = static_cast<int>(lower.cols());
-  if (n == 0 || n % 2 != 0) return 1;
-  const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
-  for (int c = 0; c < n; c += 2) {
-    const int first = start[c], second = start[c + 1];
-    const int count = second - first;
-    if (count % 2 != 0 || start[c + 2] - second != count - 1 || row[first] != c) return 1;
-    for (int i = 1; i < count; ++i) {
-      if (row[first + i] != row[second + i - 1]) return 1;
-      if (i % 2 != 0 && (row[first + i - 1] % 2 != 0 || row[first + i] != row[first + i - 1] + 1)) {
-        return 1;
-      }
-    }
-  }
-  return 2;
-}
-
-Graph graph_of(const SparseMatrix& lower, int block_size, int threads) {
-  const int n = static_cast<int>(lower.cols()) / block_size;
-  const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
-  const auto for_each_row_below = [&](std::int64_t c, auto&& visit) {
-    const std::int64_t column = c * block_size;
-    for (int i = start[column]; i < start[column + 1]; i += block_size) {
-      const int r = row[i] / block_size;
-      if (r > c) visit(r);
-    }
-  };
-  Graph graph;
-  BucketSort<std::uint32_t> sort(threads, n, n, graph.start,
-                                 [&](std::int64_t c, const auto& count) {
-                                   for_each_row_below(c, [&](int r) {
-                                     count(r);
-                                     count(c);
-                                   });
-                                 });
-  parallel_assign(threads, graph.neighbour, graph.start[n]);
-  sort.place([&](std::int64_t c, const auto& place) {
-    for_each_row_below(c, [&](int r) {
-      graph.neighbour[place(r)] = static_cast<int>(c);
-      graph.neighbour[place(c)] = r;
-    });
-  });
-  return graph;
-}
-
-Graph renumber(const Graph& graph, const std::vector<int>& order, int threads) {
-  std::vector<int> place(order.size());
-  for (int i = 0; i < graph.count(); ++i) place[order[i]] = i;
-  Graph result;
-  result.start.resize(graph.start.size());
-  result.start[0] = 0;
-  for (int i = 0; i < graph.count(); ++i) {
-    result.start[i + 1] = result.start[i] + (graph.start[order[i] + 1] - graph.start[order[i]]);
-  }
-  parallel_assign(threads, result.neighbour, graph.neighbour.size());
-  parallel_for(threads, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      int* target = result.neighbour.data() + result.start[i];
-      for (const int w : graph.neighbours(order[i])) *target++ = place[w];
-    }
-  });
-  return result;
-}
-
-std::vector<int> minimum_degree_order(const Graph& graph) {
-  // With the diagonal: Eigen takes rows without it for dense ones.
-  const int n = graph.count();
-  Eigen::SparseMatrix<signed char, Eigen::ColMajor, int> pattern(n, n);
-  pattern.resizeNonZeros(static_cast<Eigen::Index>(graph.neighbour.size()) + n);
-  int *start = pattern.outerIndexPtr(), *row = pattern.innerIndexPtr();
-  start[0] = 0;
-  for (int v = 0; v < n; ++v) {
-    *row++ = v;
-    row = std::copy(graph.neighbours(v).begin(), graph.neighbours(v).end(), row);
-    start[v + 1] = static_cast<int>(row - pattern.innerIndexPtr());
-  }
-  // One longer than the result, as Eigen works on it: where memory ends, its resizing of what is
-  // not empty frees twice.
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(n + 1);
-  Eigen::internal::minimum_degree_ordering(pattern, order);
-  return {order.indices().begin(), order.indices().end()};
-}
 
 std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
                                          int threads, const Poll& poll) {

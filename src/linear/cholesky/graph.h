@@ -1,7 +1,6 @@
-// Elimination orders of sparse symmetric matrices: what decides how much a factor costs.
+// Undirected graphs, as orderings and the symbolic factorization see a sparse matrix.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +20,12 @@ struct Graph {
   }
 };
 
+/// A graph of connected clusters of vertices of another one.
+struct ClusterGraph {
+  Graph graph;
+  std::vector<int> cluster;  ///< per vertex of the other graph
+};
+
 /// The size of the dense square blocks that the whole matrix consists of: 1 or 2.
 int block_size_of(const SparseMatrix& lower);
 
@@ -30,16 +35,9 @@ Graph graph_of(const SparseMatrix& lower, int block_size, int threads);
 /// The same graph with vertex order[i] as vertex i.
 Graph renumber(const Graph& graph, const std::vector<int>& order, int threads);
 
-/// Approximate minimum degree (Amestoy, Davis, Duff 1996, as copied in Eigen). The k-th entry is
-/// the vertex that is eliminated k-th.
-std::vector<int> minimum_degree_order(const Graph& graph);
-
-/// Nested dissection (George 1973) by planes through `places`, one per vertex: near each plane the
-/// smallest vertex separator is found as a minimum cut, and small parts are ordered by minimum
-/// degree. Places that say nothing about the graph make the order worse, never wrong. Fastest where
-/// vertices with numbers close together are close together: memory is walked in that order. The
-/// same order at any number of threads. Precondition: places are finite.
-std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
-                                         int threads, const Poll& poll);
+/// Puts each vertex that is left together with its neighbours that are left: about five each. No
+/// cluster reaches from one chunk of vertices into another, so that chunks go side by side: the
+/// same clusters at any number of threads.
+ClusterGraph coarsen(const Graph& graph, int threads);
 
 }  // namespace beltrami
