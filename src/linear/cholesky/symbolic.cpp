@@ -92,6 +92,13 @@ std::vector<int> column_counts(const Graph& graph, const std::vector<int>& paren
   return count;
 }
 
+/// The multiplications of a factorization whose columns have so many entries.
+double work_of(const std::vector<int>& counts) {
+  double work = 0;
+  for (const int c : counts) work += static_cast<double>(c) * c;
+  return work;
+}
+
 /// Nanoseconds, roughly, that a supernode of k columns with r rows below costs, factor and solves
 /// together. Only ratios matter: they decide which supernodes are merged.
 double cost(double k, double r) {
@@ -106,6 +113,38 @@ struct Node {
   int parent = kRoot;
   int merged_into = kRoot;
 };
+
+/// The supernodes of L as the column counts show them, and the vertices in each.
+struct Supernodes {
+  std::vector<Node> nodes;
+  std::vector<int> start;  // per node, and one more: its first vertex in the postorder
+};
+
+/// Runs of the postorder in which each vertex is a child of the next one, and its column of L has
+/// the rows of the next one's and itself.
+Supernodes find_supernodes(const std::vector<int>& tree, const std::vector<int>& post,
+                           const std::vector<int>& counts) {
+  const int n = static_cast<int>(post.size());
+  Supernodes result;
+  std::vector<int> node_of(n);
+  for (int p = 0; p < n; ++p) {
+    const int v = post[p];
+    const bool joins = p > 0 && tree[post[p - 1]] == v && counts[post[p - 1]] == counts[v] + 1;
+    if (!joins) {
+      result.start.push_back(p);
+      result.nodes.push_back({0, 0});
+    }
+    result.nodes.back().columns += 1;
+    result.nodes.back().rows = counts[v] - 1;
+    node_of[v] = static_cast<int>(result.nodes.size()) - 1;
+  }
+  result.start.push_back(n);
+  for (std::size_t s = 0; s < result.nodes.size(); ++s) {
+    const int above = tree[post[result.start[s + 1] - 1]];
+    if (above != kRoot) result.nodes[s].parent = node_of[above];
+  }
+  return result;
+}
 
 /// Merges children into their parents where that is cheaper. The columns of L that a child adds to
 /// its parent get the parent's rows; nothing else changes.
@@ -143,6 +182,17 @@ void merge_nodes(std::vector<Node>& nodes, int scale) {
       child[node.parent] = s;
     }
   }
+}
+
+/// Per node the one that it ended up in. Parents are brought up to date: a merge changes who is
+/// whose parent.
+std::vector<int> resolve_merges(std::vector<Node>& nodes) {
+  std::vector<int> final_of(nodes.size());
+  for (int s = static_cast<int>(nodes.size()); s-- > 0;) {
+    final_of[s] = nodes[s].merged_into == kRoot ? s : final_of[nodes[s].merged_into];
+    if (nodes[s].parent != kRoot) nodes[s].parent = final_of[nodes[s].parent];
+  }
+  return final_of;
 }
 
 // Subtrees of about this share of all work are the tasks of the threads; smaller matrices than
@@ -209,9 +259,63 @@ void list_children(Symbolic& symbolic) {
   }
 }
 
+/// Sizes, parents, children and tasks of the supernodes, in the order of `numbering`. Returns the
+/// rank of each node in that order.
+std::vector<int> lay_out(const std::vector<Node>& nodes, const Numbering& numbering,
+                         Symbolic& symbolic) {
+  const int count = static_cast<int>(numbering.order.size()), block = symbolic.block_size;
+  std::vector<int> rank(nodes.size(), kRoot);
+  symbolic.first_column.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.row_start.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.value_start.assign(static_cast<std::size_t>(count) + 1, 0);
+  symbolic.parent.resize(count);
+  for (int i = 0; i < count; ++i) {
+    const Node& node = nodes[numbering.order[i]];
+    rank[numbering.order[i]] = i;
+    symbolic.first_column[i + 1] = symbolic.first_column[i] + node.columns;
+    symbolic.row_start[i + 1] = symbolic.row_start[i] + node.rows;
+    symbolic.value_start[i + 1] =
+        symbolic.value_start[i] +
+        static_cast<std::int64_t>(block * node.columns) * (block * (node.columns + node.rows));
+  }
+  for (int i = 0; i < count; ++i) {
+    const int above = nodes[numbering.order[i]].parent;
+    symbolic.parent[i] = above == kRoot ? kRoot : rank[above];
+  }
+  list_children(symbolic);
+  int done = 0;
+  for (const int size : numbering.task_sizes) {
+    symbolic.tasks.push_back({done, done + size});
+    done += size;
+  }
+  return rank;
+}
+
+/// Vertices of the graph to columns of L, and back.
+struct Columns {
+  std::vector<int> column;  // per vertex
+  std::vector<int> vertex;  // per column
+};
+
+/// The columns of each supernode: those of the nodes merged into it, in postorder. `target`: the
+/// supernode that each node ended up in.
+Columns number_columns(const Supernodes& supernodes, const std::vector<int>& target,
+                       const std::vector<int>& post, const std::vector<int>& first_column) {
+  std::vector<int> cursor(first_column.begin(), first_column.end() - 1);
+  Columns result = {std::vector<int>(post.size()), std::vector<int>(post.size())};
+  for (std::size_t s = 0; s < supernodes.nodes.size(); ++s) {
+    int& at = cursor[target[s]];
+    for (int p = supernodes.start[s]; p < supernodes.start[s + 1]; ++p) {
+      result.column[post[p]] = at;
+      result.vertex[at++] = post[p];
+    }
+  }
+  return result;
+}
+
 /// The rows of one supernode: those of the matrix and of its children, below its own columns.
-void find_rows(const Graph& graph, const std::vector<int>& vertex, const std::vector<int>& place,
-               Symbolic& symbolic, int s, std::vector<int>& seen) {
+void find_rows(const Graph& graph, const Columns& columns, Symbolic& symbolic, int s,
+               std::vector<int>& seen) {
   const int begin = symbolic.first_column[s], end = symbolic.first_column[s + 1];
   int* const first = symbolic.rows.data() + symbolic.row_start[s];
   int* last = first;
@@ -224,118 +328,63 @@ void find_rows(const Graph& graph, const std::vector<int>& vertex, const std::ve
     for (const int row : symbolic.rows_of(c)) add(row);
   }
   for (int j = begin; j < end; ++j) {
-    for (const int w : graph.neighbours(vertex[j])) add(place[w]);
+    for (const int w : graph.neighbours(columns.vertex[j])) add(columns.column[w]);
   }
   std::sort(first, last);
+}
+
+/// The rows of all supernodes.
+void find_all_rows(const Graph& graph, const Columns& columns, int threads, Symbolic& symbolic) {
+  symbolic.rows.resize(symbolic.row_start.back());
+  // Subtrees side by side, in as many parts as there are threads, each with marks of its own.
+  const auto tasks = static_cast<std::int64_t>(symbolic.tasks.size());
+  const std::int64_t part = std::max<std::int64_t>(1, (tasks + threads - 1) / threads);
+  parallel_for(threads, tasks, part, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<int> seen(graph.count(), kRoot);
+    for (std::int64_t t = begin; t < end; ++t) {
+      for (int s = symbolic.tasks[t].begin; s < symbolic.tasks[t].end; ++s) {
+        find_rows(graph, columns, symbolic, s, seen);
+      }
+    }
+  });
+  std::vector<int> seen(graph.count(), kRoot);
+  for (int s = symbolic.top_begin(); s < symbolic.supernode_count(); ++s) {
+    find_rows(graph, columns, symbolic, s, seen);
+  }
 }
 
 }  // namespace
 
 Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int block_size,
                          int threads, const Poll& poll) {
-  const int n = given.count();
   const Graph graph = renumber(given, order, threads);
   const std::vector<int> tree = elimination_tree(graph);
   const std::vector<int> post = postorder(tree);
   const std::vector<int> counts = column_counts(graph, tree, post);
   poll();
 
+  Supernodes supernodes = find_supernodes(tree, post, counts);
+  merge_nodes(supernodes.nodes, block_size);
+  std::vector<int> target = resolve_merges(supernodes.nodes);
   Symbolic symbolic;
   symbolic.block_size = block_size;
-  std::vector<Node> nodes;
-  std::vector<int> node_of(n), node_start;
-  for (int p = 0; p < n; ++p) {
-    const int v = post[p];
-    symbolic.work += static_cast<double>(counts[v]) * counts[v];
-    const bool joins = p > 0 && tree[post[p - 1]] == v && counts[post[p - 1]] == counts[v] + 1;
-    if (!joins) {
-      node_start.push_back(p);
-      nodes.push_back({0, 0});
-    }
-    nodes.back().columns += 1;
-    nodes.back().rows = counts[v] - 1;
-    node_of[v] = static_cast<int>(nodes.size()) - 1;
-  }
-  node_start.push_back(n);
-  for (std::size_t s = 0; s < nodes.size(); ++s) {
-    const int above = tree[post[node_start[s + 1] - 1]];
-    if (above != kRoot) nodes[s].parent = node_of[above];
-  }
-  merge_nodes(nodes, block_size);
-  // A merge changes who is whose parent.
-  std::vector<int> final_of(nodes.size());
-  for (int s = static_cast<int>(nodes.size()); s-- > 0;) {
-    final_of[s] = nodes[s].merged_into == kRoot ? s : final_of[nodes[s].merged_into];
-    if (nodes[s].parent != kRoot) nodes[s].parent = final_of[nodes[s].parent];
-  }
-  const Numbering numbering = number_nodes(nodes, block_size);
-
-  // The columns: of each supernode those of the nodes merged into it, in postorder.
-  const int count = static_cast<int>(numbering.order.size());
-  std::vector<int> rank(nodes.size(), kRoot);
-  symbolic.first_column.assign(static_cast<std::size_t>(count) + 1, 0);
-  symbolic.row_start.assign(static_cast<std::size_t>(count) + 1, 0);
-  symbolic.value_start.assign(static_cast<std::size_t>(count) + 1, 0);
-  symbolic.parent.resize(count);
-  for (int i = 0; i < count; ++i) {
-    const Node& node = nodes[numbering.order[i]];
-    rank[numbering.order[i]] = i;
-    symbolic.first_column[i + 1] = symbolic.first_column[i] + node.columns;
-    symbolic.row_start[i + 1] = symbolic.row_start[i] + node.rows;
-    symbolic.value_start[i + 1] =
-        symbolic.value_start[i] + static_cast<std::int64_t>(block_size * node.columns) *
-                                      (block_size * (node.columns + node.rows));
-  }
-  for (int i = 0; i < count; ++i) {
-    const int above = nodes[numbering.order[i]].parent;
-    symbolic.parent[i] = above == kRoot ? kRoot : rank[above];
-  }
-  list_children(symbolic);
-  int done = 0;
-  for (const int size : numbering.task_sizes) {
-    symbolic.tasks.push_back({done, done + size});
-    done += size;
-  }
-  std::vector<int> cursor(symbolic.first_column.begin(), symbolic.first_column.end() - 1);
-  std::vector<int> column(n), vertex(n);  // per vertex of `graph`, and back
-  for (std::size_t s = 0; s < nodes.size(); ++s) {
-    int& at = cursor[rank[final_of[s]]];
-    for (int p = node_start[s]; p < node_start[s + 1]; ++p) {
-      column[post[p]] = at;
-      vertex[at++] = post[p];
-    }
-  }
-  symbolic.place.resize(n);
-  for (int v = 0; v < n; ++v) symbolic.place[order[v]] = column[v];
-
-  symbolic.rows.resize(symbolic.row_start[count]);
+  symbolic.work = work_of(counts);
+  const std::vector<int> rank =
+      lay_out(supernodes.nodes, number_nodes(supernodes.nodes, block_size), symbolic);
+  for (int& node : target) node = rank[node];
+  const Columns columns = number_columns(supernodes, target, post, symbolic.first_column);
+  symbolic.place.resize(given.count());
+  for (int v = 0; v < given.count(); ++v) symbolic.place[order[v]] = columns.column[v];
   poll();
-  // Subtrees side by side, in as many parts as there are threads, each with marks of its own.
-  const auto tasks = static_cast<std::int64_t>(symbolic.tasks.size());
-  const std::int64_t part = std::max<std::int64_t>(1, (tasks + threads - 1) / threads);
-  parallel_for(threads, tasks, part, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<int> seen(n, kRoot);
-    for (std::int64_t t = begin; t < end; ++t) {
-      for (int s = symbolic.tasks[t].begin; s < symbolic.tasks[t].end; ++s) {
-        find_rows(graph, vertex, column, symbolic, s, seen);
-      }
-    }
-  });
-  std::vector<int> seen(n, kRoot);
-  for (int s = symbolic.top_begin(); s < count; ++s) {
-    find_rows(graph, vertex, column, symbolic, s, seen);
-  }
+
+  find_all_rows(graph, columns, threads, symbolic);
   return symbolic;
 }
 
 double factor_work(const Graph& given, const std::vector<int>& order) {
   const Graph graph = renumber(given, order, 1);
   const std::vector<int> tree = elimination_tree(graph);
-  double work = 0;
-  for (const int c : column_counts(graph, tree, postorder(tree))) {
-    work += static_cast<double>(c) * c;
-  }
-  return work;
+  return work_of(column_counts(graph, tree, postorder(tree)));
 }
 
 }  // namespace beltrami

@@ -1,0 +1,24 @@
+// Solves with a multifrontal Cholesky factor.
+#pragma once
+
+#include <vector>
+
+#include "linear/cholesky/front.h"
+#include "linear/cholesky/symbolic.h"
+
+namespace beltrami {
+
+/// x = A^-1 x for `columns` right-hand sides, one after the other, in the order of L. `factor`: the
+/// panels of the supernodes, at symbolic.value_start. The same bits at any number of threads.
+template <class T>
+void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x,
+                       int columns, int threads);
+
+/// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes
+/// that right-hand sides or wanted rows reach are visited.
+template <class T>
+DenseMatrix solve_rows_with_factor(const Symbolic& symbolic, const T* factor,
+                                   const SparseMatrix& rhs, const std::vector<int>& rows,
+                                   int threads);
+
+}  // namespace beltrami
