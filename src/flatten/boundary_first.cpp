@@ -46,9 +46,10 @@ double edge_length_sq(const DiskMesh& mesh, const std::vector<RestTriangle>& res
 /// weight an elastic energy but have no part in a conformal map.
 MetricLaplacian conformal_laplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                     const std::vector<FaceMetric>& metric) {
-  auto weights = modified_cotangents(rest, metric, 1);
-  for (EdgeWeights& face : weights) {
-    for (double& w : face) w *= 0.5;
+  std::vector<EdgeWeights> weights;
+  weights.reserve(rest.size());
+  for (const Cotangents& face : modified_cotangents(rest, metric, 1)) {
+    weights.push_back(edge_weights(face, 0.5));
   }
   return MetricLaplacian(mesh, weights, mesh.on_boundary);
 }

@@ -12,7 +12,16 @@
 namespace beltrami {
 
 /// The cotangents of the three angles of a face. All that a harmonic map needs to know of it.
-using Cotangents = std::array<double, 3>;
+struct Cotangents : std::array<double, 3> {};
+
+/// The weights of the edges of a face, each opposite to the corner of its index: its stiffness
+/// matrix is that of these springs.
+struct EdgeWeights : std::array<double, 3> {};
+
+/// The springs of `scale` times the cotangents: 0.5 makes the cotangent Laplacian.
+inline EdgeWeights edge_weights(const Cotangents& cotangents, double scale) {
+  return {scale * cotangents[0], scale * cotangents[1], scale * cotangents[2]};
+}
 
 /// Cotangents at the three corners of a face in the metric |dz + mu conj(dz)|^2.
 /// Precondition: |mu| < 1. (Paper section 3.4: cot = -Re q / Im q with
@@ -26,7 +35,7 @@ std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& res
 /// Adds the stiffness of one face by add(i, j, block): edge k, opposite to corner k, with
 /// weights[k].
 template <class Add>
-void add_stiffness(const std::array<double, 3>& weights, const Add& add) {
+void add_stiffness(const EdgeWeights& weights, const Add& add) {
   for (int k = 0; k < 3; ++k) {
     const int i = next_corner(k), j = previous_corner(k);
     const double at_corner = weights[i] + weights[j], at_edge = -weights[k];
@@ -44,8 +53,7 @@ MeshMatrix assemble_laplacian(Index vertex_count, const std::vector<Triangle>& f
                               const std::vector<bool>& fixed, int threads, Pull&& pull) {
   MeshMatrix laplacian(vertex_count, faces, fixed, 1, threads);
   laplacian.add_up(faces, threads, [&](Index f, const auto& add) {
-    const Cotangents& c = cotangents[f];
-    add_stiffness({0.5 * c[0], 0.5 * c[1], 0.5 * c[2]}, add);
+    add_stiffness(edge_weights(cotangents[f], 0.5), add);
   });
   for (Index f = 0; f < size_of(faces); ++f) {
     for (int k = 0; k < 3; ++k) {

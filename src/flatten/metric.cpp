@@ -29,10 +29,8 @@ EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex d
   const double along = 0.5 * (model.h11 + angular), across = 0.5 * (model.h22 + angular);
   // The metric whose Laplacian has this stiffness: lengths go with the inverse roots.
   const double ratio = std::sqrt(across / along), signed_mu = (ratio - 1) / (ratio + 1);
-  EdgeWeights weights = modified_cotangents(rest, signed_mu * direction);
-  const double scale = 0.5 * std::sqrt(along * across);
-  for (double& w : weights) w *= scale;
-  return weights;
+  return edge_weights(modified_cotangents(rest, signed_mu * direction),
+                      0.5 * std::sqrt(along * across));
 }
 
 /// Calls stiffness(density, face) for every face.
@@ -107,7 +105,8 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
         const Triangle& t = faces[f];
         const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
         const double a = modulus(map.fz), b = modulus(map.fzbar);
-        if (!(a > b)) return modified_cotangents(rest[f], 0);
+        // Flipped: the density is infinite there, its finite part (squared singular values) is not.
+        if (!(a > b)) return edge_weights(modified_cotangents(rest[f], 0), 1);
         const Complex direction = b > 0 ? quotient(map.fzbar, map.fz) * (a / b) : Complex(1);
         return stiffness_at<Density>(rest[f], a, b, direction);
       });

@@ -3,12 +3,12 @@
 // of vertices that are anchored on purpose.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "base/types.h"
 #include "energy/energy.h"
+#include "flatten/laplacian.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
@@ -16,10 +16,6 @@
 #include "prolong/prolongation.h"
 
 namespace beltrami {
-
-/// The weights of the edges of a face, each opposite to the corner of its index: its stiffness
-/// matrix is that of these springs.
-using EdgeWeights = std::array<double, 3>;
 
 /// Stiffness of every face that approximates the Hessian of the integral of `energy` over it at a
 /// map that has the metric: per face the mean of the Hessian's radial and angular parts along each
