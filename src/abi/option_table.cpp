@@ -25,130 +25,187 @@ void set(Options& options, double value) {
   options.*Member = static_cast<Value>(value);
 }
 
+// The value of a choice is the place of its name: the library's enums count as the public ones do.
+static_assert(static_cast<int>(Energy::kSymmetricDirichlet) == BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET);
+static_assert(static_cast<int>(Energy::kSymmetricArap) == BELTRAMI_ENERGY_SYMMETRIC_ARAP);
+
 const OptionEntry kOptions[] = {
-    {BELTRAMI_OPTION_METHOD, BELTRAMI_TYPE_CHOICE, "method",
-     "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization "
-     "on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a "
-     "baseline "
-     "to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs "
-     "(bff and uv-prolongation may flip).",
-     0, std::size(kMethods) - 1, kMethods, get<&Options::method>, set<&Options::method>},
-    {BELTRAMI_OPTION_ENERGY, BELTRAMI_TYPE_CHOICE, "energy", "The distortion that is minimised.", 0,
-     std::size(kEnergies) - 1, kEnergies, get<&Options::energy>, set<&Options::energy>},
-    {BELTRAMI_OPTION_COARSE_FACES,
-     BELTRAMI_TYPE_INT,
-     "coarse-faces",
-     "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the "
-     "faces, at least 10,000.",
-     0,
-     700e6,
-     {},
-     get<&Options::coarse_faces>,
-     set<&Options::coarse_faces>},
-    {BELTRAMI_OPTION_TOLERANCE,
-     BELTRAMI_TYPE_FLOAT,
-     "tolerance",
-     "Relative decrease of the energy in one iteration below which composite majorization stops.",
-     0,
-     1,
-     {},
-     get<&Options::tolerance>,
-     set<&Options::tolerance>},
-    {BELTRAMI_OPTION_MAX_ITERATIONS,
-     BELTRAMI_TYPE_INT,
-     "max-iterations",
-     "Iterations after which composite majorization stops even if it has not converged.",
-     1,
-     1e6,
-     {},
-     get<&Options::max_iterations>,
-     set<&Options::max_iterations>},
-    {BELTRAMI_OPTION_THREADS,
-     BELTRAMI_TYPE_INT,
-     "threads",
-     "Threads to use, the calling one included; the result does not depend on it.",
-     1,
-     1024,
-     {},
-     get<&Options::threads>,
-     set<&Options::threads>},
-    {BELTRAMI_OPTION_UNIT_SQUARE,
-     BELTRAMI_TYPE_INT,
-     "unit-square",
-     "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's unit of length.",
-     0,
-     1,
-     {},
-     get<&Options::unit_square>,
-     set<&Options::unit_square>},
-    {BELTRAMI_OPTION_FLATTEN, BELTRAMI_TYPE_CHOICE, "flatten",
-     "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary "
-     "and "
-     "a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little "
-     "higher), "
-     "gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local "
-     "injectivity only) or bff (conformal, may flip).",
-     0, std::size(kFlattens) - 1, kFlattens, get<&Options::flatten>, set<&Options::flatten>},
-    {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_TYPE_CHOICE, "injectivity",
-     "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: "
-     "parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which "
-     "is left as the literature has it).",
-     0, std::size(kInjectivities) - 1, kInjectivities, get<&Options::injectivity>,
-     set<&Options::injectivity>},
-    {BELTRAMI_OPTION_REFINE,
-     BELTRAMI_TYPE_INT,
-     "refine",
-     "1 goes on with composite majorization on the fine mesh from the result, to a little less "
-     "energy in much more time.",
-     0,
-     1,
-     {},
-     get<&Options::refine>,
-     set<&Options::refine>},
-    {BELTRAMI_OPTION_REFINE_ITERATIONS,
-     BELTRAMI_TYPE_INT,
-     "refine-iterations",
-     "Iterations after which the refinement stops; 0 leaves it to the tolerance.",
-     0,
-     1e6,
-     {},
-     get<&Options::refine_iterations>,
-     set<&Options::refine_iterations>},
-    {BELTRAMI_OPTION_TIME_LIMIT,
-     BELTRAMI_TYPE_FLOAT,
-     "time-limit",
-     "Seconds since the start of the run after which the refinement stops with what it has; 0 sets "
-     "no limit.",
-     0,
-     1e9,
-     {},
-     get<&Options::time_limit>,
-     set<&Options::time_limit>},
-    {BELTRAMI_OPTION_FLOAT32,
-     BELTRAMI_TYPE_INT,
-     "float32",
-     "1 delivers UVs that single precision holds exactly, rounded so that the map stays injective.",
-     0,
-     1,
-     {},
-     get<&Options::float32>,
-     set<&Options::float32>},
-    {BELTRAMI_OPTION_DELAUNAY, BELTRAMI_TYPE_CHOICE, "delaunay",
-     "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the "
-     "fine mesh is flattened: what is injective then are its own triangles on the same vertices.",
-     0, std::size(kSwitch) - 1, kSwitch, get<&Options::delaunay>, set<&Options::delaunay>},
-    {BELTRAMI_OPTION_MEMORY_LIMIT,
-     BELTRAMI_TYPE_INT,
-     "memory-limit",
-     "Bytes of memory that a run is to stay within by its estimate: one that needs more ends "
-     "before "
-     "it starts, and steps that only hard meshes need are left out where they would exceed it; 0 "
-     "sets no limit.",
-     0,
-     1e14,
-     {},
-     get<&Options::memory_limit>,
-     set<&Options::memory_limit>},
+    {
+        .key = BELTRAMI_OPTION_METHOD,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "method",
+        .summary = "How the map is computed: beltrami (fast and low in distortion), cm (composite "
+                   "majorization on the full mesh, the slow reference), tutte (into a circle, "
+                   "highly distorted), or a baseline to compare with: gif and bff on the "
+                   "surface's own metric, uv-prolongation of the coarse UVs (bff and "
+                   "uv-prolongation may flip).",
+        .minimum = 0,
+        .maximum = std::size(kMethods) - 1,
+        .choices = kMethods,
+        .get = get<&Options::method>,
+        .set = set<&Options::method>,
+    },
+    {
+        .key = BELTRAMI_OPTION_ENERGY,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "energy",
+        .summary = "The distortion that is minimised.",
+        .minimum = 0,
+        .maximum = std::size(kEnergies) - 1,
+        .choices = kEnergies,
+        .get = get<&Options::energy>,
+        .set = set<&Options::energy>,
+    },
+    {
+        .key = BELTRAMI_OPTION_COARSE_FACES,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "coarse-faces",
+        .summary = "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
+                   "1% of the faces, at least 10,000.",
+        .minimum = 0,
+        .maximum = 700e6,
+        .get = get<&Options::coarse_faces>,
+        .set = set<&Options::coarse_faces>,
+    },
+    {
+        .key = BELTRAMI_OPTION_TOLERANCE,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "tolerance",
+        .summary = "Relative decrease of the energy in one iteration below which composite "
+                   "majorization stops.",
+        .minimum = 0,
+        .maximum = 1,
+        .get = get<&Options::tolerance>,
+        .set = set<&Options::tolerance>,
+    },
+    {
+        .key = BELTRAMI_OPTION_MAX_ITERATIONS,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "max-iterations",
+        .summary = "Iterations after which composite majorization stops even if it has not "
+                   "converged.",
+        .minimum = 1,
+        .maximum = 1e6,
+        .get = get<&Options::max_iterations>,
+        .set = set<&Options::max_iterations>,
+    },
+    {
+        .key = BELTRAMI_OPTION_THREADS,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "threads",
+        .summary = "Threads to use, the calling one included; the result does not depend on it.",
+        .minimum = 1,
+        .maximum = 1024,
+        .get = get<&Options::threads>,
+        .set = set<&Options::threads>,
+    },
+    {
+        .key = BELTRAMI_OPTION_UNIT_SQUARE,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "unit-square",
+        .summary = "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's "
+                   "unit of length.",
+        .minimum = 0,
+        .maximum = 1,
+        .get = get<&Options::unit_square>,
+        .set = set<&Options::unit_square>,
+    },
+    {
+        .key = BELTRAMI_OPTION_FLATTEN,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "flatten",
+        .summary = "How the method beltrami flattens the fine mesh: metric (Poisson solve with a "
+                   "free boundary and a polish), dirichlet (harmonic, boundary from the coarse "
+                   "map: faster, energy a little higher), gif (harmonic subspace of a few "
+                   "boundary vertices with a scaffold), flim (the same, local injectivity only) "
+                   "or bff (conformal, may flip).",
+        .minimum = 0,
+        .maximum = std::size(kFlattens) - 1,
+        .choices = kFlattens,
+        .get = get<&Options::flatten>,
+        .set = set<&Options::flatten>,
+    },
+    {
+        .key = BELTRAMI_OPTION_INJECTIVITY,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "injectivity",
+        .summary = "What the optimisation sees to: global (no flips, no boundary crossings), "
+                   "local (no flips: parts may overlap, at a slightly lower energy) or auto "
+                   "(global, but for the method cm, which is left as the literature has it).",
+        .minimum = 0,
+        .maximum = std::size(kInjectivities) - 1,
+        .choices = kInjectivities,
+        .get = get<&Options::injectivity>,
+        .set = set<&Options::injectivity>,
+    },
+    {
+        .key = BELTRAMI_OPTION_REFINE,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "refine",
+        .summary = "1 goes on with composite majorization on the fine mesh from the result, to a "
+                   "little less energy in much more time.",
+        .minimum = 0,
+        .maximum = 1,
+        .get = get<&Options::refine>,
+        .set = set<&Options::refine>,
+    },
+    {
+        .key = BELTRAMI_OPTION_REFINE_ITERATIONS,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "refine-iterations",
+        .summary = "Iterations after which the refinement stops; 0 leaves it to the tolerance.",
+        .minimum = 0,
+        .maximum = 1e6,
+        .get = get<&Options::refine_iterations>,
+        .set = set<&Options::refine_iterations>,
+    },
+    {
+        .key = BELTRAMI_OPTION_TIME_LIMIT,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "time-limit",
+        .summary = "Seconds since the start of the run after which the refinement stops with what "
+                   "it has; 0 sets no limit.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::time_limit>,
+        .set = set<&Options::time_limit>,
+    },
+    {
+        .key = BELTRAMI_OPTION_FLOAT32,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "float32",
+        .summary = "1 delivers UVs that single precision holds exactly, rounded so that the map "
+                   "stays injective.",
+        .minimum = 0,
+        .maximum = 1,
+        .get = get<&Options::float32>,
+        .set = set<&Options::float32>,
+    },
+    {
+        .key = BELTRAMI_OPTION_DELAUNAY,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "delaunay",
+        .summary = "on flips edges to the intrinsic Delaunay triangulation of the prolonged "
+                   "metric before the fine mesh is flattened: what is injective then are its own "
+                   "triangles on the same vertices.",
+        .minimum = 0,
+        .maximum = std::size(kSwitch) - 1,
+        .choices = kSwitch,
+        .get = get<&Options::delaunay>,
+        .set = set<&Options::delaunay>,
+    },
+    {
+        .key = BELTRAMI_OPTION_MEMORY_LIMIT,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "memory-limit",
+        .summary = "Bytes of memory that a run is to stay within by its estimate: one that needs "
+                   "more ends before it starts, and steps that only hard meshes need are left out "
+                   "where they would exceed it; 0 sets no limit.",
+        .minimum = 0,
+        .maximum = 1e14,
+        .get = get<&Options::memory_limit>,
+        .set = set<&Options::memory_limit>,
+    },
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.

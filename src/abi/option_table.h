@@ -16,8 +16,8 @@ struct OptionEntry {
   std::int32_t type;
   const char* name;
   const char* summary;
-  double minimum, maximum;               ///< inclusive
-  std::span<const char* const> choices;  ///< names of the values 0, 1, ... of a choice
+  double minimum, maximum;                    ///< inclusive
+  std::span<const char* const> choices = {};  ///< names of the values 0, 1, ... of a choice
   double (*get)(const Options&);
   void (*set)(Options&, double);
 };

@@ -77,9 +77,9 @@ NewtonResult Run::descend_to(const DiskMesh& mesh, const std::vector<RestTriangl
   const std::vector<bool> fixed = only_first_of_boundary(mesh);
   int lead_steps = 0;
   NewtonResult led;
-  if (newton.proxy_steps > 0 && newton.energy != BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+  if (newton.proxy_steps > 0 && newton.energy != Energy::kSymmetricDirichlet) {
     NewtonOptions lead = newton;
-    lead.energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+    lead.energy = Energy::kSymmetricDirichlet;
     lead.tolerance = std::max(lead.tolerance, kLeadTolerance);
     led = minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint);
     lead_steps = led.iterations();

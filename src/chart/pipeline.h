@@ -11,6 +11,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
@@ -20,7 +21,7 @@ namespace beltrami {
 /// Values of the BELTRAMI_OPTION_ keys; the ABI's option table holds their ranges and words.
 struct Options {
   std::int32_t method = BELTRAMI_METHOD_BELTRAMI;
-  std::int32_t energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  Energy energy = Energy::kSymmetricDirichlet;
   std::int64_t coarse_faces = 0;  ///< 0: max(1% of the faces, 10,000)
   double tolerance = 1e-4;
   int max_iterations = 500;

@@ -14,7 +14,7 @@
 namespace beltrami {
 
 struct NewtonOptions {
-  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
   int threads = 1;

@@ -13,7 +13,7 @@
 namespace beltrami {
 
 struct PolishOptions {
-  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-5;   ///< relative energy decrease of a step after which it may end, if
   double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
   int max_iterations = 20;

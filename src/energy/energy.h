@@ -1,25 +1,25 @@
 // The energies by name: one row each.
 #pragma once
 
-#include <beltrami/beltrami.h>
+#include <cstdint>
 
 #include "energy/symmetric_arap.h"
 #include "energy/symmetric_dirichlet.h"
 
 namespace beltrami {
 
-/// A BELTRAMI_ENERGY_ number.
-using Energy = std::int32_t;
+enum class Energy : std::int32_t { kSymmetricDirichlet, kSymmetricArap };
 
 /// Calls body(density) with the density of an energy: the one place that knows them all.
 template <class Body>
 auto with_density(Energy energy, Body&& body) {
   switch (energy) {
-    case BELTRAMI_ENERGY_SYMMETRIC_ARAP:
+    case Energy::kSymmetricArap:
       return body(SymmetricArap{});
-    default:
-      return body(SymmetricDirichlet{});
+    case Energy::kSymmetricDirichlet:
+      break;
   }
+  return body(SymmetricDirichlet{});
 }
 
 /// What a decrease of the energy is compared with to tell convergence: the energy, shifted so that

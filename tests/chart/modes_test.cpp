@@ -25,8 +25,7 @@ Flattening run(TriangleList mesh, const Options& options) {
   return flatten(disk, frame, options, {}, cancelled);
 }
 
-Options coarse_to_fine(std::int32_t how,
-                       std::int32_t energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+Options coarse_to_fine(std::int32_t how, Energy energy = Energy::kSymmetricDirichlet) {
   Options options;
   options.coarse_faces = 300;
   options.flatten = how;
@@ -34,7 +33,7 @@ Options coarse_to_fine(std::int32_t how,
   return options;
 }
 
-Options method(std::int32_t which, std::int32_t energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+Options method(std::int32_t which, Energy energy = Energy::kSymmetricDirichlet) {
   Options options;
   options.coarse_faces = 300;
   options.method = which;
@@ -61,8 +60,7 @@ std::vector<NamedMesh> models() {
 
 TEST(Modes, KeepTheirPromises) {
   for (const auto& [name, mesh] : models()) {
-    for (const std::int32_t energy :
-         {BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, BELTRAMI_ENERGY_SYMMETRIC_ARAP}) {
+    for (const Energy energy : {Energy::kSymmetricDirichlet, Energy::kSymmetricArap}) {
       for (const std::int32_t how :
            {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET, BELTRAMI_FLATTEN_GIF}) {
         const Flattening result = run(mesh, coarse_to_fine(how, energy));
@@ -120,8 +118,8 @@ TEST(Modes, ComeCloseToTheMinimumOfTheirEnergy) {
     const auto arap = [&](const Options& options) {
       return run(mesh, options).distortion.symmetric_arap;
     };
-    EXPECT_LE(arap(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, BELTRAMI_ENERGY_SYMMETRIC_ARAP)),
-              1.02 * arap(method(BELTRAMI_METHOD_CM, BELTRAMI_ENERGY_SYMMETRIC_ARAP)) + 1e-4)
+    EXPECT_LE(arap(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, Energy::kSymmetricArap)),
+              1.02 * arap(method(BELTRAMI_METHOD_CM, Energy::kSymmetricArap)) + 1e-4)
         << name;
   }
 }
@@ -175,7 +173,7 @@ std::vector<Options> all_modes() {
                                    BELTRAMI_METHOD_BFF, BELTRAMI_METHOD_UV_PROLONGATION}) {
     modes.push_back(method(which));
   }
-  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, BELTRAMI_ENERGY_SYMMETRIC_ARAP));
+  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, Energy::kSymmetricArap));
   modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));
   modes.back().delaunay = true;
   modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));

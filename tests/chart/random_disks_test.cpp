@@ -87,7 +87,7 @@ Options extreme_options(Random& random) {
   if (random.below(3) > 0) options.coarse_faces = 4 + random.below(random.below(2) == 0 ? 20 : 300);
   options.method = std::max(0, random.below(10) - 4);
   if (random.below(2) == 0) options.flatten = random.below(5);
-  if (random.below(4) == 0) options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;
+  if (random.below(4) == 0) options.energy = Energy::kSymmetricArap;
   if (random.below(3) == 0) options.injectivity = random.below(3);
   options.delaunay = random.below(6) == 0;
   options.unit_square = random.below(4) == 0;

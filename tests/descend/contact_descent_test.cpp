@@ -19,8 +19,7 @@
 namespace beltrami {
 namespace {
 
-constexpr Energy kEnergies[] = {BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET,
-                                BELTRAMI_ENERGY_SYMMETRIC_ARAP};
+constexpr Energy kEnergies[] = {Energy::kSymmetricDirichlet, Energy::kSymmetricArap};
 
 struct NamedDisk {
   std::string name;
@@ -82,14 +81,15 @@ void for_each_overlap(const Test& test) {
       options.energy = energy;
       const Way way = way_to_the_free_minimum(mesh, contact, options);
       options.contact = &contact;
-      test(name + ", energy " + std::to_string(energy), mesh, contact, options, way);
+      test(name + ", energy " + std::to_string(static_cast<int>(energy)), mesh, contact, options,
+           way);
     }
   }
 }
 
 /// Energies from 2 at the isometries.
 double comparable(Energy energy, double value) {
-  return energy == BELTRAMI_ENERGY_SYMMETRIC_ARAP ? value + 2 : value;
+  return energy == Energy::kSymmetricArap ? value + 2 : value;
 }
 
 TEST(MinimiseEnergyWithContact, KeepsTheBoundarySimpleAndEndsNearTheFreeMinimum) {
@@ -172,7 +172,7 @@ std::vector<double> gains_alone(Energy energy, const DiskMesh& mesh, const std::
 TEST(MinimiseEnergyWithContact, HoldsNoVertexThatNothingPressesOn) {
   for_each_overlap([](const std::string& where, const DiskMesh& mesh,
                       const BoundaryContact& contact, NewtonOptions options, const Way& way) {
-    if (options.energy != BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) return;  // the other is not smooth
+    if (options.energy != Energy::kSymmetricDirichlet) return;  // the other is not smooth
     options.tolerance = 1e-12;
     const Minimum minimum = minimise(mesh, way.start, options);
     std::vector<bool> pressed(minimum.uvs.size(), false);

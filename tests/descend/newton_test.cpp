@@ -21,8 +21,7 @@ namespace {
 
 using disks::Random;
 
-constexpr Energy kEnergies[] = {BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET,
-                                BELTRAMI_ENERGY_SYMMETRIC_ARAP};
+constexpr Energy kEnergies[] = {Energy::kSymmetricDirichlet, Energy::kSymmetricArap};
 
 /// Disks of every kind that is small.
 std::vector<meshes::TriangleList> small_disks() {
@@ -42,8 +41,7 @@ double signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 double mean_energy(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                   const std::vector<Vec2>& uvs,
-                   Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+                   const std::vector<Vec2>& uvs, Energy energy = Energy::kSymmetricDirichlet) {
   return with_density(energy, [&](const auto& density) {
     double sum = 0, area = 0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -63,13 +61,12 @@ std::vector<Vec2> scaled(std::vector<Vec2> uvs, double factor) {
 }
 
 double scale_of(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+                Energy energy = Energy::kSymmetricDirichlet) {
   return best_scale(energy, mesh.faces, disks::rest_of(mesh), uvs);
 }
 
 /// Tutte's embedding at its best scale.
-std::vector<Vec2> start_of(const DiskMesh& mesh,
-                           Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
+std::vector<Vec2> start_of(const DiskMesh& mesh, Energy energy = Energy::kSymmetricDirichlet) {
   const std::vector<Vec2> uvs = tutte_embedding(mesh);
   return scaled(uvs, scale_of(mesh, uvs, energy));
 }
@@ -169,17 +166,15 @@ TEST(BestScale, UndoesAScale) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   for (const double s : {1e-6, 0.3, 1e5}) {
     const std::vector<Vec2> uvs = scaled(disks::flat_uvs(mesh), s);
-    EXPECT_NEAR(
-        best_scale(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, disks::rest_of(mesh), uvs) * s,
-        1, 1e-12);
+    EXPECT_NEAR(best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs) * s,
+                1, 1e-12);
   }
 }
 
 TEST(BestScale, IsOneWhereAFaceIsFlipped) {
   const DiskMesh mesh = disks::disk(meshes::quad());
   const std::vector<Vec2> uvs = {{0, 0}, {3, 0}, {3, 3}, {2, 1}};
-  EXPECT_EQ(best_scale(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, disks::rest_of(mesh), uvs),
-            1);
+  EXPECT_EQ(best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs), 1);
 }
 
 // ---- Line search ----------------------------------------------------------------------------
@@ -276,8 +271,9 @@ TEST(MinimiseEnergy, NeverRaisesAnEnergyAndNeverFlips) {
         options.proxy_steps = proxy_steps;
         const Minimum minimum = minimise(mesh, start_of(mesh, energy), options);
         const auto& energies = minimum.result.energies;
-        const auto where = testing::Message() << mesh.face_count() << " faces, energy " << energy
-                                              << ", proxy steps " << proxy_steps;
+        const auto where = testing::Message()
+                           << mesh.face_count() << " faces, energy " << static_cast<int>(energy)
+                           << ", proxy steps " << proxy_steps;
         EXPECT_TRUE(std::is_sorted(energies.rbegin(), energies.rend())) << where;
         EXPECT_TRUE(all_positive(mesh, minimum.uvs)) << where;
         EXPECT_TRUE(minimum.result.converged) << where;
@@ -292,7 +288,7 @@ TEST(MinimiseEnergy, StopsAtTheMinimumOfSymmetricArap) {
   for (const auto& list : {meshes::fan(12), meshes::grid(6, 5), meshes::cap(5, 12, 2.5)}) {
     const DiskMesh mesh = disks::disk(list);
     NewtonOptions options;
-    options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;
+    options.energy = Energy::kSymmetricArap;
     const NewtonResult result = minimise(mesh, start_of(mesh, options.energy), options).result;
     EXPECT_TRUE(result.converged) << mesh.face_count();
     EXPECT_LT(result.iterations(), 100) << mesh.face_count();

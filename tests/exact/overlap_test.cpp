@@ -38,9 +38,9 @@ Options local() {
 }
 
 /// From 2 at the isometries.
-double energy(const Flattening& result, std::int32_t which = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET) {
-  return which == BELTRAMI_ENERGY_SYMMETRIC_ARAP ? result.distortion.symmetric_arap + 2
-                                                 : result.distortion.symmetric_dirichlet;
+double energy(const Flattening& result, Energy which = Energy::kSymmetricDirichlet) {
+  return which == Energy::kSymmetricArap ? result.distortion.symmetric_arap + 2
+                                         : result.distortion.symmetric_dirichlet;
 }
 
 struct NamedMesh {
@@ -67,8 +67,7 @@ std::vector<NamedMesh> overlapping_meshes() {
   return meshes;
 }
 
-constexpr Energy kEnergies[] = {BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET,
-                                BELTRAMI_ENERGY_SYMMETRIC_ARAP};
+constexpr Energy kEnergies[] = {Energy::kSymmetricDirichlet, Energy::kSymmetricArap};
 
 TEST(Overlap, CostsLittleToAvoid) {
   for (const auto& [name, mesh] : overlapping_meshes()) {
@@ -150,7 +149,8 @@ TEST(Overlap, EndsNoHigherWithRefinement) {
       const Flattening refined = run(mesh, options);
       EXPECT_TRUE(refined.certificate.injective()) << name;
       EXPECT_EQ(refined.status, BELTRAMI_OK) << name;
-      EXPECT_LE(energy(refined, which), start * (1 + 1e-12)) << name << ", energy " << which;
+      EXPECT_LE(energy(refined, which), start * (1 + 1e-12))
+          << name << ", energy " << static_cast<int>(which);
     }
   }
 }

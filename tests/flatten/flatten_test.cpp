@@ -185,7 +185,7 @@ TEST(SolveHarmonic, LeavesADiskWithoutInteriorVerticesAsItIs) {
 
 std::vector<EdgeWeights> stiffness_of(const std::vector<RestTriangle>& rest,
                                       const std::vector<FaceMetric>& metric) {
-  return energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 1);
+  return energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 1);
 }
 
 std::vector<Vec2> solve_from_own_metric(const DiskMesh& mesh, const std::vector<Vec2>& map,
@@ -253,7 +253,7 @@ TEST(SolveMetric, HasTheSameBitsOnTwoThreads) {
   const auto rest = disks::rest_of(mesh);
   const auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
   const auto stiffness = stiffness_of(rest, metric);
-  EXPECT_EQ(stiffness, energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 2));
+  EXPECT_EQ(stiffness, energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 2));
   const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
   std::vector<Vec2> one(mesh.positions.size(), Vec2::Zero()), two = one;
   for (const bool rotate : {false, true}) {
@@ -304,8 +304,7 @@ TEST(EnergyStiffness, OfAMapIsThatOfItsMetric) {
   const auto rest = disks::rest_of(mesh);
   const auto uvs = tutte_embedding(mesh);
   const auto of_metric = stiffness_of(rest, face_metrics(mesh.faces, rest, uvs));
-  const auto of_map =
-      energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh.faces, rest, uvs, 2);
+  const auto of_map = energy_stiffness(Energy::kSymmetricDirichlet, mesh.faces, rest, uvs, 2);
   for (std::size_t f = 0; f < rest.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const double size = std::abs(of_metric[f][0]) + std::abs(of_metric[f][1]);

@@ -262,7 +262,7 @@ std::vector<std::string> random_rows() {
       run(disks::random_disk(seed),
           {{BELTRAMI_OPTION_COARSE_FACES, options.coarse_faces},
            {BELTRAMI_OPTION_FLATTEN, options.flatten},
-           {BELTRAMI_OPTION_ENERGY, options.energy},
+           {BELTRAMI_OPTION_ENERGY, static_cast<std::int64_t>(options.energy)},
            {BELTRAMI_OPTION_DELAUNAY, options.delaunay},
            {BELTRAMI_OPTION_UNIT_SQUARE, options.unit_square}},
           1 + seed % 2, hash);

@@ -274,8 +274,7 @@ TEST(CleanOutliers, MendsAFaceOfEnormousEnergy) {
   const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
   std::vector<Vec2> uvs = squeezed(mesh);
   EXPECT_GT(energy_of(mesh, uvs), 1e10);
-  EXPECT_GE(clean_outliers(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, disks::rest_of(mesh), uvs, 1),
-            1);
+  EXPECT_GE(clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, 1), 1);
   EXPECT_LT(energy_of(mesh, uvs), 20);
   EXPECT_TRUE(injective(mesh, uvs));
 }
@@ -283,8 +282,7 @@ TEST(CleanOutliers, MendsAFaceOfEnormousEnergy) {
 TEST(CleanOutliers, LeavesAMapWithoutOutliersBitForBit) {
   const DiskMesh mesh = disks::disk(meshes::bumps(6, 6));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
-  EXPECT_EQ(clean_outliers(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, mesh, disks::rest_of(mesh), uvs, 1),
-            0);
+  EXPECT_EQ(clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, 1), 0);
   EXPECT_EQ(uvs, disks::flat_uvs(mesh));
 }
 

@@ -107,7 +107,7 @@ double final_energy(const DiskMesh& fine, const CoarseDisk& coarse) {
       coarse.mesh, face_metrics(coarse.mesh.faces, disks::rest_of(coarse.mesh), coarse_uvs), fine,
       coarse.nearby, 1);
   const auto rest = disks::rest_of(fine);
-  const auto stiffness = energy_stiffness(BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET, rest, metric, 1);
+  const auto stiffness = energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 1);
   const MetricLaplacian laplacian(fine, stiffness, held(fine));
   std::vector<Vec2> uvs = carry_boundary(fine, coarse, coarse_uvs);
   solve_metric(fine, rest, metric, stiffness, laplacian, {}, false, 1, uvs);

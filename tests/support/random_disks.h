@@ -142,7 +142,7 @@ inline Options random_options(int seed) {
                                                        BELTRAMI_FLATTEN_GIF};
     options.flatten = kFlattens[static_cast<std::size_t>(random.below(2))];
   }
-  if (random.below(4) == 0) options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;
+  if (random.below(4) == 0) options.energy = Energy::kSymmetricArap;
   options.delaunay = random.below(6) == 0;
   options.unit_square = random.below(6) == 0;
   return options;

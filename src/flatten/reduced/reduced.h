@@ -17,7 +17,7 @@ namespace beltrami {
 inline constexpr Index kMostMetas = 1000;
 
 struct ReducedOptions {
-  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  Energy energy = Energy::kSymmetricDirichlet;
   bool scaffold = true;     ///< GIF: the boundary may not cross itself. false: FLIM, no flips alone
   double tolerance = 1e-3;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 200;  ///< Newton steps

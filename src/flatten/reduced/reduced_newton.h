@@ -15,7 +15,7 @@ namespace beltrami {
 
 /// The mean energy of sampled faces as a function of the meta vertices.
 struct ReducedProblem {
-  Energy energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  Energy energy = Energy::kSymmetricDirichlet;
   DenseMatrix edges;               ///< rows 2s, 2s + 1: edges of sample s from its corner 0 to its
                                    ///< corners 1 and 2; one column per meta vertex
   std::vector<RestTriangle> rest;  ///< per sample
