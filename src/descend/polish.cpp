@@ -206,6 +206,21 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
   return std::numeric_limits<double>::infinity();
 }
 
+/// Whether the gains tell of an end: the last step was a full one with little gain, or the last
+/// ones had next to none, since what touches shortens nearly all of them.
+struct Settling {
+  bool settled = false;
+  int little_gains = 0;
+
+  /// `scale`: what gains are compared with.
+  void see(double gain, double length, double scale, const PolishOptions& options) {
+    const bool next_to_nothing = gain <= options.stationary * scale;
+    little_gains = options.contact && next_to_nothing ? little_gains + 1 : 0;
+    settled =
+        (length >= kFullStep && gain <= options.tolerance * scale) || little_gains >= kPatience;
+  }
+};
+
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
@@ -226,19 +241,15 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   if (!std::isfinite(start)) return result;
   History history(threads);
   bool rigidly = true;  // whether faces may be held back alone
-  // Whether the last step was a full one with little gain, or the last ones had next to none: what
-  // touches shortens nearly all of them.
-  bool settled = false;
-  int little_gains = 0;
+  Settling settling;
   while (result.iterations() < options.max_iterations) {
     checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
-    const double before = result.energies.back();
+    const double before = result.energies.back(), scale = comparable_energy<Density>(before);
     history.find_direction(gradient, precondition, spare, direction);
     double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
     const double slope = dot(gradient, direction, threads);
     result.predicted = -slope;
-    result.converged = settled && 0.5 * result.predicted <=
-                                      options.stationary * comparable_energy<Density>(before);
+    result.converged = settling.settled && 0.5 * result.predicted <= options.stationary * scale;
     if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;
@@ -271,11 +282,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     // What nearly singular faces do to the gradient says nothing about other steps.
     if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
     gradient.swap(next_gradient);
-    const double little = options.tolerance * comparable_energy<Density>(before);
-    const bool next_to_nothing =
-        before - after <= options.stationary * comparable_energy<Density>(before);
-    little_gains = options.contact && next_to_nothing ? little_gains + 1 : 0;
-    settled = (length >= kFullStep && before - after <= little) || little_gains >= kPatience;
+    settling.see(before - after, length, scale, options);
   }
   return result;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks copies of the sources to see layers.py refuse them.
+"""Breaks copies of the sources to see layers.py and lengths.py refuse them.
 
     bite.py ROOT
 """
@@ -9,22 +9,54 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["src", "program", "bindings/python/src", "bindings/rust/beltrami/src"]
+FOLDERS = ["src", "program", "include", "bindings/python/src", "bindings/rust/beltrami/src"]
 
-# A file, a line put before it, and what layers.py must say.
+LONG_BODY = "  f();\n" * 69
+
+# The check, a file, lines put before it, and what the check must say.
 BREAKS = [
-    ("src/base/types.h", '#include "mesh/disk_mesh.h"', "src/base/types.h:1: 'base' may not include"),
-    ("src/repair/kernel.h", '#include "flatten/metric.h"', "'repair' may not include 'flatten'"),
-    ("program/commands/report.cpp", '#include "exact/orientation.h"', "by its header alone"),
-    ("src/energy/density.h", '#include "energy/energy.h"', "a circle: src/energy/"),
-    ("bindings/python/src/beltrami/_errors.py", "from . import _library", "a circle: bindings/python"),
-    ("bindings/rust/beltrami/src/error.rs", "use crate::mesh::Mesh;", "a circle: bindings/rust"),
+    (
+        "layers.py", "src/base/types.h", '#include "mesh/disk_mesh.h"',
+        "src/base/types.h:1: 'base' may not include",
+    ),
+    (
+        "layers.py", "src/repair/kernel.h", '#include "flatten/metric.h"',
+        "'repair' may not include 'flatten'",
+    ),
+    (
+        "layers.py", "program/commands/report.cpp", '#include "exact/orientation.h"',
+        "by its header alone",
+    ),
+    ("layers.py", "src/energy/density.h", '#include "energy/energy.h"', "a circle: src/energy/"),
+    (
+        "layers.py", "bindings/python/src/beltrami/_errors.py", "from . import _library",
+        "a circle: bindings/python",
+    ),
+    (
+        "layers.py", "bindings/rust/beltrami/src/error.rs", "use crate::mesh::Mesh;",
+        "a circle: bindings/rust",
+    ),
+    ("lengths.py", "src/base/types.h", "\n" * 600, "src/base/types.h: "),
+    ("lengths.py", "include/beltrami/beltrami.h", "\n" * 600, "include/beltrami/beltrami.h: "),
+    ("lengths.py", "bindings/python/src/beltrami/plot.py", "\n" * 600, "plot.py: "),
+    (
+        "lengths.py", "src/ring/ring_faces.cpp", f"void f() {{\n{LONG_BODY}}}",
+        "cpp:1: f has 71 lines",
+    ),
+    (
+        "lengths.py", "program/main.cpp", f"struct A {{\n A() : a{{1}} {{\n{LONG_BODY}}}}};",
+        "cpp:2: A has",
+    ),
+    (
+        "lengths.py", "src/energy/measure.cpp", f"int g(int a = f({{}})) {{\n{LONG_BODY}}}",
+        ": g has",
+    ),
 ]
 
 
-def run(root):
-    """Run the check on a tree."""
-    check = pathlib.Path(__file__).with_name("layers.py")
+def run(name, root):
+    """Run a check on a tree."""
+    check = pathlib.Path(__file__).with_name(name)
     return subprocess.run([sys.executable, "-B", check, root], capture_output=True, text=True)
 
 
@@ -35,17 +67,19 @@ def main():
         root = pathlib.Path(folder)
         for name in FOLDERS:
             shutil.copytree(source / name, root / name)
-        whole = run(root)
-        if whole.returncode != 0:
-            sys.exit(f"refused as it is:\n{whole.stdout}{whole.stderr}")
-        for name, line, expected in BREAKS:
+        for check in sorted({check for check, *_ in BREAKS}):
+            whole = run(check, root)
+            if whole.returncode != 0:
+                sys.exit(f"{check} refused it as it is:\n{whole.stdout}{whole.stderr}")
+        for check, name, lines, expected in BREAKS:
             file = root / name
             text = file.read_text()
-            file.write_text(f"{line}\n{text}")
-            result = run(root)
+            file.write_text(f"{lines}\n{text}")
+            result = run(check, root)
             file.write_text(text)
             if result.returncode != 1 or expected not in result.stdout:
-                sys.exit(f"'{line}' in {name} went unnoticed:\n{result.stdout}{result.stderr}")
+                said = f"{result.stdout}{result.stderr}"
+                sys.exit(f"'{lines.strip()}' in {name} went unnoticed:\n{said}")
             print(f"refused: {result.stdout.splitlines()[0]}")
 
 
