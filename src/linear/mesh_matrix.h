@@ -10,6 +10,14 @@
 
 namespace beltrami {
 
+/// A point of a surface or of the plane as the place of an unknown.
+template <class Point>
+Place place_of(const Point& point) {
+  Place place{};
+  for (int k = 0; k < point.size(); ++k) place[k] = static_cast<float>(point[k]);
+  return place;
+}
+
 /// A symmetric matrix of block_size x block_size blocks: one block row per free vertex, blocks
 /// where two free vertices share an edge. Only the lower triangle is stored.
 class MeshMatrix {
@@ -75,9 +83,7 @@ template <class Point>
 std::vector<Place> MeshMatrix::places(const std::vector<Point>& points) const {
   std::vector<Place> places(free_count_, Place{});
   for (std::size_t v = 0; v < row_.size(); ++v) {
-    if (row_[v] == kNone) continue;
-    for (int k = 0; k < points[v].size(); ++k)
-      places[row_[v]][k] = static_cast<float>(points[v][k]);
+    if (row_[v] != kNone) places[row_[v]] = place_of(points[v]);
   }
   return places;
 }

@@ -9,6 +9,7 @@
 
 #include "base/interrupt.h"
 #include "exact/certificate.h"
+#include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
@@ -18,8 +19,6 @@
 namespace beltrami {
 namespace {
 
-constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
-constexpr int kCirclePoints = 48;
 /// Bounds of the tangent of half an angle, and of a length in bounding boxes: what is folded to
 /// nothing still gets a positive weight that the solve can digest.
 constexpr double kLeastTangent = 1e-6, kGreatestTangent = 1e6;
@@ -66,19 +65,13 @@ Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   const bool simple = is_simple(mesh.boundary, uvs) && is_counter_clockwise(polygon);
   const std::vector<Vec2> inner = simple ? polygon : boundary_on_circle(mesh);
-  const RingTriangulation ring =
-      triangulate_ring(inner, circle_around(inner, kCircleFactor, kCirclePoints));
 
   Glued glued{mesh.faces, uvs, 0};
-  const auto circle = circle_around(has_extent(uvs) ? uvs : inner, kCircleFactor, kCirclePoints);
+  const auto circle = scaffold_circle(has_extent(uvs) ? uvs : inner);
   glued.places.insert(glued.places.end(), circle.begin(), circle.end());
-  glued.extent = (circle.front() - circle[kCirclePoints / 2]).norm();
-  const auto vertex = [&](Index i) {
-    return i < size_of(polygon) ? mesh.boundary[i] : size_of(uvs) + i - size_of(polygon);
-  };
-  for (const Triangle& t : ring.faces) {
-    glued.faces.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
-  }
+  glued.extent = (circle.front() - circle[circle.size() / 2]).norm();
+  glue_ring(triangulate_ring(inner, scaffold_circle(inner)).faces, mesh.boundary, size_of(uvs),
+            glued.faces);
   return glued;
 }
 
@@ -108,10 +101,7 @@ SparseMatrix symmetrised(const SparseMatrix& matrix) {
 std::vector<Place> places_of(const DiskMesh& mesh) {
   std::vector<Place> places;
   places.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) {
-    places.push_back(
-        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
-  }
+  for (const Vec3& p : mesh.positions) places.push_back(place_of(p));
   return places;
 }
 

@@ -28,8 +28,6 @@ constexpr int kReach = 2;  // of these to each side
 constexpr std::array<int, 4> kPatchRings = {1, 2, 4, 8};
 constexpr std::size_t kMostPatches = 2000;
 constexpr int kCrossingRounds = 4;
-constexpr double kCircleFactor = 1.5;  // radius over half the diagonal of the bounding box
-constexpr int kCirclePoints = 48;
 
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
@@ -158,19 +156,16 @@ class Rounding {
 std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   std::vector<Triangle> faces = mesh.faces;
+  std::size_t vertices = uvs.size();
   try {
-    const auto circle = circle_around(polygon, kCircleFactor, kCirclePoints);
-    for (Triangle t : triangulate_ring(polygon, circle).faces) {
-      for (Index& v : t) {
-        v = v < size_of(polygon) ? mesh.boundary[v] : size_of(uvs) + v - size_of(polygon);
-      }
-      faces.push_back(t);
-    }
+    const RingTriangulation ring = triangulate_ring(polygon, scaffold_circle(polygon));
+    glue_ring(ring.faces, mesh.boundary, size_of(uvs), faces);
+    vertices += ring.points.size() - polygon.size();
   } catch (const Error& error) {
     if (error.status() != BELTRAMI_E_INTERNAL) throw;
     return std::nullopt;
   }
-  return build_disk(std::vector<Vec3>(uvs.size() + kCirclePoints, Vec3::Zero()), std::move(faces));
+  return build_disk(std::vector<Vec3>(vertices, Vec3::Zero()), std::move(faces));
 }
 
 void sort_unique(std::vector<Index>& items) {
@@ -210,7 +205,7 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Nu
   const auto surrounded = surround(mesh, uvs);
   if (!surrounded) return;
   std::vector<Vec2> places = result.uvs;
-  for (const Vec2& w : circle_around(result.uvs, kCircleFactor, kCirclePoints)) {
+  for (const Vec2& w : scaffold_circle(result.uvs)) {
     places.push_back(numbers.nearest(w));
   }
   for (int round = 0; round < kCrossingRounds && !result.certificate.injective(); ++round) {

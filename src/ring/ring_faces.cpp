@@ -45,9 +45,23 @@ std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, i
   return circle;
 }
 
+std::vector<Vec2> scaffold_circle(const std::vector<Vec2>& inner) {
+  return circle_around(inner, kCircleFactor, kCirclePoints);
+}
+
+void glue_ring(const std::vector<Triangle>& ring, const std::vector<Index>& boundary,
+               Index first_outer, std::vector<Triangle>& faces) {
+  const Index inner = size_of(boundary);
+  faces.reserve(faces.size() + ring.size());
+  for (Triangle t : ring) {
+    for (Index& v : t) v = v < inner ? boundary[v] : first_outer + v - inner;
+    faces.push_back(t);
+  }
+}
+
 RingFaces ring_faces(const std::vector<Vec2>& polygon, double mesh_area) {
   RingFaces result;
-  result.circle = circle_around(polygon, kCircleFactor, kCirclePoints);
+  result.circle = scaffold_circle(polygon);
   const RingTriangulation ring = triangulate_ring(polygon, result.circle);
   double ring_area = 0;
   for (const Triangle& t : ring.faces) {

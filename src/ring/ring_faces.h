@@ -1,5 +1,5 @@
-// The scaffold as faces of an energy: the ring between a polygon and a circle, with rest shapes and
-// weights.
+// The scaffold around a mesh: the circle that it ends at, its faces among those of the mesh, and as
+// faces of an energy, with rest shapes and weights.
 #pragma once
 
 #include <vector>
@@ -22,6 +22,15 @@ struct RingFaces {
 /// box is too small and far from the origin for so many points around it. Precondition: `inner` is
 /// not empty. For the circle's polygon to contain `inner`, factor * cos(pi / count) > 1.
 std::vector<Vec2> circle_around(const std::vector<Vec2>& inner, double factor, int count);
+
+/// The circle at the outer end of every scaffold.
+std::vector<Vec2> scaffold_circle(const std::vector<Vec2>& inner);
+
+/// Appends the faces of a triangulated ring to those of the mesh whose boundary loop, numbered by
+/// `boundary`, is its inner polygon. The points of its outer polygon are numbered from
+/// `first_outer` on.
+void glue_ring(const std::vector<Triangle>& ring, const std::vector<Index>& boundary,
+               Index first_outer, std::vector<Triangle>& faces);
 
 /// Triangulates the ring between a simple counter-clockwise polygon and a circle around it. Joined
 /// to an energy that is infinite for flipped faces, it keeps the polygon from crossing itself

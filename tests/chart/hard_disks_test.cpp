@@ -167,7 +167,7 @@ TEST(HardDisks, EndWhereNoSystemIsDefinite) {
 TEST(HardDisks, HaveARingAroundABoundaryThatIsSmallAndFarAway) {
   const double ulp = 0x1p-52;
   const std::vector<Vec2> polygon = {{1, 1}, {1 + ulp, 1}, {1, 1 + ulp}};
-  EXPECT_EQ(triangulate_ring(polygon, circle_around(polygon, 1.5, 48)).faces.size(), 51u);
+  EXPECT_EQ(triangulate_ring(polygon, scaffold_circle(polygon)).faces.size(), 51u);
 }
 
 struct SharedDisk {

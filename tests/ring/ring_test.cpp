@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -478,6 +479,25 @@ TEST(CircleAround, is_centred_on_the_box) {
   ASSERT_EQ(circle.size(), 12u);
   for (const Vec2& p : circle) EXPECT_NEAR((p - Vec2(4, 5)).norm(), 10, 1e-12);
   EXPECT_NEAR(area(circle), 6 * 100 * std::sin(kPi / 6), 1e-9);
+}
+
+TEST(GlueRing, numbers_the_boundary_as_the_mesh_does_and_the_circle_from_where_it_is_told) {
+  // Vertices 3, 1, 4 of a mesh of six, whose circle is to start at 6.
+  const std::vector<Vec2> triangle = {{0, 0}, {1, 0}, {0, 1}};
+  const RingTriangulation ring = triangulate_ring(triangle, scaffold_circle(triangle));
+  std::vector<Triangle> faces = {{3, 1, 4}};
+  glue_ring(ring.faces, {3, 1, 4}, 6, faces);
+  ASSERT_EQ(faces.size(), 1 + ring.faces.size());
+  std::map<std::pair<Index, Index>, int> uses;  // of directed edges
+  for (const Triangle& t : faces) {
+    for (int k = 0; k < 3; ++k) ++uses[{t[k], t[next_corner(k)]}];
+  }
+  for (const auto& [edge, count] : uses) {
+    EXPECT_EQ(count, 1);
+    const bool on_circle = edge.first >= 6 && edge.second >= 6;
+    EXPECT_TRUE(on_circle || uses.contains({edge.second, edge.first}));
+  }
+  EXPECT_TRUE(uses.contains({1, 3}));  // the mesh's edge from 3 to 1 has a neighbour
 }
 
 }  // namespace

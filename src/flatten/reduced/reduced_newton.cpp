@@ -160,10 +160,10 @@ LooseFaces Descent::gather() const {
   }
   if (!scaffold_) return loose;
   const RingFaces ring = ring_faces(x_, 1.0);
+  std::vector<Index> boundary(metas_);
+  std::iota(boundary.begin(), boundary.end(), first_meta());
+  glue_ring(ring.faces, boundary, size_of(loose.points), loose.faces);
   loose.points.insert(loose.points.end(), ring.circle.begin(), ring.circle.end());
-  for (const Triangle& t : ring.faces) {
-    loose.faces.push_back({first_meta() + t[0], first_meta() + t[1], first_meta() + t[2]});
-  }
   loose.rest.insert(loose.rest.end(), ring.rest.begin(), ring.rest.end());
   loose.weights.insert(loose.weights.end(), ring.weights.begin(), ring.weights.end());
   return loose;
