@@ -69,19 +69,10 @@ class CholmodSolver final : public SpdSolver {
     return result;
   }
 
-  /// Whole solves in blocks of columns, gathered: the supernodal factor hides its columns.
+  /// The supernodal factor hides its columns.
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
                          int /*threads*/) const override {
-    constexpr Eigen::Index kBlock = 32;
-    DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
-    for (Eigen::Index first = 0; first < rhs.cols(); first += kBlock) {
-      const Eigen::Index count = std::min(kBlock, rhs.cols() - first);
-      const DenseMatrix block = solve(DenseMatrix(rhs.middleCols(first, count)));
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        result.row(static_cast<Eigen::Index>(i)).segment(first, count) = block.row(rows[i]);
-      }
-    }
-    return result;
+    return rows_of_whole_solves(*this, rhs, rows);
   }
 
  private:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -70,6 +71,21 @@ class SpdSolver {
   virtual DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
                                  int threads) const = 0;
 };
+
+/// What solve_rows gives, by whole solves for a few columns at a time.
+inline DenseMatrix rows_of_whole_solves(const SpdSolver& solver, const SparseMatrix& rhs,
+                                        const std::vector<int>& rows) {
+  constexpr Eigen::Index kBlock = 32;
+  DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
+  for (Eigen::Index first = 0; first < rhs.cols(); first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, rhs.cols() - first);
+    const DenseMatrix block = solver.solve(DenseMatrix(rhs.middleCols(first, count)));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      result.row(static_cast<Eigen::Index>(i)).segment(first, count) = block.row(rows[i]);
+    }
+  }
+  return result;
+}
 
 std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options = {});
 

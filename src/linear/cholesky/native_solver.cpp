@@ -109,20 +109,11 @@ class NativeSolver final : public SpdSolver {
 
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
                          int threads) const override {
-    DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
-    if (rows.empty() || rhs.cols() == 0) return result;
+    if (rows.empty() || rhs.cols() == 0) return DenseMatrix(rows.size(), rhs.cols());
     if (single_.empty() && scaling_.empty()) {
       return double_.solve_rows(symbolic_, rhs, rows, threads);
     }
-    constexpr Eigen::Index kBlock = 32;
-    for (Eigen::Index first = 0; first < rhs.cols(); first += kBlock) {
-      const Eigen::Index count = std::min(kBlock, rhs.cols() - first);
-      const DenseMatrix block = solve(DenseMatrix(rhs.middleCols(first, count)));
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        result.row(static_cast<Eigen::Index>(i)).segment(first, count) = block.row(rows[i]);
-      }
-    }
-    return result;
+    return rows_of_whole_solves(*this, rhs, rows);
   }
 
  private:

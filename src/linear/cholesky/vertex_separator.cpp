@@ -87,8 +87,13 @@ void VertexSeparator::apply_path() {
   }
 }
 
-/// What the sources reach in the residual graph: the cut is where "in" is reached and "out" is not.
-void VertexSeparator::reach_from_sources() {
+/// Marks what the sources reach in the residual graph; or, against the edges, what can still reach
+/// a sink.
+template <bool kFromSources>
+void VertexSeparator::flood() {
+  const auto near = [](int v) { return kFromSources ? in(v) : out(v); };
+  const auto far = [](int v) { return kFromSources ? out(v) : in(v); };
+  const std::vector<int>& flow = kFromSources ? previous_ : next_;
   reached_.assign(2 * static_cast<std::size_t>(count_), 0);
   queue_.clear();
   const auto visit = [&](int node) {
@@ -97,54 +102,35 @@ void VertexSeparator::reach_from_sources() {
     queue_.push_back(node);
   };
   for (int v = 0; v < count_; ++v) {
-    if ((terminal[v] & kSource) != 0) visit(in(v));
+    if ((terminal[v] & (kFromSources ? kSource : kSink)) != 0) visit(near(v));
   }
   while (!queue_.empty()) {
     const int node = queue_.back(), v = node / 2;
     queue_.pop_back();
-    if (node == in(v)) {
-      if (previous_[v] == kNone) {
-        visit(out(v));
-      } else if (previous_[v] >= 0) {
-        visit(out(previous_[v]));
+    if (node == near(v)) {
+      // Through v where it is free, or taking back its flow.
+      if (flow[v] == kNone) {
+        visit(far(v));
+      } else if (flow[v] >= 0) {
+        visit(far(flow[v]));
       }
     } else {
-      for (int e = start[v]; e < start[v + 1]; ++e) visit(in(neighbour[e]));
-      visit(in(v));
+      for (int e = start[v]; e < start[v + 1]; ++e) visit(near(neighbour[e]));
+      visit(near(v));
     }
   }
+}
+
+/// The cut is where "in" is reached and "out" is not.
+void VertexSeparator::reach_from_sources() {
+  flood<true>();
   for (int v = 0; v < count_; ++v) {
     side_[v] = reached_[out(v)] != 0 ? kSourceSide : reached_[in(v)] != 0 ? kSeparator : kSinkSide;
   }
 }
 
-/// The same from the sinks, against the edges: which nodes can still reach a sink.
 void VertexSeparator::reach_from_sinks() {
-  reached_.assign(2 * static_cast<std::size_t>(count_), 0);
-  queue_.clear();
-  const auto visit = [&](int node) {
-    if (reached_[node] != 0) return;
-    reached_[node] = 1;
-    queue_.push_back(node);
-  };
-  for (int v = 0; v < count_; ++v) {
-    if ((terminal[v] & kSink) != 0) visit(out(v));
-  }
-  while (!queue_.empty()) {
-    const int node = queue_.back(), v = node / 2;
-    queue_.pop_back();
-    if (node == out(v)) {
-      // Into out(v): through v where it is free, or taking back its flow onward.
-      if (previous_[v] == kNone) {
-        visit(in(v));
-      } else if (next_[v] >= 0) {
-        visit(in(next_[v]));
-      }
-    } else {
-      for (int e = start[v]; e < start[v + 1]; ++e) visit(out(neighbour[e]));
-      visit(out(v));
-    }
-  }
+  flood<false>();
   for (int v = 0; v < count_; ++v) {
     other_side_[v] = reached_[in(v)] != 0    ? kSinkSide
                      : reached_[out(v)] != 0 ? kSeparator

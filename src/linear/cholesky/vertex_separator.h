@@ -32,6 +32,8 @@ class VertexSeparator {
 
   bool augment(int source);
   void apply_path();
+  template <bool kFromSources>
+  void flood();
   void reach_from_sources();
   void reach_from_sinks();
 
