@@ -21,55 +21,43 @@ constexpr std::array<Names, 8> kNames = {{{"char", "int8"},
                                           {"float", "float32"},
                                           {"double", "float64"}}};
 
-template <class Number>
-double decode_as(const char* bytes) {
-  Number value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
-template <class Number>
-void append_as(double value, std::vector<char>& bytes) {
-  const auto number = static_cast<Number>(value);
-  std::array<char, sizeof number> raw;
-  std::memcpy(raw.data(), &number, sizeof number);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
-}
-
-template <class Integer>
-bool fits_integer(double value) {
-  // NaN fails too.
-  return value >= static_cast<double>(std::numeric_limits<Integer>::min()) &&
-         value <= static_cast<double>(std::numeric_limits<Integer>::max()) &&
-         value == std::floor(value);
+/// Calls body(number) with a number of the type: the one place that knows them all.
+template <class Body>
+auto with_number(Scalar type, const Body& body) {
+  switch (type) {
+    case Scalar::kI8:
+      return body(std::int8_t{});
+    case Scalar::kU8:
+      return body(std::uint8_t{});
+    case Scalar::kI16:
+      return body(std::int16_t{});
+    case Scalar::kU16:
+      return body(std::uint16_t{});
+    case Scalar::kI32:
+      return body(std::int32_t{});
+    case Scalar::kU32:
+      return body(std::uint32_t{});
+    case Scalar::kF32:
+      return body(float{});
+    default:
+      return body(double{});
+  }
 }
 
 bool fits(Scalar type, double value) {
-  switch (type) {
-    case Scalar::kI8:
-      return fits_integer<std::int8_t>(value);
-    case Scalar::kU8:
-      return fits_integer<std::uint8_t>(value);
-    case Scalar::kI16:
-      return fits_integer<std::int16_t>(value);
-    case Scalar::kU16:
-      return fits_integer<std::uint16_t>(value);
-    case Scalar::kI32:
-      return fits_integer<std::int32_t>(value);
-    case Scalar::kU32:
-      return fits_integer<std::uint32_t>(value);
-    case Scalar::kF32:
-      return !std::isfinite(value) || std::abs(value) <= std::numeric_limits<float>::max();
-    default:
-      return true;
-  }
+  return with_number(type, [&]<class Number>(Number) {
+    using Limits = std::numeric_limits<Number>;
+    const bool in_range = value >= static_cast<double>(Limits::lowest()) &&
+                          value <= static_cast<double>(Limits::max());  // NaN is not
+    return Limits::is_integer ? in_range && value == std::floor(value)
+                              : in_range || !std::isfinite(value);
+  });
 }
 
 }  // namespace
 
 std::size_t size_of(Scalar type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
+  return with_number(type, [](auto number) { return sizeof number; });
 }
 
 std::string_view name_of(Scalar type) {
@@ -84,24 +72,10 @@ std::optional<Scalar> scalar_named(std::string_view word) {
 }
 
 double decode(Scalar type, const char* bytes) {
-  switch (type) {
-    case Scalar::kI8:
-      return decode_as<std::int8_t>(bytes);
-    case Scalar::kU8:
-      return decode_as<std::uint8_t>(bytes);
-    case Scalar::kI16:
-      return decode_as<std::int16_t>(bytes);
-    case Scalar::kU16:
-      return decode_as<std::uint16_t>(bytes);
-    case Scalar::kI32:
-      return decode_as<std::int32_t>(bytes);
-    case Scalar::kU32:
-      return decode_as<std::uint32_t>(bytes);
-    case Scalar::kF32:
-      return decode_as<float>(bytes);
-    default:
-      return decode_as<double>(bytes);
-  }
+  return with_number(type, [&](auto number) {
+    std::memcpy(&number, bytes, sizeof number);
+    return static_cast<double>(number);
+  });
 }
 
 void Column::append(double value) {
@@ -110,24 +84,12 @@ void Column::append(double value) {
 }
 
 void Column::store(double value) {
-  switch (type_) {
-    case Scalar::kI8:
-      return append_as<std::int8_t>(value, bytes_);
-    case Scalar::kU8:
-      return append_as<std::uint8_t>(value, bytes_);
-    case Scalar::kI16:
-      return append_as<std::int16_t>(value, bytes_);
-    case Scalar::kU16:
-      return append_as<std::uint16_t>(value, bytes_);
-    case Scalar::kI32:
-      return append_as<std::int32_t>(value, bytes_);
-    case Scalar::kU32:
-      return append_as<std::uint32_t>(value, bytes_);
-    case Scalar::kF32:
-      return append_as<float>(value, bytes_);
-    default:
-      return append_as<double>(value, bytes_);
-  }
+  with_number(type_, [&]<class Number>(Number) {
+    const auto number = static_cast<Number>(value);
+    std::array<char, sizeof number> raw;
+    std::memcpy(raw.data(), &number, sizeof number);
+    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+  });
 }
 
 void Column::make_double() {
