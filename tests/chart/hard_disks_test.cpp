@@ -1,7 +1,6 @@
 // Disks at the ends of what floating point can hold: what is accepted is what is delivered.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,6 +16,7 @@
 #include "ring/triangulate_ring.h"
 #include "support/disks.h"
 #include "support/hard_disks.h"
+#include "support/run.h"
 #include "support/shared_data.h"
 
 namespace beltrami {
@@ -26,10 +26,8 @@ using meshes::TriangleList;
 
 /// Runs, and judges the delivered numbers once more.
 Flattening run(TriangleList mesh, const Options& options) {
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
+  Flattening result = disks::run(mesh, options);
   const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  Flattening result = flatten(disk, frame, options, {}, cancelled);
   const auto& faces = result.faces.empty() ? disk.faces : result.faces;
   const Certificate again = certify(faces, disk.boundary, result.uvs, 1);
   EXPECT_EQ(again.injective(), result.certificate.injective());

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -12,18 +11,13 @@
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/polls.h"
+#include "support/run.h"
 
 namespace beltrami {
 namespace {
 
+using disks::run;
 using meshes::TriangleList;
-
-Flattening run(TriangleList mesh, const Options& options) {
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
-  const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  return flatten(disk, frame, options, {}, cancelled);
-}
 
 Options coarse_to_fine(std::int32_t how, Energy energy = Energy::kSymmetricDirichlet) {
   Options options;

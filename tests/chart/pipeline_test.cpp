@@ -23,20 +23,15 @@
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/run.h"
 #include "support/shared_data.h"
 
 namespace beltrami {
 namespace {
 
 using disks::Random;
+using disks::run;
 using meshes::TriangleList;
-
-Flattening run(TriangleList mesh, const Options& options = {}, const Progress& progress = {}) {
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
-  const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  return flatten(disk, frame, options, progress, cancelled);
-}
 
 Options method(std::int32_t which) {
   Options options;

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,19 +16,14 @@
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
+#include "support/run.h"
 #include "support/shared_data.h"
 
 namespace beltrami {
 namespace {
 
+using disks::run;
 using meshes::TriangleList;
-
-Flattening run(TriangleList mesh, const Options& options = {}) {
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
-  const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  return flatten(disk, frame, options, {}, cancelled);
-}
 
 Options local() {
   Options options;

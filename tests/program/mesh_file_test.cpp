@@ -5,10 +5,10 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 
+#include "binary.h"
 #include "process/failure.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -201,16 +201,6 @@ TEST(ReadPly, PassesOverWhatItDoesNotNeed) {
   EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.uvs, (Numbers{0.5, 0.25, 1, 0, 0, 1}));
   EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2}));
-}
-
-template <class Number>
-std::string bytes_of(Number value, bool big) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  if (big == (std::endian::native == std::endian::little)) {
-    bytes.assign(bytes.rbegin(), bytes.rend());
-  }
-  return bytes;
 }
 
 std::string binary_ply(bool big, int third = 2) {

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <random>
 
+#include "binary.h"
 #include "files/surface.h"
 #include "process/failure.h"
 #include "tiny_meshes.h"
@@ -20,16 +19,6 @@ struct Seed {
   Reader reader;
   std::string text;
 };
-
-template <class Number>
-std::string bytes_of(Number value, bool big) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  if (big == (std::endian::native == std::endian::little)) {
-    bytes.assign(bytes.rbegin(), bytes.rend());
-  }
-  return bytes;
-}
 
 std::string binary_ply(bool big) {
   std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
