@@ -25,10 +25,6 @@ void set(Options& options, double value) {
   options.*Member = static_cast<Value>(value);
 }
 
-// The value of a choice is the place of its name: the library's enums count as the public ones do.
-static_assert(static_cast<int>(Energy::kSymmetricDirichlet) == BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET);
-static_assert(static_cast<int>(Energy::kSymmetricArap) == BELTRAMI_ENERGY_SYMMETRIC_ARAP);
-
 const OptionEntry kOptions[] = {
     {
         .key = BELTRAMI_OPTION_METHOD,
@@ -163,8 +159,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_TIME_LIMIT,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "time-limit",
-        .summary = "Seconds since the start of the run after which the refinement stops with what "
-                   "it has; 0 sets no limit.",
+        .summary =
+            "Seconds since the start of the run after which iterations stop with the best map "
+            "so far; 0 sets no limit.",
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::time_limit>,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/portable_math.h"
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/polls.h"
@@ -19,16 +19,16 @@ namespace {
 using disks::run;
 using meshes::TriangleList;
 
-Options coarse_to_fine(std::int32_t how, Energy energy = Energy::kSymmetricDirichlet) {
-  Options options;
+ChartOptions coarse_to_fine(Flatten how, Energy energy = Energy::kSymmetricDirichlet) {
+  ChartOptions options;
   options.coarse_faces = 300;
   options.flatten = how;
   options.energy = energy;
   return options;
 }
 
-Options method(std::int32_t which, Energy energy = Energy::kSymmetricDirichlet) {
-  Options options;
+ChartOptions method(Method which, Energy energy = Energy::kSymmetricDirichlet) {
+  ChartOptions options;
   options.coarse_faces = 300;
   options.method = which;
   options.energy = energy;
@@ -55,25 +55,24 @@ std::vector<NamedMesh> models() {
 TEST(Modes, KeepTheirPromises) {
   for (const auto& [name, mesh] : models()) {
     for (const Energy energy : {Energy::kSymmetricDirichlet, Energy::kSymmetricArap}) {
-      for (const std::int32_t how :
-           {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET, BELTRAMI_FLATTEN_GIF}) {
+      for (const Flatten how : {Flatten::kMetric, Flatten::kDirichlet, Flatten::kGif}) {
         const Flattening result = run(mesh, coarse_to_fine(how, energy));
-        EXPECT_TRUE(result.certificate.injective()) << name << ", flatten " << how;
+        EXPECT_TRUE(result.certificate.injective())
+            << name << ", flatten " << static_cast<int>(how);
       }
-      EXPECT_EQ(flips(run(mesh, coarse_to_fine(BELTRAMI_FLATTEN_FLIM, energy))), 0) << name;
+      EXPECT_EQ(flips(run(mesh, coarse_to_fine(Flatten::kFlim, energy))), 0) << name;
     }
-    EXPECT_TRUE(run(mesh, method(BELTRAMI_METHOD_GIF)).certificate.injective()) << name;
+    EXPECT_TRUE(run(mesh, method(Method::kGif)).certificate.injective()) << name;
   }
 }
 
 TEST(Modes, ThatPromiseNothingReportTheirFlips) {
   for (const auto& [name, mesh] : models()) {
-    for (const Options& options :
-         {coarse_to_fine(BELTRAMI_FLATTEN_BFF), method(BELTRAMI_METHOD_BFF),
-          method(BELTRAMI_METHOD_UV_PROLONGATION)}) {
+    for (const ChartOptions& options :
+         {coarse_to_fine(Flatten::kBff), method(Method::kBff), method(Method::kUvProlongation)}) {
       const Flattening result = run(mesh, options);
-      EXPECT_EQ(result.flips_before_repair, flips(result)) << name;
-      EXPECT_EQ(result.status == BELTRAMI_OK, result.certificate.injective()) << name;
+      EXPECT_EQ(result.statistics.flips_before_repair, flips(result)) << name;
+      EXPECT_EQ(result.status == Outcome::kOk, result.certificate.injective()) << name;
       for (const Vec2& w : result.uvs) ASSERT_TRUE(w.allFinite()) << name;
     }
   }
@@ -83,19 +82,19 @@ TEST(Modes, UvProlongationFlipsWhereThePipelineDoesNot) {
   const TriangleList mesh = meshes::height_field(50, 50, [](double x, double y) {
     return 0.3 * portable::sin(25 * x) * portable::sin(25 * y);
   });
-  EXPECT_GT(flips(run(mesh, method(BELTRAMI_METHOD_UV_PROLONGATION))), 0);
-  EXPECT_TRUE(run(mesh, coarse_to_fine(BELTRAMI_FLATTEN_METRIC)).certificate.injective());
+  EXPECT_GT(flips(run(mesh, method(Method::kUvProlongation))), 0);
+  EXPECT_TRUE(run(mesh, coarse_to_fine(Flatten::kMetric)).certificate.injective());
 }
 
 TEST(Modes, LocalInjectivityLetsARampCoverItself) {
   const TriangleList mesh = disks::ramp(80, 8);
-  Options options = coarse_to_fine(BELTRAMI_FLATTEN_METRIC);
+  ChartOptions options = coarse_to_fine(Flatten::kMetric);
   const Flattening global = run(mesh, options);
-  options.injectivity = BELTRAMI_INJECTIVITY_LOCAL;
+  options.injectivity = Injectivity::kLocal;
   const Flattening local = run(mesh, options);
   EXPECT_EQ(flips(local), 0);
   EXPECT_GT(local.certificate.crossings.count, 0);
-  EXPECT_EQ(local.status, BELTRAMI_NOT_INJECTIVE);
+  EXPECT_EQ(local.status, Outcome::kNotInjective);
   EXPECT_TRUE(global.certificate.injective());
   EXPECT_LT(local.distortion.symmetric_dirichlet, global.distortion.symmetric_dirichlet);
 }
@@ -103,26 +102,26 @@ TEST(Modes, LocalInjectivityLetsARampCoverItself) {
 TEST(Modes, ComeCloseToTheMinimumOfTheirEnergy) {
   for (const auto& [name, mesh] : models()) {
     if (name == "ramp") continue;  // the reference covers itself
-    const auto dirichlet = [&](const Options& options) {
+    const auto dirichlet = [&](const ChartOptions& options) {
       return run(mesh, options).distortion.symmetric_dirichlet;
     };
-    const double minimum = dirichlet(method(BELTRAMI_METHOD_CM));
-    EXPECT_LE(dirichlet(coarse_to_fine(BELTRAMI_FLATTEN_METRIC)), 1.005 * minimum) << name;
-    EXPECT_LE(dirichlet(coarse_to_fine(BELTRAMI_FLATTEN_GIF)), 1.1 * minimum) << name;
-    const auto arap = [&](const Options& options) {
+    const double minimum = dirichlet(method(Method::kCm));
+    EXPECT_LE(dirichlet(coarse_to_fine(Flatten::kMetric)), 1.005 * minimum) << name;
+    EXPECT_LE(dirichlet(coarse_to_fine(Flatten::kGif)), 1.1 * minimum) << name;
+    const auto arap = [&](const ChartOptions& options) {
       return run(mesh, options).distortion.symmetric_arap;
     };
-    EXPECT_LE(arap(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, Energy::kSymmetricArap)),
-              1.02 * arap(method(BELTRAMI_METHOD_CM, Energy::kSymmetricArap)) + 1e-4)
+    EXPECT_LE(arap(coarse_to_fine(Flatten::kMetric, Energy::kSymmetricArap)),
+              1.02 * arap(method(Method::kCm, Energy::kSymmetricArap)) + 1e-4)
         << name;
   }
 }
 
 TEST(Refine, ReachesTheMinimumAndNeverRisesAboveItsStart) {
   const TriangleList mesh = meshes::cap(24, 60, 2.6);
-  const double minimum = run(mesh, method(BELTRAMI_METHOD_CM)).distortion.symmetric_dirichlet;
-  for (const std::int32_t how : {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET}) {
-    Options options = coarse_to_fine(how);
+  const double minimum = run(mesh, method(Method::kCm)).distortion.symmetric_dirichlet;
+  for (const Flatten how : {Flatten::kMetric, Flatten::kDirichlet}) {
+    ChartOptions options = coarse_to_fine(how);
     const double start = run(mesh, options).distortion.symmetric_dirichlet;
     options.refine = true;
     const Flattening refined = run(mesh, options);
@@ -132,48 +131,75 @@ TEST(Refine, ReachesTheMinimumAndNeverRisesAboveItsStart) {
   }
 }
 
-TEST(Refine, KeepsToItsLimitsAndReturnsTheBestMapSoFar) {
+TEST(Refine, KeepsToItsIterationsAndReturnsTheBestMapSoFar) {
   const TriangleList mesh = meshes::cap(24, 60, 2.6);
-  Options options = coarse_to_fine(BELTRAMI_FLATTEN_DIRICHLET);
+  ChartOptions options = coarse_to_fine(Flatten::kDirichlet);
   const double start = run(mesh, options).distortion.symmetric_dirichlet;
   options.refine = true;
   options.refine_iterations = 1;
   const Flattening once = run(mesh, options);
-  EXPECT_EQ(once.status, BELTRAMI_OK);
-  const auto stage = std::find_if(once.stages.begin(), once.stages.end(),
+  EXPECT_EQ(once.status, Outcome::kOk);
+  const auto stage = std::find_if(once.statistics.stages.begin(), once.statistics.stages.end(),
                                   [](const auto& s) { return std::string(s.name) == "refine"; });
-  ASSERT_NE(stage, once.stages.end());
+  ASSERT_NE(stage, once.statistics.stages.end());
   EXPECT_EQ(stage->iterations, 1);
   EXPECT_LT(once.distortion.symmetric_dirichlet, start);
-
-  options.refine_iterations = 0;
-  options.time_limit = 1e-9;
-  const Flattening none = run(mesh, options);
-  EXPECT_EQ(none.status, BELTRAMI_OK);
-  EXPECT_TRUE(none.certificate.injective());
-  EXPECT_EQ(none.distortion.symmetric_dirichlet, start);
 }
 
-// ---- Cancelling -----------------------------------------------------------------------------
+// ---- Time and cancelling
+// -----------------------------------------------------------------------------
 
-std::vector<Options> all_modes() {
-  std::vector<Options> modes;
-  for (const std::int32_t how :
-       {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET, BELTRAMI_FLATTEN_GIF,
-        BELTRAMI_FLATTEN_FLIM, BELTRAMI_FLATTEN_BFF}) {
+std::vector<ChartOptions> all_modes() {
+  std::vector<ChartOptions> modes;
+  for (const Flatten how :
+       {Flatten::kMetric, Flatten::kDirichlet, Flatten::kGif, Flatten::kFlim, Flatten::kBff}) {
     modes.push_back(coarse_to_fine(how));
   }
-  for (const std::int32_t which : {BELTRAMI_METHOD_CM, BELTRAMI_METHOD_TUTTE, BELTRAMI_METHOD_GIF,
-                                   BELTRAMI_METHOD_BFF, BELTRAMI_METHOD_UV_PROLONGATION}) {
+  for (const Method which :
+       {Method::kCm, Method::kTutte, Method::kGif, Method::kBff, Method::kUvProlongation}) {
     modes.push_back(method(which));
   }
-  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC, Energy::kSymmetricArap));
-  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));
+  modes.push_back(coarse_to_fine(Flatten::kMetric, Energy::kSymmetricArap));
+  modes.push_back(coarse_to_fine(Flatten::kMetric));
   modes.back().delaunay = true;
-  modes.push_back(coarse_to_fine(BELTRAMI_FLATTEN_METRIC));
+  modes.push_back(coarse_to_fine(Flatten::kMetric));
   modes.back().refine = modes.back().float32 = true;
-  for (Options& options : modes) options.coarse_faces = 100;
+  for (ChartOptions& options : modes) options.coarse_faces = 100;
   return modes;
+}
+
+/// Whether the map is injective whatever the mesh.
+bool is_injective(const ChartOptions& options) {
+  return promises(options) || options.method == Method::kCm || options.method == Method::kTutte ||
+         options.method == Method::kGif;
+}
+
+TEST(Modes, EndWithAnInjectiveMapWhenTheTimeIsUp) {
+  const TriangleList mesh = meshes::cap(16, 40, 2.6);
+  for (const ChartOptions& options : all_modes()) {
+    const std::string where = "method " + std::to_string(static_cast<int>(options.method)) +
+                              ", flatten " + std::to_string(static_cast<int>(options.flatten));
+    const Flattening result = run(mesh, options, Work({.seconds = 1e-9}, {}));
+    EXPECT_TRUE(result.certificate.injective() || !is_injective(options)) << where;
+    const bool iterates = options.method == Method::kCm || promises(options);
+    EXPECT_TRUE(result.status == Outcome::kNotConverged || !iterates) << where;
+    for (const StageStatistics& stage : result.statistics.stages) {
+      const std::string name = stage.name;
+      const bool newton = name == "coarse" || name == "cm" || name == "refine";
+      EXPECT_TRUE(stage.iterations == 0 || !newton) << where << ", " << name;
+      EXPECT_TRUE(stage.iterations <= 1 || name != "polish") << where;
+    }
+  }
+}
+
+TEST(Modes, TakeAllTheirStepsWithinALimitThatIsFarAway) {
+  const TriangleList mesh = meshes::bumps(14, 14);
+  for (const ChartOptions& options : all_modes()) {
+    const Flattening free = run(mesh, options),
+                     limited = run(mesh, options, Work({.seconds = 1e9}, {}));
+    EXPECT_EQ(free.uvs, limited.uvs);
+    EXPECT_EQ(free.status, limited.status);
+  }
 }
 
 /// Where cancels are tried: at each of the first polls, then at some of each stretch, to the last.
@@ -187,10 +213,10 @@ std::vector<std::int64_t> moments(std::int64_t polls) {
 TEST(Modes, AreCancelledAtAnyPollAndNeverEndInAnotherWay) {
   // The ramp needs a repair, a scaffold and restarts in some modes.
   for (const TriangleList& mesh : {meshes::bumps(14, 14), disks::ramp(24, 4)}) {
-    for (const Options& options : all_modes()) {
-      const std::string where = "method " + std::to_string(options.method) + ", flatten " +
-                                std::to_string(options.flatten) + ", " +
-                                std::to_string(mesh.faces.size()) + " faces";
+    for (const ChartOptions& options : all_modes()) {
+      const std::string where = "method " + std::to_string(static_cast<int>(options.method)) +
+                                ", flatten " + std::to_string(static_cast<int>(options.flatten)) +
+                                ", " + std::to_string(mesh.faces.size()) + " faces";
       const std::int64_t polls = count_polls([&] { run(mesh, options); });
       for (const std::int64_t k : moments(polls)) {
         EXPECT_THROW(count_polls([&] { run(mesh, options); }, k), Cancelled)

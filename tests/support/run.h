@@ -1,21 +1,21 @@
 // A whole run on a mesh of a test.
 #pragma once
 
-#include <atomic>
 #include <utility>
 
-#include "chart/pipeline.h"
+#include "base/work.h"
+#include "chart/flattening.h"
+#include "chart/options.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 
 namespace beltrami::disks {
 
 /// The map of a disk, as it is delivered.
-inline Flattening run(meshes::TriangleList mesh, const Options& options = {},
-                      const Progress& progress = {}) {
+inline Flattening run(meshes::TriangleList mesh, const ChartOptions& options = {},
+                      const Work& work = Work()) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
-  const std::atomic<bool> cancelled{false};
-  return flatten(disk(std::move(mesh)), frame, options, progress, cancelled);
+  return flatten(disk(std::move(mesh)), frame, options, work);
 }
 
 }  // namespace beltrami::disks
