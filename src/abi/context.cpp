@@ -7,8 +7,12 @@
 
 #include "abi/buffers.h"
 #include "base/error.h"
+#include "base/floating_point.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "base/work.h"
 #include "chart/memory_estimate.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
 static_assert(std::atomic<bool>::is_always_lock_free,

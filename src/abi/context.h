@@ -8,7 +8,9 @@
 
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
+#include "base/types.h"
 #include "chart/pipeline.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

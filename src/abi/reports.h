@@ -5,9 +5,10 @@
 
 #include <vector>
 
-#include "base/error.h"
+#include "base/types.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 
 namespace beltrami {
 

@@ -3,8 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "chart/pipeline.h"
 #include "chart/run.h"
 #include "energy/measure.h"
+#include "exact/certificate.h"
+#include "repair/rounding.h"
 
 namespace beltrami {
 namespace {

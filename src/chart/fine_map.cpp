@@ -5,22 +5,34 @@
 #include <numeric>
 #include <utility>
 
+#include "base/checkpoint.h"
+#include "base/types.h"
 #include "chart/anchors.h"
 #include "chart/memory_estimate.h"
+#include "chart/pipeline.h"
 #include "chart/run.h"
 #include "descend/contact.h"
 #include "descend/grid_drawing.h"
+#include "descend/newton.h"
 #include "descend/polish.h"
 #include "descend/tutte.h"
+#include "energy/energy.h"
+#include "exact/certificate.h"
 #include "flatten/boundary_first.h"
 #include "flatten/dirichlet.h"
 #include "flatten/intrinsic_delaunay.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/reduced/reduced.h"
 #include "flatten/uv_prolongation.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+#include "prolong/prolongation.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

@@ -13,12 +13,15 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "chart/run.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/reduced/meta_vertices.h"
 #include "flatten/reduced/reduced.h"
 #include "linear/cholesky/native_solver.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "chart/pipeline.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 
+#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/resources.h"
 #include "chart/anchors.h"
 #include "chart/memory_estimate.h"
 #include "chart/run.h"
@@ -17,11 +19,18 @@
 #include "descend/grid_drawing.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
+#include "energy/energy.h"
+#include "exact/crossings.h"
 #include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
+#include "mesh/rest_shape.h"
+#include "prolong/prolongation.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

@@ -11,9 +11,12 @@
 
 #include "base/checkpoint.h"
 #include "base/resources.h"
+#include "base/types.h"
+#include "base/work.h"
 #include "chart/pipeline.h"
 #include "descend/contact.h"
 #include "descend/newton.h"
+#include "exact/certificate.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "mesh/disk_mesh.h"

@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "exact/edge_tree.h"
+#include "exact/polygon.h"
 #include "exact/sweep.h"
 
 namespace beltrami {

@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "exact/crossings.h"
+#include "exact/orientation.h"
 #include "mesh/boundary.h"
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"

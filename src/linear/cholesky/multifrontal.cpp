@@ -8,6 +8,7 @@
 #include "base/bucket_sort.h"
 #include "base/parallel.h"
 #include "linear/cholesky/front.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {

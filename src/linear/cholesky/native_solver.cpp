@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "linear/cholesky/front.h"
 #include "linear/cholesky/multifrontal.h"
 #include "linear/cholesky/ordering.h"
 #include "linear/cholesky/symbolic.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "linear/cholesky/ordering.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 
