@@ -3,6 +3,8 @@
 #include <cstddef>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -4,6 +4,8 @@
 #include <set>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 extern "C" int beltrami_c_client_works(void);
 

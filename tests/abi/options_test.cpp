@@ -4,6 +4,7 @@
 #include <set>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

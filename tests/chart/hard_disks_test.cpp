@@ -9,10 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
 #include "chart/pipeline.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"
 #include "support/disks.h"

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "chart/pipeline.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/polls.h"
 
 namespace beltrami {

@@ -23,6 +23,7 @@
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/shared_data.h"
 
 namespace beltrami {

@@ -9,6 +9,7 @@
 #include "linear/cholesky/ordering.h"
 #include "linear/cholesky/symbolic.h"
 #include "linear/cholesky/vertex_separator.h"
+#include "linear/spd_solver.h"
 #include "support/disks.h"
 
 namespace beltrami {

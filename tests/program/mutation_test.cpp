@@ -6,6 +6,8 @@
 #include <cstring>
 #include <random>
 
+#include "files/column.h"
+#include "files/mesh_file.h"
 #include "files/surface.h"
 #include "process/failure.h"
 #include "tiny_meshes.h"

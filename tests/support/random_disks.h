@@ -8,8 +8,11 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "chart/pipeline.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami::disks {
 
