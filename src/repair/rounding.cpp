@@ -231,7 +231,7 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Nu
 
 template <class Real>
 double nearest_of(double x) {
-  constexpr double greatest = std::numeric_limits<Real>::max();
+  const double greatest = std::numeric_limits<Real>::max();
   return static_cast<double>(static_cast<Real>(std::clamp(x, -greatest, greatest)));
 }
 
