@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "files/mesh_file.h"
 #include "files/triangulate.h"
 
 namespace beltrami::benchmarks {

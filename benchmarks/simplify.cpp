@@ -12,9 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
 #include "refine.h"
 #include "simplify/back_ends.h"
+#include "simplify/simplify.h"
 #include "yardstick.h"
 
 namespace beltrami::benchmarks {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "linear/cholesky/native_solver.h"
+#include "linear/spd_solver.h"
 #include "refine.h"
 #include "yardstick.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/types.h"
 #include "linear/mesh_matrix.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"

@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "process/descriptor.h"
+#include "process/failure.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {

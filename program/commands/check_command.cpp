@@ -5,9 +5,13 @@
 
 #include "commands/command.h"
 #include "commands/progress_bar.h"
+#include "commands/report.h"
 #include "files/atomic_file.h"
+#include "files/mesh_file.h"
+#include "files/surface.h"
 #include "files/vector3.h"
 #include "picture/picture.h"
+#include "process/failure.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {

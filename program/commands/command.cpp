@@ -7,13 +7,15 @@
 #include <new>
 
 #include "files/atomic_file.h"
+#include "files/mesh_file.h"
 #include "process/descriptor.h"
+#include "process/failure.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
 
-const auto program_start = std::chrono::steady_clock::now();
+const auto kProgramStart = std::chrono::steady_clock::now();
 
 /// Never throws: the line on stderr is taken by the first failure, which is the one to mend first.
 template <class MakeFailure>
@@ -33,7 +35,7 @@ void report_failure(Report& report, const std::string& path, MakeFailure&& failu
 }  // namespace
 
 double seconds_so_far() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - kProgramStart).count();
 }
 
 beltrami_mesh view_of(const TriangleView& triangles) {

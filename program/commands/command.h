@@ -9,6 +9,7 @@
 
 #include "commands/options.h"
 #include "commands/report.h"
+#include "files/mesh_file.h"
 #include "files/surface.h"
 
 namespace beltrami::cli {

@@ -3,9 +3,14 @@
 #include <optional>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "commands/progress_bar.h"
+#include "commands/report.h"
 #include "files/atomic_file.h"
+#include "files/mesh_file.h"
+#include "files/surface.h"
 #include "picture/picture.h"
+#include "process/failure.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {

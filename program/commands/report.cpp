@@ -10,6 +10,8 @@
 #include <sys/resource.h>
 #endif
 
+#include "files/mesh_file.h"
+
 namespace beltrami::cli {
 namespace {
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "files/mesh_file.h"
 #include "files/surface.h"
 #include "process/failure.h"
 

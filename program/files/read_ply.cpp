@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "files/column.h"
 #include "files/mesh_file.h"
 #include "files/ply_header.h"
 #include "files/text_cursor.h"

@@ -3,6 +3,7 @@
 // binary facets are kept; normals of facets are not, being those of their corners.
 #include <bit>
 
+#include "files/column.h"
 #include "files/mesh_file.h"
 #include "files/point_numbers.h"
 #include "files/text_cursor.h"

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "files/point_numbers.h"
+#include "files/polygons.h"
 #include "files/triangulate.h"
 
 namespace beltrami::cli {

@@ -8,6 +8,7 @@
 #include <queue>
 #include <span>
 
+#include "files/polygons.h"
 #include "files/vector3.h"
 #include "process/failure.h"
 #include "process/interrupt.h"

@@ -1,5 +1,7 @@
 #include "files/write_mesh.h"
 
+#include "files/polygons.h"
+
 namespace beltrami::cli {
 
 void write_mesh(const MeshFile& mesh, const std::string& path, const Sink& sink) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "files/write_mesh.h"
+#include "files/column.h"
+#include "files/mesh_file.h"
+#include "files/writer.h"
 
 namespace beltrami::cli {
 namespace {

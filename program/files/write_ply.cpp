@@ -6,7 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "files/write_mesh.h"
+#include "files/column.h"
+#include "files/mesh_file.h"
+#include "files/polygons.h"
+#include "files/writer.h"
 
 namespace beltrami::cli {
 namespace {

@@ -8,9 +8,15 @@
 #include "abi/buffers.h"
 #include "abi/context.h"
 #include "abi/failure.h"
+#include "abi/input_mesh.h"
 #include "abi/option_table.h"
 #include "abi/reports.h"
 #include "abi/status.h"
+#include "base/error.h"
+#include "base/types.h"
+#include "chart/pipeline.h"
+#include "energy/measure.h"
+#include "exact/certificate.h"
 #include "linear/spd_solver.h"
 #include "ring/triangulate_ring.h"
 #include "simplify/simplify.h"
@@ -112,7 +118,7 @@ beltrami_certificate describe(const LoadedMesh& mesh, const Certificate& certifi
 void write_uvs(const LoadedMesh& mesh, const std::vector<Vec2>& uvs, Writer& writer) {
   const std::vector<Index>& original = mesh.input.original;
   if (original.size() < mesh.vertex_count) {
-    constexpr double origin[2] = {0, 0};
+    const double origin[2] = {0, 0};
     for (std::size_t i = 0; i < mesh.vertex_count; ++i) writer.write(i, origin);
   }
   for (std::size_t i = 0; i < original.size(); ++i) {

@@ -201,7 +201,7 @@ void Writer::write(std::size_t index, const double* components) {
   unsigned char* item = out_ + index * stride_;
   for (int k = 0; k < components_; ++k) {
     if (single_) {
-      constexpr double greatest = std::numeric_limits<float>::max();
+      const double greatest = std::numeric_limits<float>::max();
       const auto value = static_cast<float>(std::clamp(components[k], -greatest, greatest));
       std::memcpy(item, &value, sizeof value);
       item += sizeof value;

@@ -6,8 +6,11 @@
 #include "abi/input_mesh.h"
 #include "abi/reports.h"
 #include "base/interrupt.h"
+#include "base/types.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

@@ -5,6 +5,7 @@
 #include "abi/buffers.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "mesh/locality.h"
 
 namespace beltrami {

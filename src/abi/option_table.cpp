@@ -1,5 +1,7 @@
 #include "abi/option_table.h"
 
+#include <beltrami/beltrami.h>
+
 #include <charconv>
 #include <string>
 

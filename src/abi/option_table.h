@@ -1,8 +1,6 @@
 // The one table of options: the program's flags, Python's keywords and host panels come from it.
 #pragma once
 
-#include <beltrami/beltrami.h>
-
 #include <cstdint>
 #include <span>
 

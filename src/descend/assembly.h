@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/types.h"
 #include "energy/density.h"
 #include "linear/mesh_matrix.h"
+#include "mesh/face_chunks.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {

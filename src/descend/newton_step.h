@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/types.h"
 #include "descend/assembly.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
-#include "energy/energy.h"
+#include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 

@@ -10,7 +10,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "descend/line_search.h"
-#include "descend/newton_step.h"
+#include "energy/density.h"
 #include "mesh/vertex_sums.h"
 
 namespace beltrami {

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "descend/assembly.h"
+#include "energy/density.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"

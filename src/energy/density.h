@@ -12,8 +12,6 @@
 //   best_scale(moments)      the global scale at which its sum over a map is least
 #pragma once
 
-#include "mesh/rest_shape.h"
-
 namespace beltrami {
 
 /// Value, derivatives and a positive semi-definite model of the Hessian of an energy density in the

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "energy/density.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 

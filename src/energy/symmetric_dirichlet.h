@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "energy/density.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 

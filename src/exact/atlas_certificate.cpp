@@ -5,6 +5,8 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "exact/covering.h"
+#include "exact/orientation.h"
+#include "exact/uv_boundary.h"
 
 namespace beltrami {
 namespace {

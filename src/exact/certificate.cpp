@@ -2,6 +2,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "exact/orientation.h"
 
 namespace beltrami {
 namespace {

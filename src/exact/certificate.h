@@ -10,7 +10,6 @@
 
 #include "base/types.h"
 #include "exact/crossings.h"
-#include "exact/orientation.h"
 
 namespace beltrami {
 

@@ -1,6 +1,8 @@
 // Whether triangles cover the plane once at most, by a sweep over their boundary alone.
 #pragma once
 
+#include "base/types.h"
+#include "base/work.h"
 #include "exact/uv_boundary.h"
 
 namespace beltrami {

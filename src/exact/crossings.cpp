@@ -4,7 +4,9 @@
 #include <functional>
 
 #include "base/interrupt.h"
+#include "exact/box_tree.h"
 #include "exact/edge_tree.h"
+#include "exact/polygon.h"
 #include "exact/sweep.h"
 
 namespace beltrami {

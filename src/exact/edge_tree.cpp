@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "base/types.h"
+
 namespace beltrami {
 namespace {
 

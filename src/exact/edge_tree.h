@@ -1,6 +1,7 @@
 // A binary tree of bounding boxes over the consecutive edges of a closed polygon.
 #pragma once
 
+#include "base/types.h"
 #include "exact/box_tree.h"
 #include "exact/polygon.h"
 

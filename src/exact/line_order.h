@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/interrupt.h"
+#include "base/types.h"
 #include "exact/orientation.h"
 
 namespace beltrami {

@@ -5,6 +5,8 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/types.h"
+#include "base/work.h"
 #include "exact/box_tree.h"
 #include "exact/line_order.h"
 #include "exact/orientation.h"

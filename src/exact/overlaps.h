@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/types.h"
+#include "base/work.h"
 #include "exact/uv_boundary.h"
 
 namespace beltrami {

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "base/types.h"
 #include "exact/polygon.h"
 
 namespace beltrami {

@@ -14,6 +14,7 @@
 #include "base/portable_math.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {

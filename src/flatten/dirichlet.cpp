@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
 

@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "linear/shifted_factor.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "base/types.h"
 #include "linear/mesh_matrix.h"
+#include "linear/spd_solver.h"
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
 

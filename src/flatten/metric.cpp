@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "energy/density.h"
 #include "flatten/laplacian.h"
 #include "mesh/vertex_sums.h"
 

@@ -1,4 +1,5 @@
 #include "linear/cholesky/native_solver.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "base/types.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
 

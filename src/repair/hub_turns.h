@@ -3,6 +3,7 @@
 
 #include <unordered_set>
 
+#include "base/types.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

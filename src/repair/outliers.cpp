@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "descend/assembly.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
 #include "repair/patch.h"

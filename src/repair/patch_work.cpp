@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "base/types.h"
+#include "exact/polygon.h"
+
 namespace beltrami {
 
 bool PatchWork::take(Patch& patch) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/types.h"
 #include "exact/edge_tree.h"
 #include "mesh/disk_mesh.h"
 #include "repair/patch.h"

@@ -7,6 +7,8 @@
 
 #include "base/interrupt.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
+#include "exact/orientation.h"
 #include "repair/global_fix.h"
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"

@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "exact/crossings.h"
+#include "exact/orientation.h"
 #include "mesh/boundary.h"
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
@@ -224,7 +226,7 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Nu
 
 template <class Real>
 double nearest_of(double x) {
-  constexpr double greatest = std::numeric_limits<Real>::max();
+  const double greatest = std::numeric_limits<Real>::max();
   return static_cast<double>(static_cast<Real>(std::clamp(x, -greatest, greatest)));
 }
 

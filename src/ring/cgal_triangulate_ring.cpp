@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "exact/certificate.h"
+#include "exact/orientation.h"
 #include "ring/ring_predicates.h"
 #include "ring/triangulate_ring.h"
 

@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "exact/certificate.h"
+#include "exact/orientation.h"
 #include "ring/ring_predicates.h"
 
 namespace beltrami {

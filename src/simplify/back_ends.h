@@ -3,6 +3,9 @@
 
 #include <vector>
 
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

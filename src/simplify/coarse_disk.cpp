@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "simplify/back_ends.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

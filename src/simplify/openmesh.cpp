@@ -11,10 +11,15 @@
 #include <numeric>
 #include <utility>
 
+#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
+#include "simplify/quadric.h"
 #include "simplify/shape.h"
+#include "simplify/simplify.h"
 #include "simplify/surface.h"
 
 namespace beltrami {

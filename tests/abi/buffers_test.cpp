@@ -3,6 +3,8 @@
 #include <cstddef>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {
@@ -157,7 +159,7 @@ TEST(Buffers, WritesFaceEnergiesWithAStride) {
 /// each with canaries behind the size it claims.
 template <class Struct, class Fill>
 void expect_sizes_respected(Fill&& fill) {
-  constexpr std::size_t size = sizeof(Struct);
+  const std::size_t size = sizeof(Struct);
   for (const uint32_t claimed : {0u, 4u, 7u, static_cast<uint32_t>(size - 1)}) {
     Struct out;
     std::memset(static_cast<void*>(&out), 0xa5, sizeof out);

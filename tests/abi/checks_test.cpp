@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -4,6 +4,8 @@
 #include <set>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 extern "C" int beltrami_c_client_works(void);
 
@@ -116,8 +118,8 @@ std::vector<Refusal> refusals() {
   repeated.faces[1] = {0, 2, 0};
   TriangleList collapsed = meshes::quad();
   for (Vec3& p : collapsed.positions) p = {1, 2, 3};
-  constexpr int32_t face = BELTRAMI_ELEMENT_FACE, vertex = BELTRAMI_ELEMENT_VERTEX;
-  constexpr int32_t none = BELTRAMI_ELEMENT_NONE;
+  const int32_t face = BELTRAMI_ELEMENT_FACE, vertex = BELTRAMI_ELEMENT_VERTEX;
+  const int32_t none = BELTRAMI_ELEMENT_NONE;
   return {
       {"nan", nan, BELTRAMI_E_NON_FINITE, vertex, 3},
       {"repeated", repeated, BELTRAMI_E_REPEATED_VERTEX, face, 1},

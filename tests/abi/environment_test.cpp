@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 namespace {
 std::atomic<bool> no_more_threads{false};

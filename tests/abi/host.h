@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/types.h"
 #include "support/meshes.h"
 
 namespace beltrami::host {

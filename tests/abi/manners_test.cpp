@@ -16,6 +16,7 @@
 #include <set>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 extern "C" char** environ;
 

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "abi/host.h"
+#include "base/types.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

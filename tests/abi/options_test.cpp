@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

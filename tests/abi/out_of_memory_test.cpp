@@ -3,6 +3,7 @@
 #include <new>
 
 #include "abi/host.h"
+#include "support/meshes.h"
 
 namespace {
 

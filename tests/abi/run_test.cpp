@@ -4,7 +4,9 @@
 #include <thread>
 
 #include "abi/host.h"
+#include "base/types.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "base/bucket_sort.h"
-#include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/resources.h"
+#include "base/types.h"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "descend/contact.h"
 #include "exact/crossings.h"
 #include "simplify/simplify.h"
 #include "support/cuts.h"

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "chart/flattening.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/polls.h"
 #include "support/run.h"
 

@@ -9,6 +9,11 @@
 
 #include "support/random_disks.h"
 
+#include "base/types.h"
+#include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
+#include "support/meshes.h"
+
 namespace beltrami {
 namespace {
 

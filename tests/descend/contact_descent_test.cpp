@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
 #include "descend/assembly.h"
 #include "descend/contact.h"
 #include "descend/newton.h"
@@ -14,7 +15,11 @@
 #include "energy/energy.h"
 #include "exact/certificate.h"
 #include "mesh/boundary.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "support/cuts.h"
+#include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "exact/certificate.h"
+#include "exact/orientation.h"
 #include "support/disks.h"
 
 namespace beltrami {

@@ -8,6 +8,7 @@
 
 #include "exact/certificate.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -14,7 +14,9 @@
 #include "descend/tutte.h"
 #include "energy/energy.h"
 #include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -9,11 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
 #include "descend/assembly.h"
+#include "energy/density.h"
 #include "energy/measure.h"
 #include "energy/symmetric_arap.h"
 #include "energy/symmetric_dirichlet.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "descend/newton_step.h"
+#include "energy/density.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

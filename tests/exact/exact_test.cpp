@@ -9,9 +9,15 @@
 #include <numeric>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
+#include "exact/orientation.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/polls.h"
 
 namespace beltrami {

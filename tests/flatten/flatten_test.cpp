@@ -5,15 +5,22 @@
 #include <cmath>
 #include <vector>
 
+#include "base/types.h"
 #include "descend/polish.h"
 #include "descend/tutte.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "flatten/dirichlet.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
+#include "simplify/simplify.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -12,7 +12,9 @@
 
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
+#include "prolong/prolongation.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/polls.h"
 
 namespace beltrami {

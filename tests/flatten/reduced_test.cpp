@@ -15,6 +15,8 @@
 #include "flatten/reduced/reduced_basis.h"
 #include "flatten/reduced/samples.h"
 #include "linear/mesh_matrix.h"
+#include "linear/spd_solver.h"
+#include "prolong/prolongation.h"
 #include "repair/repair.h"
 #include "support/meshes.h"
 

@@ -13,7 +13,10 @@
 #include <utility>
 
 #include "base/portable_math.h"
+#include "base/types.h"
+#include "chart/pipeline.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/random_disks.h"
 
 namespace beltrami::hashes {

@@ -11,6 +11,7 @@
 #include "linear/cholesky/nested_dissection.h"
 #include "linear/cholesky/symbolic.h"
 #include "linear/cholesky/vertex_separator.h"
+#include "linear/spd_solver.h"
 #include "support/disks.h"
 
 namespace beltrami {

@@ -11,11 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "base/types.h"
 #include "linear/cholesky/native_solver.h"
 #include "linear/mesh_matrix.h"
-#include "mesh/rest_shape.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

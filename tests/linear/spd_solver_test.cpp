@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "base/types.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
 #include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/face_chunks.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

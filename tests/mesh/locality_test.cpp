@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "descend/line_search.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/vertex_sums.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/types.h"
 #include "support/meshes.h"
 
 namespace beltrami {

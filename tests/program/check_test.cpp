@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "run_program.h"
+#include "temporary_directory.h"
 #include "tiny_meshes.h"
 
 namespace beltrami::cli {

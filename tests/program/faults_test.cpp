@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "files/mesh_file.h"
 #include "run_program.h"
+#include "temporary_directory.h"
 #include "tiny_meshes.h"
 
 namespace beltrami::cli {

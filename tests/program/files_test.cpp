@@ -8,6 +8,7 @@
 
 #include "files/mesh_file.h"
 #include "run_program.h"
+#include "temporary_directory.h"
 #include "tiny_meshes.h"
 
 namespace beltrami::cli {

@@ -11,6 +11,7 @@
 #include "files/mesh_file.h"
 #include "files/surface.h"
 #include "run_program.h"
+#include "temporary_directory.h"
 #include "tiny_meshes.h"
 
 namespace beltrami::cli {

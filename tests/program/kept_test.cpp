@@ -1,6 +1,7 @@
 // What files carry beside their surface: kept where the output can hold it, else said.
 #include <gtest/gtest.h>
 
+#include "files/column.h"
 #include "files/mesh_file.h"
 #include "tiny_meshes.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "files/mesh_file.h"
 #include "picture/raster.h"
 #include "picture/view.h"
 #include "tiny_meshes.h"

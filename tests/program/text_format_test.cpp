@@ -11,6 +11,7 @@
 #include "commands/options.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
+#include "process/failure.h"
 
 namespace beltrami::cli {
 namespace {

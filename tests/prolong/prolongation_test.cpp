@@ -14,6 +14,7 @@
 #include "prolong/surface_walk.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

@@ -19,6 +19,7 @@
 #include "repair/repair.h"
 #include "repair/rounding.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/polls.h"
 
 namespace beltrami {

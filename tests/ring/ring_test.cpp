@@ -16,7 +16,10 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
+#include "exact/orientation.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"
 

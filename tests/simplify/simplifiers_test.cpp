@@ -8,18 +8,22 @@
 #include <utility>
 #include <vector>
 
+#include "base/checkpoint.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
 #include "descend/tutte.h"
-#include "energy/measure.h"
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
 #include "flatten/metric.h"
+#include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
 #include "prolong/prolongation.h"
 #include "simplify/back_ends.h"
+#include "simplify/simplify.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

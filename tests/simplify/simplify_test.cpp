@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "simplify/back_ends.h"
 #include "support/simplifiers.h"
 
 namespace beltrami {

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami::disks {
 

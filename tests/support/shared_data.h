@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/types.h"
 #include "support/meshes.h"
 
 namespace beltrami::shared_data {

@@ -4,7 +4,11 @@
 #include <ostream>
 #include <vector>
 
+#include "base/checkpoint.h"
+#include "base/types.h"
+#include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 

@@ -130,6 +130,15 @@ def test_the_package_needs_little_and_holds_no_gpl_code():
     }
 
 
+def test_the_wheel_runs_on_systems_with_glibc_2_28_and_brings_no_library_but_its_own():
+    package = importlib.metadata.distribution("beltrami")
+    tags = re.findall(r"^Tag: .*-manylinux_2_(\d+)_x86_64$", package.read_text("WHEEL"), re.M)
+    assert tags
+    assert min(map(int, tags)) <= 28
+    libraries = {file.name for file in package.files if ".so" in file.name}
+    assert libraries == {"_native.abi3.so", "libbeltrami.so.1"}
+
+
 def test_importing_leaves_everything_as_it_was():
     program = """
 import os, signal, sys, threading

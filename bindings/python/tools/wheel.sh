@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the wheel as others do: from the sdist alone, in a folder outside the checkout. Then moves
-# the shared libraries that it needs into it.
+# Builds the wheel as others do: from the sdist alone, in a folder outside the checkout; then tags
+# it with the oldest systems that it runs on, and refuses it if those are not old enough.
 #   wheel.sh PYTHON FOLDER
 # PYTHON is that of an environment with requirements/tools.txt. FOLDER gets sdist/ and wheel/, and
 # keeps the compiler's results for the next time.
@@ -24,5 +24,7 @@ CCACHE_DIR=$OUT/ccache CCACHE_BASEDIR=$outside CCACHE_NOHASHDIR=1 \
   "$PYTHON" -m build --no-isolation --wheel --outdir "$outside/raw" \
   --config-setting=build-dir=build \
   --config-setting=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache \
-  --config-setting=cmake.define.BELTRAMI_WERROR=ON .
-PATH=$(dirname "$PYTHON"):$PATH "$PYTHON" -m auditwheel repair --wheel-dir "$OUT/wheel" raw/*.whl
+  --config-setting=cmake.define.BELTRAMI_WERROR=ON \
+  --config-setting=cmake.define.BELTRAMI_OLD_GLIBC=ON .
+PATH=$(dirname "$PYTHON"):$PATH "$PYTHON" -m auditwheel repair --plat manylinux_2_28_x86_64 \
+  --wheel-dir "$OUT/wheel" raw/*.whl

@@ -8,11 +8,12 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
-#include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "flatten/reduced/meta_vertices.h"
 #include "flatten/reduced/reduced_basis.h"
 #include "flatten/reduced/reduced_newton.h"
 #include "flatten/reduced/samples.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "linear/mesh_matrix.h"
+
 namespace beltrami {
 
 ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,

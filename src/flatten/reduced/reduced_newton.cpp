@@ -10,8 +10,7 @@
 #include "base/parallel.h"
 #include "descend/assembly.h"
 #include "descend/line_search.h"
-#include "energy/symmetric_dirichlet.h"
-#include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "ring/ring_faces.h"
 
 namespace beltrami {

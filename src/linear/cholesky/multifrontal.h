@@ -8,6 +8,7 @@
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/large_array.h"
 #include "linear/cholesky/symbolic.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 

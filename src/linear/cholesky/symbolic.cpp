@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {

@@ -1,0 +1,60 @@
+"""Breaks the rule of includes in small files, to see the check refuse them."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from includes import Project, check
+
+FILES = {
+    "src/base/types.h": "#pragma once\nusing Index = int;\n"
+    "template <class T> T twice(T t) { return t; }\n",
+    "src/base/place.h": "#pragma once\n#define ORIGIN 0\nstruct Place { int x; };\n",
+    "src/base/chain.h": '#pragma once\n#include "base/place.h"\n#include "base/types.h"\n'
+    "Index next(Index i, Place p);\n",
+}
+# The source, and what is said of it: the line, and the header.
+CASES = {
+    "chain.cpp": (
+        '#include "base/chain.h"\nIndex next(Index i, Place p) { return i + p.x; }\n',
+        [],
+    ),
+    "chain_test.cpp": ('#include "base/chain.h"\nint main() { return next(1, Place()); }\n', []),
+    "missing.cpp": ('#include "base/chain.h"\nint a = next(1, {2});\nPlace b;\n', ["3: place.h"]),
+    "idle.cpp": ('#include "base/place.h"\n#include "base/types.h"\nPlace b;\n', ["2: types.h"]),
+    "macro.cpp": ('#include "base/place.h"\nint a = ORIGIN;\n', []),
+    "member.cpp": ('#include "base/chain.h"\nauto f() { return &next; }\n', []),
+    "template.cpp": (
+        '#include "base/chain.h"\ntemplate <class T> T g(T t) { next(1, {}); return twice(t); }\n',
+        ["2: types.h"],
+    ),
+}
+
+
+def main() -> int:
+    """Return 1 if a case is judged otherwise than it should be."""
+    status = 0
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder).resolve()
+        (root / "src" / "base").mkdir(parents=True)
+        for name, text in FILES.items():
+            (root / name).write_text(text)
+        for name, (text, expected) in CASES.items():
+            source = root / "src" / "base" / name
+            source.write_text(text)
+            project = Project(root)
+            found = check(str(source), ["-std=c++20", f"-I{root}/src"], "", project)
+            short = []
+            for line in found:
+                header = next(h for h in FILES if h in line)
+                short.append(f"{line.split(':')[1]}: {Path(header).name}")
+            if short != expected:
+                print(f"includes.py on {name}: expected {expected}, found {found}")
+                status = 1
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
