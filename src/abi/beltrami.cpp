@@ -67,26 +67,27 @@ beltrami_option_info describe(const OptionEntry& option) {
 
 beltrami_result describe(const LoadedMesh& mesh, const Flattening& flattening) {
   beltrami_result result{};
-  result.status = flattening.status;
+  const ChartStatistics& statistics = flattening.statistics;
+  result.status = status_of(flattening.status);
   result.vertices = mesh.vertex_count;
   result.faces = mesh.input.disk.faces.size();
   result.boundary_edges = mesh.input.disk.boundary.size();
   result.unreferenced_vertices = mesh.vertex_count - mesh.input.original.size();
-  result.coarse_faces = static_cast<std::uint64_t>(flattening.coarse_faces);
-  result.flips_before_repair = static_cast<std::uint64_t>(flattening.flips_before_repair);
+  result.coarse_faces = static_cast<std::uint64_t>(statistics.coarse_faces);
+  result.flips_before_repair = static_cast<std::uint64_t>(statistics.flips_before_repair);
   result.area = mesh.area;
   result.seconds = flattening.seconds;
   result.cpu_seconds = flattening.cpu_seconds;
   result.peak_memory_bytes = flattening.peak_memory_bytes;
-  result.kernel_fixes = static_cast<std::uint64_t>(flattening.kernel_fixes);
-  result.patch_fixes = static_cast<std::uint64_t>(flattening.patch_fixes);
-  result.global_fixes = static_cast<std::uint64_t>(flattening.global_fixes);
-  result.cleaned_patches = static_cast<std::uint64_t>(flattening.cleaned_patches);
+  result.kernel_fixes = static_cast<std::uint64_t>(statistics.kernel_fixes);
+  result.patch_fixes = static_cast<std::uint64_t>(statistics.patch_fixes);
+  result.global_fixes = static_cast<std::uint64_t>(statistics.global_fixes);
+  result.cleaned_patches = static_cast<std::uint64_t>(statistics.cleaned_patches);
   result.restarts = static_cast<std::uint64_t>(flattening.restarts);
   result.float32_moves = static_cast<std::uint64_t>(flattening.float32_moves);
-  result.delaunay_flips = static_cast<std::uint64_t>(flattening.delaunay_flips);
-  result.delaunay_refused = static_cast<std::uint64_t>(flattening.delaunay_refused);
-  result.coarse_energy = flattening.coarse_energy;
+  result.delaunay_flips = static_cast<std::uint64_t>(statistics.delaunay_flips);
+  result.delaunay_refused = static_cast<std::uint64_t>(statistics.delaunay_refused);
+  result.coarse_energy = statistics.coarse_energy;
   result.degenerate_faces = mesh.degenerate_faces;
   result.first_degenerate_face = element_or_none(mesh.first_degenerate_face);
   return result;
@@ -321,13 +322,13 @@ beltrami_status beltrami_get_face_energies(beltrami_context* context, void* out,
 
 int32_t beltrami_stage_count(const beltrami_context* context) {
   if (context == nullptr || !context->flattening) return 0;
-  return static_cast<int32_t>(context->flattening->stages.size());
+  return static_cast<int32_t>(context->flattening->statistics.stages.size());
 }
 
 beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index, beltrami_stage* out) {
   return enter(context, [&](beltrami_context& self) {
     beltrami::require_sized(out, "out");
-    const std::vector<beltrami::StageStatistics>& stages = self.results().stages;
+    const std::vector<beltrami::StageStatistics>& stages = self.results().statistics.stages;
     if (index < 0 || static_cast<std::size_t>(index) >= stages.size()) {
       throw Error(BELTRAMI_E_INVALID_ARGUMENT,
                   "there is no stage " + std::to_string(index) + ": the last run had " +

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "abi/buffers.h"
+#include "abi/reports.h"
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/work.h"
 #include "chart/memory_estimate.h"
 #include "mesh/rest_shape.h"
 
@@ -103,26 +105,30 @@ std::uint64_t beltrami_context::estimate_memory() const {
   if (!mesh) {
     throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
   }
-  return beltrami::estimate_memory(mesh->input.disk, options);
+  return beltrami::estimate_memory(mesh->input.disk, beltrami::chart_options(options),
+                                   options.threads);
 }
 
 beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
-  beltrami::require_within_limit(estimate_memory(), options.memory_limit);
+  const std::uint64_t estimate = estimate_memory();
+  beltrami::require_effect(options);
+  beltrami::require_within_limit(estimate, options.memory_limit);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);
-  beltrami::Progress report = [](double, const char*) { return false; };
+  beltrami::Progress report;
   if (progress != nullptr) {
     report = [&host](double fraction, const char* stage) { return host(fraction, stage); };
   }
+  const beltrami::Work work(beltrami::limits(options), report);
   beltrami::Flattening result =
-      beltrami::flatten(mesh->input.disk, mesh->frame, options, report, cancelled);
+      beltrami::flatten(mesh->input.disk, mesh->frame, beltrami::chart_options(options), work);
   // A request that came after the last look at it still counts, since the run was under way.
   if (mark.take_request() || host.cancelled()) {
     throw beltrami::Cancelled();
   }
   flattening = std::move(result);
-  return flattening->status;
+  return beltrami::status_of(flattening->status);
 }
 
 const beltrami::Flattening& beltrami_context::results() const {

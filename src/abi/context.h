@@ -8,7 +8,8 @@
 
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
-#include "chart/pipeline.h"
+#include "abi/options.h"
+#include "chart/flattening.h"
 
 namespace beltrami {
 
@@ -40,8 +41,8 @@ struct beltrami_context {
   /// Throws Error INVALID_STATE where there is no mesh.
   std::uint64_t estimate_memory() const;
 
-  /// Flattens the mesh. Throws Error INVALID_STATE, OUT_OF_MEMORY or SOLVER, or Cancelled; keeps
-  /// old results then.
+  /// Flattens the mesh. Throws Error INVALID_STATE, INVALID_ARGUMENT, OUT_OF_MEMORY or SOLVER, or
+  /// Cancelled; keeps old results then.
   beltrami_status run(beltrami_progress progress, void* user);
 
   /// The results. Throws Error INVALID_STATE where there are none.

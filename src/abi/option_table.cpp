@@ -117,8 +117,8 @@ const OptionEntry kOptions[] = {
     {BELTRAMI_OPTION_TIME_LIMIT,
      BELTRAMI_TYPE_FLOAT,
      "time-limit",
-     "Seconds since the start of the run after which the refinement stops with what it has; 0 sets "
-     "no limit.",
+     "Seconds since the start of the run after which iterations stop with the best map so far; 0 "
+     "sets no limit.",
      0,
      1e9,
      {},

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "chart/pipeline.h"
+#include "abi/options.h"
 
 namespace beltrami {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 
@@ -13,6 +14,19 @@ namespace beltrami {
 
 inline std::uint64_t element_or_none(Index index) {
   return index == kNone ? BELTRAMI_NO_ELEMENT : static_cast<std::uint64_t>(index);
+}
+
+inline beltrami_status status_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kNotConverged:
+      return BELTRAMI_NOT_CONVERGED;
+    case Outcome::kNotInjective:
+      return BELTRAMI_NOT_INJECTIVE;
+    case Outcome::kNotInjectiveFloat32:
+      return BELTRAMI_NOT_INJECTIVE_FLOAT32;
+    default:
+      return BELTRAMI_OK;
+  }
 }
 
 /// Nothing found and nothing proved.

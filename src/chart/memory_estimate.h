@@ -3,7 +3,9 @@
 
 #include <cstdint>
 
-#include "chart/pipeline.h"
+#include "base/work.h"
+#include "chart/options.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 
@@ -15,12 +17,12 @@ enum class Extra {
   kGlobalFix,    ///< of the repair
 };
 
-/// Bytes at the peak of a run with these options, the context's mesh and results included, extras
-/// not: the least memory limit that the run can do with. It is meant to be enough:
+/// Bytes at the peak of a run with these options on so many threads, the context's mesh and results
+/// included, extras not: the least memory limit that the run can do with. It is meant to be enough:
 /// memory_estimate.cpp says what it leaves out. Takes milliseconds for a million faces.
-std::uint64_t estimate_memory(const DiskMesh& mesh, const Options& options);
+std::uint64_t estimate_memory(const DiskMesh& mesh, const ChartOptions& options, int threads);
 
-/// Whether the run stays within its memory limit with this extra.
-bool affords(const DiskMesh& mesh, const Options& options, Extra extra);
+/// Whether the run stays within the memory limit of its work with this extra.
+bool affords(const DiskMesh& mesh, const ChartOptions& options, Extra extra, const Work& work);
 
 }  // namespace beltrami

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
@@ -25,11 +25,10 @@ namespace {
 using meshes::TriangleList;
 
 /// Runs, and judges the delivered numbers once more.
-Flattening run(TriangleList mesh, const Options& options) {
+Flattening run(TriangleList mesh, const ChartOptions& options) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  Flattening result = flatten(disk, frame, options, {}, cancelled);
+  Flattening result = flatten(disk, frame, options, Work());
   const auto& faces = result.faces.empty() ? disk.faces : result.faces;
   const Certificate again = certify(faces, disk.boundary, result.uvs, 1);
   EXPECT_EQ(again.injective(), result.certificate.injective());
@@ -43,14 +42,14 @@ Flattening run(TriangleList mesh, const Options& options) {
   return result;
 }
 
-Options method(std::int32_t which) {
-  Options options;
+ChartOptions method(std::int32_t which) {
+  ChartOptions options;
   options.method = which;
   return options;
 }
 
-Options coarse(std::int64_t faces, bool float32) {
-  Options options;
+ChartOptions coarse(std::int64_t faces, bool float32) {
+  ChartOptions options;
   options.coarse_faces = faces;
   options.float32 = float32;
   return options;
@@ -60,11 +59,11 @@ TEST(HardDisks, AreInjectiveAsDelivered) {
   for (const std::int64_t faces : {4, 8, 20}) {
     for (const bool float32 : {false, true}) {
       for (const bool square : {false, true}) {
-        Options options = coarse(faces, float32);
+        ChartOptions options = coarse(faces, float32);
         options.unit_square = square;
         const Flattening result = run(disks::tree(), options);
         EXPECT_TRUE(result.certificate.injective()) << faces << float32 << square;
-        EXPECT_LT(result.coarse_energy, 100) << faces << float32 << square;
+        EXPECT_LT(result.statistics.coarse_energy, 100) << faces << float32 << square;
       }
     }
   }
@@ -72,11 +71,11 @@ TEST(HardDisks, AreInjectiveAsDelivered) {
 
 TEST(HardDisks, GetAMapWhereAlmostAllOfThemIsOnePoint) {
   for (const bool delaunay : {false, true}) {
-    Options options = coarse(4, false);
+    ChartOptions options = coarse(4, false);
     options.delaunay = delaunay;
     EXPECT_TRUE(run(disks::collapsed(), options).certificate.injective()) << delaunay;
     options.float32 = true;
-    EXPECT_EQ(run(disks::collapsed(), options).status, BELTRAMI_NOT_INJECTIVE_FLOAT32) << delaunay;
+    EXPECT_EQ(run(disks::collapsed(), options).status, Outcome::kNotInjectiveFloat32) << delaunay;
   }
 }
 
@@ -88,10 +87,10 @@ TriangleList scaled(TriangleList mesh, double unit) {
 TEST(HardDisks, AreFlattenedInAnyUnitThatNumbersHold) {
   for (const double unit : {1e-310, 1e-307, 1e-160, 1e160, 1e300, 0x1p1021}) {
     const Flattening result = run(scaled(meshes::grid(3, 3), unit), {});
-    EXPECT_EQ(result.status, BELTRAMI_OK) << unit;
+    EXPECT_EQ(result.status, Outcome::kOk) << unit;
     EXPECT_TRUE(result.certificate.injective()) << unit;
     EXPECT_NEAR(result.distortion.symmetric_dirichlet, 2, 1e-3) << unit;
-    Options square;
+    ChartOptions square;
     square.unit_square = true;
     const Flattening fitted = run(scaled(meshes::grid(3, 3), unit), square);
     EXPECT_TRUE(fitted.certificate.injective()) << unit;
@@ -104,7 +103,7 @@ TEST(HardDisks, AreFlattenedInAnyUnitThatNumbersHold) {
 TEST(HardDisks, AreSaidToBeOutOfTheRangeOfSinglePrecision) {
   for (const double unit : {1e-310, 1e-60, 1e60, 1e300}) {
     const Flattening single = run(scaled(meshes::grid(3, 3), unit), coarse(0, true));
-    EXPECT_EQ(single.status, BELTRAMI_NOT_INJECTIVE_FLOAT32) << unit;
+    EXPECT_EQ(single.status, Outcome::kNotInjectiveFloat32) << unit;
     EXPECT_EQ(single.restarts, 0) << unit << ": no other map would fit either";
     const Flattening both = run(scaled(meshes::grid(3, 3), unit), {});
     EXPECT_TRUE(both.certificate.injective()) << unit;
@@ -120,7 +119,7 @@ TEST(HardDisks, AreSaidToUnfoldBeyondTheRangeOfNumbers) {
     p = {0x1p1023 * p.x(), 0x1p1023 * p.y(), column % 2 == 0 ? 0x1.8p1023 : 0};
   }
   const Flattening result = run(mesh, {});
-  EXPECT_EQ(result.status, BELTRAMI_NOT_INJECTIVE);
+  EXPECT_EQ(result.status, Outcome::kNotInjective);
 }
 
 TEST(HardDisks, AreFlattenedConformallyWhereTheyAreAlmostALine) {
@@ -131,15 +130,15 @@ TEST(HardDisks, AreFlattenedConformallyWhereTheyAreAlmostALine) {
   mesh.positions[1] = {2e83, 3e247, 0};
   mesh.positions[2] = {1e251, 0, 0};
   mesh.positions[3] = {7e277, 0, 0};
-  const Flattening result = run(mesh, method(BELTRAMI_METHOD_BFF));
-  EXPECT_GE(result.status, BELTRAMI_OK);
+  const Flattening result = run(mesh, method(Method::kBff));
+  EXPECT_GE(result.status, Outcome::kOk);
   EXPECT_EQ(result.restarts, 0);
 }
 
 TEST(HardDisks, WithoutInnerVerticesHaveAReducedMapOfSparseSteps) {
   // With more bridges than dense steps can serve.
-  const Flattening strip = run(meshes::strip(1500), method(BELTRAMI_METHOD_GIF));
-  EXPECT_EQ(strip.status, BELTRAMI_OK);
+  const Flattening strip = run(meshes::strip(1500), method(Method::kGif));
+  EXPECT_EQ(strip.status, Outcome::kOk);
   EXPECT_NEAR(strip.distortion.symmetric_dirichlet, 2, 0.01);
 }
 
@@ -172,7 +171,7 @@ TEST(HardDisks, HaveARingAroundABoundaryThatIsSmallAndFarAway) {
 
 struct SharedDisk {
   const char* name;
-  Options options;
+  ChartOptions options;
 };
 
 TEST(HardDisks, OfTheSharedDataEndWithAMap) {
@@ -185,7 +184,7 @@ TEST(HardDisks, OfTheSharedDataEndWithAMap) {
       {"scaffold_internal/in.obj", coarse(4, false)},
       {"scaffold_internal/in.obj", coarse(8, false)},
       {"denormal_coordinates/grid.obj", {}},
-      {"gif_thin_strip_slow/in.obj", method(BELTRAMI_METHOD_GIF)},
+      {"gif_thin_strip_slow/in.obj", method(Method::kGif)},
   };
   for (const auto& [name, options] : all) {
     const Flattening result = run(shared_data::read_obj(folder / name), options);
@@ -193,7 +192,7 @@ TEST(HardDisks, OfTheSharedDataEndWithAMap) {
     EXPECT_TRUE(std::isfinite(result.distortion.symmetric_dirichlet)) << name;
   }
   const auto bff =
-      run(shared_data::read_obj(folder / "bff_exit4" / "in.obj"), method(BELTRAMI_METHOD_BFF));
+      run(shared_data::read_obj(folder / "bff_exit4" / "in.obj"), method(Method::kBff));
   EXPECT_TRUE(std::isfinite(bff.distortion.symmetric_dirichlet));
 }
 

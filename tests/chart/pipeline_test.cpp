@@ -1,6 +1,6 @@
 // Whole runs: injective, timed, cancellable, and the same whatever the threads, the unit and the
 // order of the input.
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 
 #include <gtest/gtest.h>
 
@@ -31,22 +31,21 @@ namespace {
 using disks::Random;
 using meshes::TriangleList;
 
-Flattening run(TriangleList mesh, const Options& options = {}, const Progress& progress = {}) {
+Flattening run(TriangleList mesh, const ChartOptions& options = {}, const Progress& progress = {}) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
   return flatten(disk, frame, options, progress, cancelled);
 }
 
-Options method(std::int32_t which) {
-  Options options;
+ChartOptions method(std::int32_t which) {
+  ChartOptions options;
   options.method = which;
   return options;
 }
 
 /// The method that this library is about, simplified to `coarse_faces`.
-Options coarse_to_fine(std::int64_t coarse_faces, std::int32_t how = BELTRAMI_FLATTEN_METRIC) {
-  Options options;
+ChartOptions coarse_to_fine(std::int64_t coarse_faces, std::int32_t how = Flatten::kMetric) {
+  ChartOptions options;
   options.coarse_faces = coarse_faces;
   options.flatten = how;
   return options;
@@ -57,7 +56,7 @@ double energy(const Flattening& result) {
 }
 
 void expect_injective(const Flattening& result, const std::string& where) {
-  EXPECT_EQ(result.status, BELTRAMI_OK) << where;
+  EXPECT_EQ(result.status, Outcome::kOk) << where;
   EXPECT_TRUE(result.certificate.injective()) << where;
   EXPECT_TRUE(std::isfinite(energy(result))) << where;
   EXPECT_GE(energy(result), 2 - 1e-12) << where;
@@ -68,9 +67,9 @@ void expect_injective(const Flattening& result, const std::string& where) {
 
 TEST(Pipeline, IsInjectiveWithEveryMethodOnAGridAndACap) {
   for (const auto& mesh : {meshes::bumps(16, 16), meshes::cap(10, 30, 2.0)}) {
-    for (const Options& options : {method(BELTRAMI_METHOD_BELTRAMI), method(BELTRAMI_METHOD_CM),
-                                   method(BELTRAMI_METHOD_TUTTE), coarse_to_fine(120),
-                                   coarse_to_fine(120, BELTRAMI_FLATTEN_DIRICHLET)}) {
+    for (const ChartOptions& options : {method(Method::kBeltrami), method(Method::kCm),
+                                   method(Method::kTutte), coarse_to_fine(120),
+                                   coarse_to_fine(120, Flatten::kDirichlet)}) {
       const Flattening result = run(mesh, options);
       expect_injective(result, "method " + std::to_string(options.method) + " flatten " +
                                    std::to_string(options.flatten) + " coarse " +
@@ -82,31 +81,31 @@ TEST(Pipeline, IsInjectiveWithEveryMethodOnAGridAndACap) {
 }
 
 TEST(Pipeline, FlattensAFlatMeshIsometrically) {
-  EXPECT_NEAR(energy(run(meshes::grid(12, 9), method(BELTRAMI_METHOD_CM))), 2, 1e-3);
+  EXPECT_NEAR(energy(run(meshes::grid(12, 9), method(Method::kCm))), 2, 1e-3);
   EXPECT_NEAR(energy(run(meshes::grid(20, 20), coarse_to_fine(100))), 2, 1e-3);
 }
 
 TEST(Pipeline, ComesCloseToTheFullSpaceMinimumFromACoarseMesh) {
   const TriangleList mesh = meshes::bumps(40, 40);
-  const double cm = energy(run(mesh, method(BELTRAMI_METHOD_CM)));
+  const double cm = energy(run(mesh, method(Method::kCm)));
   EXPECT_LE(energy(run(mesh, coarse_to_fine(600))), 1.01 * cm);
-  EXPECT_LE(energy(run(mesh, coarse_to_fine(600, BELTRAMI_FLATTEN_DIRICHLET))), 1.06 * cm);
-  EXPECT_GT(energy(run(mesh, method(BELTRAMI_METHOD_TUTTE))), 1.01 * cm);
+  EXPECT_LE(energy(run(mesh, coarse_to_fine(600, Flatten::kDirichlet))), 1.06 * cm);
+  EXPECT_GT(energy(run(mesh, method(Method::kTutte))), 1.01 * cm);
 }
 
 TEST(Pipeline, RunsFullSpaceOnTheMeshItselfBelowTheCutOff) {
   const Flattening result = run(meshes::bumps(10, 10));
-  EXPECT_EQ(result.coarse_faces, 200);
+  EXPECT_EQ(result.statistics.coarse_faces, 200);
   const Flattening coarse = run(meshes::bumps(20, 20), coarse_to_fine(200));
-  EXPECT_LE(coarse.coarse_faces, 200);
-  EXPECT_GT(coarse.coarse_faces, 50);
+  EXPECT_LE(coarse.statistics.coarse_faces, 200);
+  EXPECT_GT(coarse.statistics.coarse_faces, 50);
 }
 
 TEST(Pipeline, SaysSoWhereItDidNotConverge) {
-  Options options = method(BELTRAMI_METHOD_CM);
+  ChartOptions options = method(Method::kCm);
   options.max_iterations = 1;
   const Flattening result = run(meshes::cap(10, 30, 2.5), options);
-  EXPECT_EQ(result.status, BELTRAMI_NOT_CONVERGED);
+  EXPECT_EQ(result.status, Outcome::kNotConverged);
   EXPECT_TRUE(result.certificate.injective());
 }
 
@@ -114,7 +113,7 @@ TEST(Pipeline, SaysSoWhereItDidNotConverge) {
 
 std::vector<std::string> stage_names(const Flattening& result) {
   std::vector<std::string> names;
-  for (const StageStatistics& stage : result.stages) names.emplace_back(stage.name);
+  for (const StageStatistics& stage : result.statistics.stages) names.emplace_back(stage.name);
   return names;
 }
 
@@ -133,17 +132,17 @@ TEST(Pipeline, NamesItsStagesInTheOrderInWhichTheyRan) {
   EXPECT_TRUE(
       in_this_order(stage_names(run(mesh, coarse_to_fine(200))),
                     {"simplify", "coarse", "prolong", "flatten", "repair", "polish", "certify"}));
-  EXPECT_TRUE(in_this_order(stage_names(run(mesh, coarse_to_fine(200, BELTRAMI_FLATTEN_DIRICHLET))),
+  EXPECT_TRUE(in_this_order(stage_names(run(mesh, coarse_to_fine(200, Flatten::kDirichlet))),
                             {"simplify", "coarse", "prolong", "flatten", "repair", "certify"}));
-  EXPECT_TRUE(in_this_order(stage_names(run(mesh, method(BELTRAMI_METHOD_CM))), {"cm", "certify"}));
+  EXPECT_TRUE(in_this_order(stage_names(run(mesh, method(Method::kCm))), {"cm", "certify"}));
   EXPECT_TRUE(
-      in_this_order(stage_names(run(mesh, method(BELTRAMI_METHOD_TUTTE))), {"tutte", "certify"}));
+      in_this_order(stage_names(run(mesh, method(Method::kTutte))), {"tutte", "certify"}));
 }
 
 TEST(Pipeline, TimesItsStagesWithinTheWholeRun) {
   const Flattening result = run(meshes::bumps(20, 20), coarse_to_fine(200));
   double sum = 0;
-  for (const StageStatistics& stage : result.stages) {
+  for (const StageStatistics& stage : result.statistics.stages) {
     EXPECT_GE(stage.seconds, 0) << stage.name;
     EXPECT_GE(stage.cpu_seconds, 0) << stage.name;
     sum += stage.seconds;
@@ -153,10 +152,10 @@ TEST(Pipeline, TimesItsStagesWithinTheWholeRun) {
 }
 
 TEST(Pipeline, ReportsProgressThatRisesFromZeroToOneOnTheCallingThread) {
-  for (const Options& options :
-       {method(BELTRAMI_METHOD_CM), method(BELTRAMI_METHOD_TUTTE), coarse_to_fine(200),
-        coarse_to_fine(200, BELTRAMI_FLATTEN_DIRICHLET)}) {
-    Options threaded = options;
+  for (const ChartOptions& options :
+       {method(Method::kCm), method(Method::kTutte), coarse_to_fine(200),
+        coarse_to_fine(200, Flatten::kDirichlet)}) {
+    ChartOptions threaded = options;
     threaded.threads = 2;
     std::vector<double> fractions;
     int elsewhere = 0, unnamed = 0;
@@ -177,7 +176,7 @@ TEST(Pipeline, ReportsProgressThatRisesFromZeroToOneOnTheCallingThread) {
 }
 
 /// Runs, cancelled at callback number `last`, and returns the status that it ends with.
-beltrami_status cancelled_at(int last, const TriangleList& mesh, const Options& options) {
+beltrami_status cancelled_at(int last, const TriangleList& mesh, const ChartOptions& options) {
   int calls = 0;
   try {
     return run(mesh, options, [&](double, const char*) { return ++calls == last; }).status;
@@ -191,9 +190,9 @@ beltrami_status cancelled_at(int last, const TriangleList& mesh, const Options& 
 
 TEST(Pipeline, IsCancelledAtEveryCallbackOfEveryStage) {
   const TriangleList mesh = meshes::bumps(10, 10);
-  for (const Options& options :
-       {method(BELTRAMI_METHOD_CM), method(BELTRAMI_METHOD_TUTTE), coarse_to_fine(80),
-        coarse_to_fine(80, BELTRAMI_FLATTEN_DIRICHLET)}) {
+  for (const ChartOptions& options :
+       {method(Method::kCm), method(Method::kTutte), coarse_to_fine(80),
+        coarse_to_fine(80, Flatten::kDirichlet)}) {
     int callbacks = 0;
     run(mesh, options, [&](double, const char*) {
       ++callbacks;
@@ -211,15 +210,15 @@ TEST(Pipeline, IsCancelledByTheFlagWithoutAProgressFunction) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   const DiskMesh disk = disks::disk(mesh);
   const std::atomic<bool> cancelled{true};
-  EXPECT_THROW(flatten(disk, frame, {}, {}, cancelled), Cancelled);
+  EXPECT_THROW(flatten(disk, frame, {}, Work()), Cancelled);
 }
 
 // ---- Invariance -----------------------------------------------------------------------------
 
 TEST(Pipeline, HasTheSameBitsOnTwoThreads) {
   const TriangleList mesh = meshes::bumps(75, 75);
-  for (const std::int32_t how : {BELTRAMI_FLATTEN_METRIC, BELTRAMI_FLATTEN_DIRICHLET}) {
-    Options options = coarse_to_fine(2000, how);
+  for (const std::int32_t how : {Flatten::kMetric, Flatten::kDirichlet}) {
+    ChartOptions options = coarse_to_fine(2000, how);
     const Flattening one = run(mesh, options);
     options.threads = 2;
     const Flattening two = run(mesh, options);
@@ -292,11 +291,11 @@ TriangleList shuffled(const TriangleList& mesh, std::uint64_t seed) {
 
 TEST(Pipeline, DoesNotDependOnTheOrderOfFacesAndVertices) {
   const TriangleList mesh = meshes::bumps(20, 20);
-  const double cm = energy(run(mesh, method(BELTRAMI_METHOD_CM)));
+  const double cm = energy(run(mesh, method(Method::kCm)));
   const double metric = energy(run(mesh, coarse_to_fine(300)));
   for (const std::uint64_t seed : {1, 2, 3}) {
     const TriangleList other = shuffled(mesh, seed);
-    EXPECT_NEAR(energy(run(other, method(BELTRAMI_METHOD_CM))), cm, 1e-3 * cm) << seed;
+    EXPECT_NEAR(energy(run(other, method(Method::kCm))), cm, 1e-3 * cm) << seed;
     // The simplifier breaks its ties another way.
     EXPECT_NEAR(energy(run(other, coarse_to_fine(300))), metric, 1e-2 * metric) << seed;
   }
@@ -304,7 +303,7 @@ TEST(Pipeline, DoesNotDependOnTheOrderOfFacesAndVertices) {
 
 TEST(Pipeline, FitsTheUnitSquareOnRequest) {
   for (const double scale : {1e-6, 1.0, 3e5}) {
-    Options options = coarse_to_fine(200);
+    ChartOptions options = coarse_to_fine(200);
     options.unit_square = true;
     const Flattening result = run(transformed(meshes::bumps(20, 20), scale, Vec3::Zero()), options);
     double greatest = 0;
@@ -345,14 +344,14 @@ std::vector<NamedMesh> difficult_disks() {
 
 TEST(Pipeline, FlattensTinyDisksIsometrically) {
   for (const auto& [name, mesh] : tiny_disks()) {
-    for (const Options& options : {Options{}, method(BELTRAMI_METHOD_CM), coarse_to_fine(1)}) {
+    for (const ChartOptions& options : {ChartOptions{}, method(Method::kCm), coarse_to_fine(1)}) {
       const Flattening result = run(mesh, options);
       expect_injective(result, name);
       EXPECT_NEAR(energy(result), 2, 1e-3) << name;
     }
     // These two force the boundary: onto a circle, and onto the edges of a coarser polygon.
-    expect_injective(run(mesh, method(BELTRAMI_METHOD_TUTTE)), name);
-    expect_injective(run(mesh, coarse_to_fine(1, BELTRAMI_FLATTEN_DIRICHLET)), name);
+    expect_injective(run(mesh, method(Method::kTutte)), name);
+    expect_injective(run(mesh, coarse_to_fine(1, Flatten::kDirichlet)), name);
   }
 }
 
@@ -360,7 +359,7 @@ TEST(Pipeline, IsInjectiveOnDifficultDisks) {
   for (const auto& [name, mesh] : difficult_disks()) {
     expect_injective(run(mesh), name);
     expect_injective(run(mesh, coarse_to_fine(60)), name + ", coarse to fine");
-    expect_injective(run(mesh, coarse_to_fine(60, BELTRAMI_FLATTEN_DIRICHLET)),
+    expect_injective(run(mesh, coarse_to_fine(60, Flatten::kDirichlet)),
                      name + ", harmonic");
   }
 }
@@ -376,7 +375,7 @@ TEST(Pipeline, StartsFromCoarserMeshesWhereTutteIsLostInRounding) {
     // So far from a good map the polish may end before it is done, and says so.
     const Flattening coarse = run(mesh, coarse_to_fine(800));
     EXPECT_TRUE(coarse.certificate.injective()) << "coarse tube of " << sectors;
-    EXPECT_LE(coarse.status, BELTRAMI_NOT_CONVERGED) << "coarse tube of " << sectors;
+    EXPECT_LE(coarse.status, Outcome::kNotConverged) << "coarse tube of " << sectors;
     EXPECT_LT(energy(coarse), 300) << "coarse tube of " << sectors;
   }
 }

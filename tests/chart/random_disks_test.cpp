@@ -25,13 +25,12 @@ TEST_P(RandomDisks, EndInjective) {
     TriangleList mesh = disks::random_disk(seed);
     const Normalisation frame = normalise(mesh.positions, mesh.faces);
     const DiskMesh disk = disks::disk(std::move(mesh));
-    const std::atomic<bool> cancelled{false};
-    const Flattening result = flatten(disk, frame, disks::random_options(seed), {}, cancelled);
+    const Flattening result = flatten(disk, frame, disks::random_options(seed), Work());
     EXPECT_TRUE(result.certificate.injective())
         << disk.face_count() << " faces, " << result.certificate.orientations.negative
         << " flipped, " << result.certificate.orientations.degenerate << " degenerate, "
         << result.certificate.crossings.count << " crossings";
-    EXPECT_NE(result.status, BELTRAMI_NOT_INJECTIVE);
+    EXPECT_NE(result.status, Outcome::kNotInjective);
     EXPECT_TRUE(std::isfinite(result.distortion.symmetric_dirichlet));
     for (const Vec2& w : result.uvs) ASSERT_TRUE(w.allFinite());
   }
@@ -82,8 +81,8 @@ TriangleList extreme_disk(int seed, Random& random) {
   return mesh;
 }
 
-Options extreme_options(Random& random) {
-  Options options;
+ChartOptions extreme_options(Random& random) {
+  ChartOptions options;
   if (random.below(3) > 0) options.coarse_faces = 4 + random.below(random.below(2) == 0 ? 20 : 300);
   options.method = std::max(0, random.below(10) - 4);
   if (random.below(2) == 0) options.flatten = random.below(5);
@@ -97,11 +96,11 @@ Options extreme_options(Random& random) {
 }
 
 /// Whether the mode promises an injective map in the numbers that were asked for.
-bool promises(const Options& options) {
-  if (options.injectivity == BELTRAMI_INJECTIVITY_LOCAL) return false;
-  if (options.method == BELTRAMI_METHOD_TUTTE) return !options.float32;
-  return options.method == BELTRAMI_METHOD_BELTRAMI && options.flatten != BELTRAMI_FLATTEN_BFF &&
-         options.flatten != BELTRAMI_FLATTEN_FLIM;
+bool promises(const ChartOptions& options) {
+  if (options.injectivity == Injectivity::kLocal) return false;
+  if (options.method == Method::kTutte) return !options.float32;
+  return options.method == Method::kBeltrami && options.flatten != Flatten::kBff &&
+         options.flatten != Flatten::kFlim;
 }
 
 class ExtremeDisks : public testing::TestWithParam<int> {};
@@ -111,7 +110,7 @@ TEST_P(ExtremeDisks, EndWithAMapAndATruthfulStatus) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(static_cast<std::uint64_t>(seed) + 2000000);
     TriangleList mesh = extreme_disk(seed, random);
-    const Options options = extreme_options(random);
+    const ChartOptions options = extreme_options(random);
     Normalisation frame;
     try {
       frame = normalise(mesh.positions, mesh.faces);
@@ -119,14 +118,13 @@ TEST_P(ExtremeDisks, EndWithAMapAndATruthfulStatus) {
       continue;  // no area is left
     }
     const DiskMesh disk = disks::disk(std::move(mesh));
-    const std::atomic<bool> cancelled{false};
-    const Flattening result = flatten(disk, frame, options, {}, cancelled);
+    const Flattening result = flatten(disk, frame, options, Work());
     for (const Vec2& w : result.uvs) ASSERT_TRUE(w.allFinite());
     const auto& faces = result.faces.empty() ? disk.faces : result.faces;
     const bool injective = certify(faces, disk.boundary, result.uvs, 1).injective();
     EXPECT_EQ(injective, result.certificate.injective());
     // Beyond the range of the type a map is not what was asked for even where it is injective.
-    EXPECT_TRUE(injective || result.status >= BELTRAMI_NOT_INJECTIVE);
+    EXPECT_TRUE(injective || result.status >= Outcome::kNotInjective);
     const bool beyond_floats =
         options.float32 && !options.unit_square && std::abs(frame.exponent) > 90;
     EXPECT_TRUE(injective || beyond_floats || !promises(options));

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "descend/flat_start.h"
 #include "energy/energy.h"
 #include "exact/certificate.h"
@@ -24,16 +24,15 @@ namespace {
 
 using meshes::TriangleList;
 
-Flattening run(TriangleList mesh, const Options& options = {}) {
+Flattening run(TriangleList mesh, const ChartOptions& options = {}) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   const DiskMesh disk = disks::disk(std::move(mesh));
-  const std::atomic<bool> cancelled{false};
-  return flatten(disk, frame, options, {}, cancelled);
+  return flatten(disk, frame, options, Work());
 }
 
-Options local() {
-  Options options;
-  options.injectivity = BELTRAMI_INJECTIVITY_LOCAL;
+ChartOptions local() {
+  ChartOptions options;
+  options.injectivity = Injectivity::kLocal;
   return options;
 }
 
@@ -73,12 +72,12 @@ constexpr Energy kEnergies[] = {BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET,
 TEST(Overlap, CostsLittleToAvoid) {
   for (const auto& [name, mesh] : overlapping_meshes()) {
     for (const Energy which : kEnergies) {
-      Options options, free = local();
+      ChartOptions options, free = local();
       options.energy = free.energy = which;
       const Flattening covering = run(mesh, free), result = run(mesh, options);
       ASSERT_GT(covering.certificate.crossings.count, 0) << name;
       EXPECT_TRUE(result.certificate.injective()) << name;
-      EXPECT_EQ(result.status, BELTRAMI_OK) << name;
+      EXPECT_EQ(result.status, Outcome::kOk) << name;
       EXPECT_EQ(result.restarts, 0) << name;
       EXPECT_LE(energy(result, which), 1.03 * energy(covering, which)) << name;
     }
@@ -92,11 +91,11 @@ TEST(Overlap, CostsLittleToAvoidWhereSidesOnlyJustTouch) {
       const TriangleList mesh = disks::slit_saddle(n, height);
       const double least = energy(run(mesh, local()));
       for (const std::int64_t coarse : {0, 60}) {
-        Options options;
+        ChartOptions options;
         options.coarse_faces = coarse;
         const Flattening result = run(mesh, options);
         EXPECT_TRUE(result.certificate.injective()) << where;
-        EXPECT_EQ(result.status, BELTRAMI_OK) << where;
+        EXPECT_EQ(result.status, Outcome::kOk) << where;
         EXPECT_LE(energy(result), 1.1 * least) << where << ", coarse " << coarse << " " << least;
       }
     }
@@ -114,7 +113,7 @@ TEST(Overlap, IsNotLookedForWhereTheFreeMinimumHasNone) {
 
 TEST(Overlap, IsAvoidedWithTheSameBitsOnTwoAndThreeThreads) {
   for (const auto& [name, mesh] : overlapping_meshes()) {
-    Options options;
+    ChartOptions options;
     const Flattening one = run(mesh, options);
     for (const int threads : {2, 3}) {
       options.threads = threads;
@@ -143,13 +142,13 @@ TEST(Overlap, IsAvoidedWithTheSameBitsInAnyUnitThatIsAPowerOfTwo) {
 TEST(Overlap, EndsNoHigherWithRefinement) {
   for (const auto& [name, mesh] : overlapping_meshes()) {
     for (const Energy which : kEnergies) {
-      Options options;
+      ChartOptions options;
       options.energy = which;
       const double start = energy(run(mesh, options), which);
       options.refine = true;
       const Flattening refined = run(mesh, options);
       EXPECT_TRUE(refined.certificate.injective()) << name;
-      EXPECT_EQ(refined.status, BELTRAMI_OK) << name;
+      EXPECT_EQ(refined.status, Outcome::kOk) << name;
       EXPECT_LE(energy(refined, which), start * (1 + 1e-12)) << name << ", energy " << which;
     }
   }
@@ -158,22 +157,22 @@ TEST(Overlap, EndsNoHigherWithRefinement) {
 TEST(Overlap, IsStationaryWhereRefinementSaysOk) {
   // Going on from there with a hundredth of the tolerance finds next to nothing.
   for (const auto& [name, mesh] : overlapping_meshes()) {
-    Options options;
+    ChartOptions options;
     options.refine = true;
     const Flattening refined = run(mesh, options);
     options.tolerance = 1e-6;
     const Flattening further = run(mesh, options);
-    EXPECT_EQ(refined.status, BELTRAMI_OK) << name;
+    EXPECT_EQ(refined.status, Outcome::kOk) << name;
     EXPECT_LE(energy(refined), 1.001 * energy(further)) << name;
   }
 }
 
 TEST(Overlap, SaysSoWhereRefinementDidNotGetThere) {
-  Options options;
+  ChartOptions options;
   options.refine = true;
   options.max_iterations = 2;
   const Flattening result = run(opened_blob(4, 60), options);
-  EXPECT_EQ(result.status, BELTRAMI_NOT_CONVERGED);
+  EXPECT_EQ(result.status, Outcome::kNotConverged);
   EXPECT_TRUE(result.certificate.injective());
 }
 
@@ -234,7 +233,7 @@ TEST(ThinStrip, IsFlattenedIsometrically) {
         const std::string where = std::to_string(2 * along * across) + " faces, height " +
                                   std::to_string(height) + (wound ? ", wound" : ", flat");
         const Flattening result = run((wound ? wound_strip : thin_strip)(along, across, height));
-        EXPECT_EQ(result.status, BELTRAMI_OK) << where;
+        EXPECT_EQ(result.status, Outcome::kOk) << where;
         EXPECT_NEAR(energy(result), 2, 1e-6) << where;
         EXPECT_TRUE(result.certificate.injective()) << where;
       }
@@ -281,7 +280,7 @@ TEST(FlatStart, IsNotTakenWhereSidesAreARoundingErrorApart) {
   for (const Index n : {5, 12, 20}) {
     const Flattening result = run(disks::slit(n));
     EXPECT_TRUE(result.certificate.injective()) << n;
-    EXPECT_EQ(result.status, BELTRAMI_OK) << n;
+    EXPECT_EQ(result.status, Outcome::kOk) << n;
     EXPECT_NEAR(energy(result), 2, 2e-3) << n;
   }
 }

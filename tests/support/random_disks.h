@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "support/disks.h"
 
 namespace beltrami::disks {
@@ -133,13 +133,13 @@ inline meshes::TriangleList random_disk(int seed) {
   return mesh;
 }
 
-inline Options random_options(int seed) {
+inline ChartOptions random_options(int seed) {
   Random random(static_cast<std::uint64_t>(seed) + 1000000);
-  Options options;
+  ChartOptions options;
   if (random.below(2) == 0) options.coarse_faces = 20 + random.below(200);
   if (random.below(3) == 0) {
-    constexpr std::array<std::int32_t, 2> kFlattens = {BELTRAMI_FLATTEN_DIRICHLET,
-                                                       BELTRAMI_FLATTEN_GIF};
+    constexpr std::array<std::int32_t, 2> kFlattens = {Flatten::kDirichlet,
+                                                       Flatten::kGif};
     options.flatten = kFlattens[static_cast<std::size_t>(random.below(2))];
   }
   if (random.below(4) == 0) options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;

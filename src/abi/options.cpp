@@ -1,0 +1,124 @@
+#include "abi/options.h"
+
+#include <string>
+
+#include "abi/option_table.h"
+#include "base/error.h"
+
+namespace beltrami {
+namespace {
+
+Method method_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_METHOD_CM:
+      return Method::kCm;
+    case BELTRAMI_METHOD_TUTTE:
+      return Method::kTutte;
+    case BELTRAMI_METHOD_GIF:
+      return Method::kGif;
+    case BELTRAMI_METHOD_BFF:
+      return Method::kBff;
+    case BELTRAMI_METHOD_UV_PROLONGATION:
+      return Method::kUvProlongation;
+    default:
+      return Method::kBeltrami;
+  }
+}
+
+Flatten flatten_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_FLATTEN_DIRICHLET:
+      return Flatten::kDirichlet;
+    case BELTRAMI_FLATTEN_GIF:
+      return Flatten::kGif;
+    case BELTRAMI_FLATTEN_FLIM:
+      return Flatten::kFlim;
+    case BELTRAMI_FLATTEN_BFF:
+      return Flatten::kBff;
+    default:
+      return Flatten::kMetric;
+  }
+}
+
+Injectivity injectivity_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_INJECTIVITY_GLOBAL:
+      return Injectivity::kGlobal;
+    case BELTRAMI_INJECTIVITY_LOCAL:
+      return Injectivity::kLocal;
+    default:
+      return Injectivity::kAuto;
+  }
+}
+
+/// "flatten=bff": as the program's options, but for the dashes.
+std::string written(const OptionEntry& option, const Options& options) {
+  const double value = option.get(options);
+  const auto index = static_cast<std::size_t>(value);
+  const std::string text = index < option.choices.size()
+                               ? option.choices[index]
+                               : std::to_string(static_cast<std::int64_t>(value));
+  return std::string(option.name) + "=" + text;
+}
+
+/// Refuses `key` where it is not at its default; `where`: beside what; `instead`: what to do.
+void refuse_if_set(const Options& options, std::int32_t key, const std::string& where,
+                   const char* instead) {
+  const OptionEntry& option = *find_option(key);
+  if (option.get(options) == option.get(Options{})) return;
+  throw Error(BELTRAMI_E_INVALID_ARGUMENT, "the option " + written(option, options) +
+                                               " has no effect with " + where + ": leave it out, " +
+                                               instead);
+}
+
+}  // namespace
+
+ChartOptions chart_options(const Options& options) {
+  return {.method = method_of(options.method),
+          .flatten = flatten_of(options.flatten),
+          .injectivity = injectivity_of(options.injectivity),
+          .energy = options.energy,
+          .coarse_faces = options.coarse_faces,
+          .tolerance = options.tolerance,
+          .max_iterations = options.max_iterations,
+          .refine = options.refine,
+          .refine_iterations = options.refine_iterations,
+          .delaunay = options.delaunay,
+          .unit_square = options.unit_square,
+          .float32 = options.float32};
+}
+
+Limits limits(const Options& options) {
+  return {.threads = options.threads,
+          .memory_bytes = options.memory_limit,
+          .seconds = options.time_limit};
+}
+
+void require_effect(const Options& options) {
+  const Method method = method_of(options.method);
+  const std::string with_method = written(*find_option(BELTRAMI_OPTION_METHOD), options);
+  const bool flattens =
+      method == Method::kBeltrami || method == Method::kGif || method == Method::kBff;
+  const bool simplifies = method == Method::kBeltrami || method == Method::kUvProlongation;
+  const bool optimises = simplifies || method == Method::kCm || options.refine;
+  if (method != Method::kBeltrami) {
+    refuse_if_set(options, BELTRAMI_OPTION_FLATTEN, with_method, "or take method=beltrami");
+  }
+  if (!simplifies) {
+    refuse_if_set(options, BELTRAMI_OPTION_COARSE_FACES, with_method,
+                  "or take method=beltrami or uv-prolongation");
+  }
+  if (!flattens) {
+    refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, with_method,
+                  "or take method=beltrami, gif or bff");
+  }
+  if (!optimises) {
+    refuse_if_set(options, BELTRAMI_OPTION_INJECTIVITY, with_method,
+                  "or take method=beltrami or cm, or refine");
+  }
+  if (!options.refine) {
+    refuse_if_set(options, BELTRAMI_OPTION_REFINE_ITERATIONS, "refine=0", "or set refine");
+  }
+}
+
+}  // namespace beltrami

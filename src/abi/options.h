@@ -1,0 +1,43 @@
+// The options of a context in their public values, and what the rooms below know them as.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <cstdint>
+
+#include "base/work.h"
+#include "chart/options.h"
+
+namespace beltrami {
+
+/// Values of the BELTRAMI_OPTION_ keys; the option table holds their ranges and words.
+struct Options {
+  std::int32_t method = BELTRAMI_METHOD_BELTRAMI;
+  std::int32_t energy = BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+  std::int64_t coarse_faces = 0;
+  double tolerance = 1e-4;
+  int max_iterations = 500;
+  int threads = 1;
+  bool unit_square = false;
+  std::int32_t flatten = BELTRAMI_FLATTEN_METRIC;
+  std::int32_t injectivity = BELTRAMI_INJECTIVITY_AUTO;
+  bool refine = false;
+  int refine_iterations = 0;
+  double time_limit = 0;
+  bool float32 = false;
+  bool delaunay = false;
+  std::int64_t memory_limit = 0;
+};
+
+/// How a disk is to be flattened.
+ChartOptions chart_options(const Options& options);
+
+/// What a run may use.
+Limits limits(const Options& options);
+
+/// Throws Error INVALID_ARGUMENT, with a sentence that says what to do, where an option is set to
+/// another value than its default and another option leaves it without effect. Asked at the start
+/// of a run: options are set in any order.
+void require_effect(const Options& options);
+
+}  // namespace beltrami

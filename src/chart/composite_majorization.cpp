@@ -1,0 +1,67 @@
+// Composite majorization on a whole mesh: the method cm, and the coarse map of the others.
+#include <utility>
+
+#include "chart/coarser_start.h"
+#include "chart/descent.h"
+#include "chart/modes.h"
+#include "chart/starts.h"
+#include "exact/certificate.h"
+
+namespace beltrami {
+namespace {
+
+/// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
+constexpr double kHopelessEnergy = 1e3;
+
+}  // namespace
+
+double newton_bytes(const MeshCounts& n, int threads) {
+  const double fields =
+      5 * n.vertices * sizeof(Vec2) + n.faces * sizeof(double);  // and the weights of the faces
+  return fields + system_bytes(n, 2, Precision::kDouble, threads).peak;
+}
+
+double cm_bytes(const MeshCounts& n, bool scaffold, int threads) {
+  const double copies =
+      scaffold ? n.faces * (sizeof(Triangle) + sizeof(RestTriangle)) + n.vertices * sizeof(Vec2)
+               : 0;
+  return n.faces * sizeof(RestTriangle) + n.vertices * sizeof(Vec2) + copies +
+         newton_bytes(n, threads);
+}
+
+Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const ChartOptions& options,
+                              const Work& work) {
+  const auto rest = rest_triangles(mesh.positions, mesh.faces, work.threads());
+  std::vector<Vec2> uvs = start_map(mesh, rest, options, work);
+  work.report(0.02);
+  if (!non_positive_faces(mesh.faces, uvs, work.threads()).empty()) {
+    return {.uvs = std::move(uvs), .converged = true};
+  }
+  scale_best(mesh, rest, options, uvs);
+  start_flat(mesh, rest, options, uvs);
+  NewtonOptions newton = newton_options(options, work);
+  newton.tolerance = tolerance;
+  const bool simple = keeps_boundary_simple(options);
+  Descent best = descend(mesh, rest, std::move(uvs), newton, simple, options, work);
+  if (best.energy <= kHopelessEnergy || work.out_of_time()) return best;
+  std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
+  if (other.empty()) return best;
+  Descent again = descend(mesh, rest, std::move(other), newton, simple, options, work);
+  return again.energy < best.energy ? again : best;
+}
+
+ChartMap cm_mode(const DiskMesh& mesh, const char* name, const ChartOptions& options,
+                 const Work& work) {
+  ChartMap map;
+  run_stage(name, work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
+    Descent done = minimise_from_scratch(mesh, options.tolerance, options, inner);
+    stage.iterations = done.iterations;
+    map.uvs = std::move(done.uvs);
+    map.converged = done.converged;
+    map.statistics.coarse_energy = done.energy;
+  });
+  map.statistics.coarse_faces = mesh.face_count();
+  return map;
+}
+
+}  // namespace beltrami

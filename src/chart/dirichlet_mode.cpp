@@ -1,0 +1,28 @@
+// The harmonic map in the prolonged Beltrami coefficients (paper section 3.4).
+#include "chart/modes.h"
+#include "flatten/dirichlet.h"
+
+namespace beltrami {
+
+double harmonic_bytes(const MeshCounts& n, int threads) {
+  return n.faces * sizeof(Cotangents) + 2 * n.vertices * sizeof(Vec2) +
+         system_bytes(n, 1, Precision::kSingle, threads).peak;
+}
+
+double dirichlet_bytes(const MeshCounts& n, int threads) {
+  return fine_bytes(n) + harmonic_bytes(n, threads);
+}
+
+ChartMap dirichlet_mode(const FineProblem& fine, const std::vector<Cotangents>& cotangents,
+                        const ChartOptions& options, const Work& work) {
+  ChartMap map;
+  run_stage("flatten", work.part(0, 0.8), map.statistics.stages,
+            [&](StageStatistics&, const Work& inner) {
+              map.uvs = carry_boundary(*fine.mesh, fine.coarse, fine.coarse_uvs);
+              solve_harmonic(*fine.mesh, cotangents, map.uvs, inner.threads());
+            });
+  mend(fine, keeps_boundary_simple(options), options, work.part(0.8, 1), map);
+  return map;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,65 @@
+// From the disk to what its flattening needs to know: the coarse map, and its metric on the fine
+// faces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/memory.h"
+#include "chart/options.h"
+#include "flatten/laplacian.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+#include "prolong/prolongation.h"
+#include "simplify/simplify.h"
+
+namespace beltrami {
+
+struct FineProblem {
+  const DiskMesh* mesh;  ///< that is flattened: the input, or `retriangulated`
+  std::unique_ptr<DiskMesh> retriangulated = nullptr;
+  CoarseDisk coarse = {};             ///< without vertices where there is none
+  std::vector<Vec2> coarse_uvs = {};  ///< one per coarse vertex
+  bool in_contact = false;            ///< parts of the coarse boundary press on each other
+  std::vector<RestTriangle> rest = {};
+  std::vector<FaceMetric> metric = {};
+  std::vector<Cotangents> cotangents = {};  ///< for the harmonic solves
+  bool converged = true;                    ///< the coarse map
+  ChartStatistics statistics = {};          ///< of what led here
+};
+
+/// Faces that a mesh of so many is simplified to: the number `asked` for, or (0) max(1%, 10,000),
+/// and no more than it has.
+Index coarse_faces(Index faces, std::int64_t asked);
+
+/// The stage "simplify", to `target` faces.
+void simplify_fine(Index target, const Work& work, FineProblem& fine);
+
+/// The stage "coarse": composite majorization of the coarse mesh. Throws Error SOLVER.
+void solve_coarse(const ChartOptions& options, const Work& work, FineProblem& fine);
+
+/// The stage `name`: the metric of the fine faces, that of the coarse map or of the surface where
+/// there is no coarse mesh, and for `harmonic` solves the cotangents. With the option delaunay the
+/// faces are those of the intrinsic Delaunay triangulation.
+void measure_fine(const char* name, bool harmonic, const ChartOptions& options, const Work& work,
+                  FineProblem& fine);
+
+/// The stage "repair": mends flips and, on demand, crossings of the boundary; where that succeeds,
+/// cleans outliers. Returns whether all faces are positive.
+bool mend(const FineProblem& fine, bool simple_boundary, const ChartOptions& options,
+          const Work& work, ChartMap& map);
+
+/// The whole: `map` after what led to its problem.
+ChartMap joined(FineProblem fine, ChartMap map);
+
+/// Bytes of what is known from the prolongation on, the map with it.
+double fine_bytes(const MeshCounts& n);
+
+/// Bytes at the peak of everything up to the coarse map, for `asked` coarse faces.
+double coarse_bytes(const MeshCounts& n, std::int64_t asked, int threads);
+
+}  // namespace beltrami

@@ -1,0 +1,174 @@
+// What is done                  with the factor       how often
+// ----------------------------  --------------------  ------------------------------------------
+// one step of L-BFGS            of the flattening     once, and only if it is not held up
+// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, while a round
+//   or held up                                        gains a thousandth of the energy
+// Newton steps                  of their own          where much is left to gain: up to 10
+// cleaning of outliers          -                     after each that is held up, and at the end
+//
+// Held up: nearly singular faces would shorten the steps. Patches around these are optimised then.
+// When the time is up, what is left of the rounds and the Newton steps is left out.
+#include "chart/polish_schedule.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "chart/descent.h"
+#include "chart/memory_estimate.h"
+#include "descend/newton.h"
+#include "descend/polish.h"
+#include "mesh/boundary.h"
+#include "repair/outliers.h"
+
+namespace beltrami {
+namespace {
+
+constexpr double kTolerance = 3e-4;   // relative decrease: leaves the energy 0.1% too high
+constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
+constexpr int kMostSteps = 30;
+constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
+constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
+constexpr int kNewtonSteps = 10;
+constexpr double kNewtonTolerance = 1e-3;  // relative decrease
+
+/// What all steps have in common.
+struct Setting {
+  const FineProblem& fine;
+  const BoundaryContact* contact;  ///< fitted to the map, or null
+  const ChartOptions& options;
+  const Work& work;
+  double area;  ///< of the surface
+  MetricLaplacian& laplacian;
+
+  double comparable(double energy) const { return comparable_energy(options.energy, energy); }
+};
+
+/// How far it got.
+struct State {
+  std::vector<Vec2> uvs;
+  int iterations = 0;
+  std::int64_t cleaned_patches = 0;
+  PolishResult last = {};  ///< of the last steps
+  bool converged = false;
+};
+
+void clean(const Setting& setting, const std::vector<Index>& also, State& state) {
+  state.cleaned_patches +=
+      clean_outliers(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs,
+                     setting.work.threads(), also);
+}
+
+/// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
+void take_steps(const Setting& setting, int steps, bool force_first, State& state) {
+  // The objective is a mean, the stiffness that of a sum.
+  const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
+    setting.laplacian.precondition(in, out);
+    for (Vec2& w : out) w *= setting.area;
+  };
+  PolishOptions options;
+  options.energy = setting.options.energy;
+  options.threads = setting.work.threads();
+  options.tolerance = kTolerance;
+  options.max_iterations = steps;
+  options.force_first = force_first;
+  options.contact = setting.contact;
+  const int before = state.iterations;
+  state.last =
+      polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
+             [&](double done) { setting.work.report((before + done * steps) / kMostSteps); });
+  state.iterations += state.last.iterations();
+  if (state.last.blocked) clean(setting, state.last.blocking, state);
+}
+
+/// Fits the factor to the map.
+void fit_factor(const Setting& setting, const State& state) {
+  std::vector<double> springs;
+  if (setting.contact) {
+    springs = setting.contact->stiffness(state.uvs);
+    for (double& spring : springs) spring *= setting.contact->strength();
+  }
+  const DiskMesh& mesh = *setting.fine.mesh;
+  setting.laplacian.refit(mesh,
+                          energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
+                                           state.uvs, setting.work.threads()),
+                          springs);
+}
+
+void take_rounds(const Setting& setting, State& state) {
+  double before_last_round = std::numeric_limits<double>::infinity();
+  // Rounds of cleaning alone, without a step, are bounded too.
+  for (int round = 0; round < kMostSteps; ++round) {
+    if (state.last.converged || state.iterations >= kMostSteps) return;
+    if (setting.work.out_of_time()) return;
+    fit_factor(setting, state);
+    take_steps(setting, kMostSteps - state.iterations, true, state);
+    if (!state.last.blocked) return;
+    // Cleaning counts too: what a round gains includes what it did after the one before.
+    const double energy = state.last.energies.back();
+    const double gained = before_last_round - energy;
+    before_last_round = state.last.energies.front();
+    if (gained <= kLittleGain * setting.comparable(energy)) return;
+  }
+}
+
+/// A few steps of composite majorization: they cost most, and are not held up by nearly singular
+/// faces.
+void take_newton_steps(const Setting& setting, State& state) {
+  NewtonOptions newton = newton_options(setting.options, setting.work);
+  newton.proxy_steps = 0;
+  newton.contact = setting.contact;
+  newton.max_iterations = kNewtonSteps;
+  newton.tolerance = std::max(newton.tolerance, kNewtonTolerance);
+  const DiskMesh& mesh = *setting.fine.mesh;
+  const NewtonResult ended =
+      minimise_energy(mesh.faces, setting.fine.rest, only_first_of_boundary(mesh), state.uvs,
+                      newton, checkpoint_of(setting.work.part(0.9, 0.9)));
+  state.iterations += ended.iterations();
+  state.converged = ended.converged;
+}
+
+/// Where the steps ended far from stationary, and time and memory are left.
+void end_with_newton(const Setting& setting, State& state) {
+  const double energy = setting.comparable(state.last.energies.back());
+  state.converged = state.last.converged || 0.5 * state.last.predicted <= kStationary * energy;
+  if (state.last.converged || !(state.last.predicted > kMuchLeft * energy)) return;
+  if (setting.work.out_of_time()) return;
+  if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
+  take_newton_steps(setting, state);
+}
+
+}  // namespace
+
+ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact,
+                    const ChartOptions& options, const Work& work, MetricLaplacian& laplacian,
+                    std::vector<Vec2> start) {
+  ChartMap map;
+  run_stage("polish", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
+    std::optional<BoundaryContact> fitted;
+    if (contact) {
+      fitted.emplace(*contact).fit(
+          start, comparable_energy(options.energy, fine.statistics.coarse_energy));
+    }
+    const Setting setting{fine,
+                          fitted ? &*fitted : nullptr,
+                          options,
+                          inner,
+                          surface_area(*fine.mesh, inner.threads()),
+                          laplacian};
+    State state{.uvs = std::move(start)};
+    take_steps(setting, 1, false, state);
+    take_rounds(setting, state);
+    end_with_newton(setting, state);
+    clean(setting, {}, state);
+    if (contact) scale_best(*fine.mesh, fine.rest, options, state.uvs);
+    stage.iterations = state.iterations;
+    map.uvs = std::move(state.uvs);
+    map.converged = state.converged;
+    map.statistics.cleaned_patches = state.cleaned_patches;
+  });
+  return map;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,45 @@
+#include "chart/starts.h"
+
+#include "chart/coarser_start.h"
+#include "chart/descent.h"
+#include "chart/memory_estimate.h"
+#include "descend/contact.h"
+#include "descend/flat_start.h"
+#include "descend/grid_drawing.h"
+#include "descend/tutte.h"
+#include "exact/certificate.h"
+#include "mesh/boundary.h"
+#include "repair/repair.h"
+
+namespace beltrami {
+
+std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                            const ChartOptions& options, const Work& work) {
+  std::vector<Vec2> uvs = tutte_embedding(mesh);
+  const RepairOptions mend{.threads = work.threads(),
+                           .global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
+  if (repair(mesh, rest, uvs, mend).flips_after == 0) return uvs;
+  std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
+  return other.empty() ? grid_drawing(mesh) : other;
+}
+
+void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                const ChartOptions& options, std::vector<Vec2>& uvs) {
+  double least = mean_energy(options.energy, mesh.faces, rest, uvs);
+  const std::vector<double> lengths = boundary_lengths(mesh);
+  BoundaryContact contact(mesh.boundary, lengths, lengths);
+  for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
+    scale_best(mesh, rest, options, start);
+    double energy = mean_energy(options.energy, mesh.faces, rest, start);
+    if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, 1).injective()) continue;
+    if (keeps_boundary_simple(options)) {
+      contact.fit(start, 2);
+      energy += contact.strength() / surface_area(mesh) * contact.energy(start);
+    }
+    if (!(energy < least)) continue;
+    uvs.swap(start);
+    least = energy;
+  }
+}
+
+}  // namespace beltrami

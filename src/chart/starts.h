@@ -1,0 +1,25 @@
+// Maps without a flip that descents start from.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/options.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+/// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
+/// coarser mesh; where that fails too, a drawing that cannot fold but for the rounding of its
+/// numbers. One UV per vertex. Throws Error SOLVER.
+std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                            const ChartOptions& options, const Work& work);
+
+/// Takes a flat start (descend/flat_start.h) instead of `uvs` where it is injective and has less
+/// energy, with that of its contact: where parts are a rounding error apart, nothing moves.
+void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                const ChartOptions& options, std::vector<Vec2>& uvs);
+
+}  // namespace beltrami

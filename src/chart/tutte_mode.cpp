@@ -1,0 +1,27 @@
+// Tutte's embedding as a method of its own, and as what is left where no other map is injective.
+#include "chart/memory_estimate.h"
+#include "chart/modes.h"
+#include "descend/tutte.h"
+#include "repair/repair.h"
+
+namespace beltrami {
+
+double tutte_bytes(const MeshCounts& n) {
+  return 3 * n.vertices * sizeof(Vec2) + system_bytes(n, 1, Precision::kDouble, 1).peak;
+}
+
+ChartMap tutte_mode(const DiskMesh& mesh, const ChartOptions& options, const Work& work) {
+  ChartMap map;
+  run_stage("tutte", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
+    map.uvs = tutte_embedding(mesh);
+    const auto rest = rest_triangles(mesh.positions, mesh.faces, inner.threads());
+    const RepairOptions how{.simple_boundary = true,
+                            .threads = inner.threads(),
+                            .global_fix = affords(mesh, options, Extra::kGlobalFix, inner)};
+    const RepairResult repaired = repair(mesh, rest, map.uvs, how, checkpoint_of(inner));
+    map.statistics.flips_before_repair = repaired.flips_before;
+  });
+  return map;
+}
+
+}  // namespace beltrami
