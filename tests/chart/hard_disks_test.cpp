@@ -1,7 +1,6 @@
 // Disks at the ends of what floating point can hold: what is accepted is what is delivered.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -42,7 +41,7 @@ Flattening run(TriangleList mesh, const ChartOptions& options) {
   return result;
 }
 
-ChartOptions method(std::int32_t which) {
+ChartOptions method(Method which) {
   ChartOptions options;
   options.method = which;
   return options;

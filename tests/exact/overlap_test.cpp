@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -24,10 +23,10 @@ namespace {
 
 using meshes::TriangleList;
 
-Flattening run(TriangleList mesh, const ChartOptions& options = {}) {
+Flattening run(TriangleList mesh, const ChartOptions& options = {}, int threads = 1) {
   const Normalisation frame = normalise(mesh.positions, mesh.faces);
   const DiskMesh disk = disks::disk(std::move(mesh));
-  return flatten(disk, frame, options, Work());
+  return flatten(disk, frame, options, Work(threads));
 }
 
 ChartOptions local() {
@@ -116,8 +115,7 @@ TEST(Overlap, IsAvoidedWithTheSameBitsOnTwoAndThreeThreads) {
     ChartOptions options;
     const Flattening one = run(mesh, options);
     for (const int threads : {2, 3}) {
-      options.threads = threads;
-      EXPECT_EQ(run(mesh, options).uvs, one.uvs) << name << ", threads " << threads;
+      EXPECT_EQ(run(mesh, options, threads).uvs, one.uvs) << name << ", threads " << threads;
     }
   }
 }

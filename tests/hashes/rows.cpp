@@ -258,10 +258,10 @@ std::vector<std::string> random_rows() {
   for (int block = 0; block < kDisks; block += kBlock) {
     Hash hash;
     for (int seed = block; seed < block + kBlock; ++seed) {
-      const Options options = disks::random_options(seed);
+      const ChartOptions options = disks::random_options(seed);
       run(disks::random_disk(seed),
           {{BELTRAMI_OPTION_COARSE_FACES, options.coarse_faces},
-           {BELTRAMI_OPTION_FLATTEN, options.flatten},
+           {BELTRAMI_OPTION_FLATTEN, static_cast<std::int64_t>(options.flatten)},
            {BELTRAMI_OPTION_ENERGY, options.energy},
            {BELTRAMI_OPTION_DELAUNAY, options.delaunay},
            {BELTRAMI_OPTION_UNIT_SQUARE, options.unit_square}},

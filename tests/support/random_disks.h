@@ -138,8 +138,7 @@ inline ChartOptions random_options(int seed) {
   ChartOptions options;
   if (random.below(2) == 0) options.coarse_faces = 20 + random.below(200);
   if (random.below(3) == 0) {
-    constexpr std::array<std::int32_t, 2> kFlattens = {Flatten::kDirichlet,
-                                                       Flatten::kGif};
+    constexpr std::array<Flatten, 2> kFlattens = {Flatten::kDirichlet, Flatten::kGif};
     options.flatten = kFlattens[static_cast<std::size_t>(random.below(2))];
   }
   if (random.below(4) == 0) options.energy = BELTRAMI_ENERGY_SYMMETRIC_ARAP;
