@@ -132,9 +132,10 @@ void take_newton_steps(const Setting& setting, State& state) {
 /// Where the steps ended far from stationary, and time and memory are left.
 void end_with_newton(const Setting& setting, State& state) {
   const double energy = setting.comparable(state.last.energies.back());
-  state.converged = state.last.converged || 0.5 * state.last.predicted <= kStationary * energy;
-  if (state.last.converged || !(state.last.predicted > kMuchLeft * energy)) return;
-  if (setting.work.out_of_time()) return;
+  state.converged = state.last.converged;
+  if (state.converged || setting.work.out_of_time()) return;
+  state.converged = 0.5 * state.last.predicted <= kStationary * energy;
+  if (!(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);
 }

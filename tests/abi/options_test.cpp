@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "abi/host.h"
 
@@ -119,6 +121,73 @@ TEST(Options, ARefusedValueLeavesTheOldOne) {
   auto stage = sized<beltrami_stage>();
   ASSERT_EQ(beltrami_get_stage(context.get(), 0, &stage), BELTRAMI_OK);
   EXPECT_STREQ(stage.name, "tutte");
+}
+
+struct Pair {
+  std::vector<std::pair<std::int32_t, std::int64_t>> settings;
+  const char* named;  ///< in the message, or null where the pair makes sense
+};
+
+TEST(Options, ThatWouldHaveNoEffectAreRefusedByTheRun) {
+  constexpr auto kMethod = BELTRAMI_OPTION_METHOD;
+  const std::vector<Pair> pairs = {
+      {{{kMethod, BELTRAMI_METHOD_CM}, {BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_BFF}},
+       "flatten=bff has no effect with method=cm"},
+      {{{BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_GIF}, {kMethod, BELTRAMI_METHOD_GIF}},
+       "flatten=gif has no effect with method=gif"},
+      {{{kMethod, BELTRAMI_METHOD_TUTTE}, {BELTRAMI_OPTION_COARSE_FACES, 100}},
+       "coarse-faces=100 has no effect with method=tutte"},
+      {{{kMethod, BELTRAMI_METHOD_CM}, {BELTRAMI_OPTION_DELAUNAY, 1}},
+       "delaunay=on has no effect with method=cm"},
+      {{{kMethod, BELTRAMI_METHOD_BFF}, {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_INJECTIVITY_LOCAL}},
+       "injectivity=local has no effect with method=bff"},
+      {{{BELTRAMI_OPTION_REFINE_ITERATIONS, 3}}, "refine-iterations=3 has no effect with refine=0"},
+      {{{kMethod, BELTRAMI_METHOD_CM}}, nullptr},
+      {{{kMethod, BELTRAMI_METHOD_CM}, {BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_METRIC}},
+       nullptr},
+      {{{kMethod, BELTRAMI_METHOD_GIF}, {BELTRAMI_OPTION_DELAUNAY, 1}}, nullptr},
+      {{{kMethod, BELTRAMI_METHOD_TUTTE},
+        {BELTRAMI_OPTION_REFINE, 1},
+        {BELTRAMI_OPTION_REFINE_ITERATIONS, 3},
+        {BELTRAMI_OPTION_INJECTIVITY, BELTRAMI_INJECTIVITY_GLOBAL}},
+       nullptr},
+  };
+  const meshes::TriangleList mesh = meshes::bumps(4, 4);
+  for (const auto& [settings, named] : pairs) {
+    const Context context = create();
+    ASSERT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
+    for (const auto& [key, value] : settings) {
+      ASSERT_EQ(beltrami_set_int(context.get(), key, value), BELTRAMI_OK) << message(context);
+    }
+    const beltrami_status status = run(context);
+    if (named == nullptr) {
+      EXPECT_GE(status, BELTRAMI_OK) << message(context);
+      continue;
+    }
+    EXPECT_EQ(status, BELTRAMI_E_INVALID_ARGUMENT) << named;
+    EXPECT_NE(message(context).find(named), std::string::npos) << message(context);
+    EXPECT_NE(message(context).find("leave it out"), std::string::npos) << message(context);
+  }
+}
+
+TEST(Options, ReachEveryValidPairInAnyOrder) {
+  const Context context = loaded(meshes::bumps(4, 4));
+  set_option(context, BELTRAMI_OPTION_FLATTEN, BELTRAMI_FLATTEN_DIRICHLET);
+  EXPECT_EQ(run(context), BELTRAMI_E_INVALID_ARGUMENT) << "the method is tutte";
+  set_option(context, BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_BELTRAMI);
+  EXPECT_EQ(run(context), BELTRAMI_OK) << message(context);
+}
+
+TEST(Options, ATimeLimitCutsTheIterationsOfAnyMethod) {
+  for (const std::int32_t method : {BELTRAMI_METHOD_BELTRAMI, BELTRAMI_METHOD_CM}) {
+    const Context context = loaded(meshes::bumps(8, 8));
+    set_option(context, BELTRAMI_OPTION_METHOD, static_cast<std::uint64_t>(method));
+    ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_TIME_LIMIT, 1e-9), BELTRAMI_OK);
+    EXPECT_EQ(run(context), BELTRAMI_NOT_CONVERGED) << message(context);
+    auto certificate = sized<beltrami_certificate>();
+    ASSERT_EQ(beltrami_get_certificate(context.get(), &certificate), BELTRAMI_OK);
+    EXPECT_EQ(certificate.injective, 1);
+  }
 }
 
 TEST(Options, UnitSquareHoldsEveryUv) {

@@ -294,6 +294,18 @@ TEST(Flatten, SaysWhenMemoryRunsOut) {
   EXPECT_EQ(Json::parse(directory.read("r.json"))["status"], "BELTRAMI_E_OUT_OF_MEMORY");
 }
 
+TEST(Flatten, RefusesOptionsThatWouldHaveNoEffect) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(6)), out = directory.path("out.obj");
+  const Outcome refused = run({"flatten", in, out, "--method", "cm", "--flatten", "bff"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("flatten=bff has no effect with method=cm"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(directory.names().size(), 1u) << "an output was written";
+  EXPECT_EQ(run({"flatten", in, out, "--method", "cm"}).exit_code, 0);
+  EXPECT_EQ(run({"flatten", in, out, "--flatten", "bff"}).exit_code, 0);
+}
+
 TEST(CommandLine, ErrorsAreOneLineAndHelpIsNone) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquare), out = directory.path("out.obj");
