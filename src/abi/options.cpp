@@ -99,14 +99,10 @@ void require_effect(const Options& options) {
   const std::string with_method = written(*find_option(BELTRAMI_OPTION_METHOD), options);
   const bool flattens =
       method == Method::kBeltrami || method == Method::kGif || method == Method::kBff;
-  const bool simplifies = method == Method::kBeltrami || method == Method::kUvProlongation;
-  const bool optimises = simplifies || method == Method::kCm || options.refine;
+  const bool optimises = method == Method::kBeltrami || method == Method::kUvProlongation ||
+                         method == Method::kCm || options.refine;
   if (method != Method::kBeltrami) {
     refuse_if_set(options, BELTRAMI_OPTION_FLATTEN, with_method, "or take method=beltrami");
-  }
-  if (!simplifies) {
-    refuse_if_set(options, BELTRAMI_OPTION_COARSE_FACES, with_method,
-                  "or take method=beltrami or uv-prolongation");
   }
   if (!flattens) {
     refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, with_method,

@@ -35,9 +35,11 @@ ChartOptions chart_options(const Options& options);
 /// What a run may use.
 Limits limits(const Options& options);
 
-/// Throws Error INVALID_ARGUMENT, with a sentence that says what to do, where an option is set to
-/// another value than its default and another option leaves it without effect. Asked at the start
-/// of a run: options are set in any order.
+/// Throws Error INVALID_ARGUMENT, with a sentence that says what to do, where flatten, delaunay,
+/// injectivity or refine-iterations is set to another value than its default and another option
+/// leaves it without effect. Asked at the start of a run: options are set in any order. The numbers
+/// coarse-faces, tolerance and max-iterations go with any method: those without such a stage have
+/// nothing to bound.
 void require_effect(const Options& options);
 
 }  // namespace beltrami

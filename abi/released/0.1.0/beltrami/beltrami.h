@@ -53,7 +53,8 @@ enum {
 
   /* All promises kept. */
   BELTRAMI_OK = 0,
-  /* A map exists and is injective, but an optimisation stopped at its iteration limit. */
+  /* A map exists and is injective, but an optimisation stopped at its limit of iterations or time.
+   */
   BELTRAMI_NOT_CONVERGED = 1,
   /* A map exists, but the exact certificate found flips, zero areas or boundary crossings. */
   BELTRAMI_NOT_INJECTIVE = 2,
@@ -162,7 +163,7 @@ enum {
   BELTRAMI_OPTION_INJECTIVITY = 8,    /* choice: BELTRAMI_INJECTIVITY_ */
   BELTRAMI_OPTION_REFINE = 9,         /* int: 1 goes on with CM on the fine mesh */
   BELTRAMI_OPTION_REFINE_ITERATIONS = 10, /* int: limit of its iterations; 0: CM's stopping rule */
-  BELTRAMI_OPTION_TIME_LIMIT = 11,        /* float: wall seconds after which it stops; 0: none */
+  BELTRAMI_OPTION_TIME_LIMIT = 11,        /* float: wall seconds of iterations; 0: any */
   BELTRAMI_OPTION_FLOAT32 = 12,           /* int: 1 delivers single-precision numbers */
   BELTRAMI_OPTION_DELAUNAY = 13,          /* choice: 1 flattens on intrinsic Delaunay faces */
   BELTRAMI_OPTION_MEMORY_LIMIT = 14       /* int: bytes that a run is to stay within; 0: any */
@@ -250,8 +251,9 @@ BELTRAMI_API beltrami_status beltrami_option_describe(int32_t key, beltrami_opti
  * Cannot fail. */
 BELTRAMI_API const char* beltrami_option_choice(int32_t key, int32_t value);
 
-/* Sets an option for later runs. Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range;
- * the old value stays), INVALID_STATE (during a run). */
+/* Sets an option for later runs, in any order: whether options go together is judged by the run.
+ * Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range; the old value stays),
+ * INVALID_STATE (during a run). */
 BELTRAMI_API beltrami_status beltrami_set_int(beltrami_context* context, int32_t key,
                                               int64_t value);
 BELTRAMI_API beltrami_status beltrami_set_float(beltrami_context* context, int32_t key,
@@ -320,7 +322,10 @@ BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context,
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
  * Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32; errors:
- * INVALID_STATE (no mesh), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
+ * INVALID_STATE (no mesh), INVALID_ARGUMENT (an option that another one leaves without effect is
+ * not at its default: flatten with another method than beltrami, delaunay with cm, tutte or
+ * uv-prolongation, injectivity with tutte, gif or bff unless refined, refine-iterations without
+ * refine), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
  * the option memory-limit), SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
@@ -381,11 +386,11 @@ typedef struct beltrami_result {
   uint64_t patch_fixes;           /* patches that repair untangled */
   uint64_t global_fixes;          /* layouts that repair embedded anew, with a scaffold */
   uint64_t cleaned_patches;       /* patches optimised around faces of enormous energy */
-  uint64_t restarts;         /* tries with a coarser mesh, after a map that was not injective */
-  uint64_t float32_moves;    /* vertices that are not at the nearest float in F32 */
-  uint64_t delaunay_flips;   /* with the option delaunay: edges flipped */
-  uint64_t delaunay_refused; /* edges that are not Delaunay: their flip would repeat an edge */
-  uint64_t degenerate_faces; /* of the input: faces without area, which no energy counts */
+  uint64_t restarts;              /* tries after one whose map was not injective, mostly coarser */
+  uint64_t float32_moves;         /* vertices that are not at the nearest float in F32 */
+  uint64_t delaunay_flips;        /* with the option delaunay: edges flipped */
+  uint64_t delaunay_refused;      /* edges that are not Delaunay: their flip would repeat an edge */
+  uint64_t degenerate_faces;      /* of the input: faces without area, which no energy counts */
   uint64_t first_degenerate_face; /* the first of them, or BELTRAMI_NO_ELEMENT */
   double coarse_energy;           /* mean energy of the coarse map; 0 where CM did not run */
 } beltrami_result;
@@ -401,7 +406,8 @@ typedef struct beltrami_stage {
 /* The functions below that return a status fail with INVALID_STATE before the first run with a
  * result, and with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride. */
 
-/* Counts, area and cost of the last run with a result. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+/* Counts, area and cost of the last run with a result; the counts are those of the try whose map
+ * was kept. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, beltrami_result* out);
 
 /* Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32

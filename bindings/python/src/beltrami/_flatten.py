@@ -70,8 +70,8 @@ class Flattener:
         Iterations after which the refinement stops; 0 leaves it to the tolerance. A number from 0
         to 1,000,000.
     time_limit : float, default 0.0
-        Seconds since the start of the run after which the refinement stops with what it has; 0 sets
-        no limit. A number from 0 to 1,000,000,000.
+        Seconds since the start of the run after which iterations stop with the best map so far; 0
+        sets no limit. A number from 0 to 1,000,000,000.
     float32 : bool, default False
         True delivers UVs that single precision holds exactly, rounded so that the map stays
         injective.
@@ -401,8 +401,8 @@ def parameterize(
         Iterations after which the refinement stops; 0 leaves it to the tolerance. A number from 0
         to 1,000,000.
     time_limit : float, default 0.0
-        Seconds since the start of the run after which the refinement stops with what it has; 0 sets
-        no limit. A number from 0 to 1,000,000,000.
+        Seconds since the start of the run after which iterations stop with the best map so far; 0
+        sets no limit. A number from 0 to 1,000,000,000.
     float32 : bool, default False
         True delivers UVs that single precision holds exactly, rounded so that the map stays
         injective.

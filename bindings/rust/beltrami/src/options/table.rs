@@ -181,14 +181,14 @@ options! {
         "Iterations after which the refinement stops; 0 leaves it to the tolerance."
         Int(&[]), 0..=1000000, default 0;
 
-    /// Seconds since the start of the run after which the refinement stops with what it has; 0 sets
-    /// no limit.
+    /// Seconds since the start of the run after which iterations stop with the best map so far; 0
+    /// sets no limit.
     ///
     /// From 0 to 1000000000.
     ///
     /// Default: [`Duration::ZERO`].
     time_limit(Duration) = 11 "time-limit"
-        "Seconds since the start of the run after which the refinement stops with what it has; 0 sets no limit."
+        "Seconds since the start of the run after which iterations stop with the best map so far; 0 sets no limit."
         Float(&[]), 0..=1000000000, default 0;
 
     /// `true` delivers UVs that single precision holds exactly, rounded so that the map stays
