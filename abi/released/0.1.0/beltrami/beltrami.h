@@ -53,8 +53,7 @@ enum {
 
   /* All promises kept. */
   BELTRAMI_OK = 0,
-  /* A map exists and is injective, but an optimisation stopped at its limit of iterations or time.
-   */
+  /* A map exists and is injective, but an optimisation stopped at its limit of steps or time. */
   BELTRAMI_NOT_CONVERGED = 1,
   /* A map exists, but the exact certificate found flips, zero areas or boundary crossings. */
   BELTRAMI_NOT_INJECTIVE = 2,
@@ -386,7 +385,7 @@ typedef struct beltrami_result {
   uint64_t patch_fixes;           /* patches that repair untangled */
   uint64_t global_fixes;          /* layouts that repair embedded anew, with a scaffold */
   uint64_t cleaned_patches;       /* patches optimised around faces of enormous energy */
-  uint64_t restarts;              /* tries after one whose map was not injective, mostly coarser */
+  uint64_t restarts;              /* tries after the first, whose map was not injective */
   uint64_t float32_moves;         /* vertices that are not at the nearest float in F32 */
   uint64_t delaunay_flips;        /* with the option delaunay: edges flipped */
   uint64_t delaunay_refused;      /* edges that are not Delaunay: their flip would repeat an edge */
