@@ -113,7 +113,7 @@ Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std
     }
     add(lost, spent);
   }
-  if (!best) throw *failure;
+  if (!best) throw Error(*failure);
   if (tried > 1) {
     auto& stages = best->map.statistics.stages;
     stages.insert(stages.begin(), lost);
