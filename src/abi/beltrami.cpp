@@ -14,7 +14,7 @@
 #include "abi/status.h"
 #include "base/error.h"
 #include "base/types.h"
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "linear/spd_solver.h"

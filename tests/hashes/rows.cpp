@@ -14,7 +14,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
-#include "chart/pipeline.h"
+#include "chart/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 #include "support/random_disks.h"
