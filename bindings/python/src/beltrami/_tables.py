@@ -122,7 +122,7 @@ class Report:
     cleaned_patches : int
         Patches optimised around faces of enormous energy.
     restarts : int
-        Tries with a coarser mesh, after a map that was not injective.
+        Tries after the first, whose map was not injective.
     float32_moves : int
         Vertices that are not at the nearest float in F32.
     delaunay_flips : int

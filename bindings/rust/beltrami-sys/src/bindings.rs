@@ -8,7 +8,7 @@ pub type beltrami_status = i32;
 pub const BELTRAMI_STATUS_FORCE_SIGNED_: _bindgen_ty_1 = -1;
 /// All promises kept.
 pub const BELTRAMI_OK: _bindgen_ty_1 = 0;
-/// A map exists and is injective, but an optimisation stopped at its iteration limit.
+/// A map exists and is injective, but an optimisation stopped at its limit of steps or time.
 pub const BELTRAMI_NOT_CONVERGED: _bindgen_ty_1 = 1;
 /// A map exists, but the exact certificate found flips, zero areas or boundary crossings.
 pub const BELTRAMI_NOT_INJECTIVE: _bindgen_ty_1 = 2;
@@ -143,7 +143,7 @@ pub const BELTRAMI_OPTION_INJECTIVITY: _bindgen_ty_3 = 8;
 pub const BELTRAMI_OPTION_REFINE: _bindgen_ty_3 = 9;
 /// int: limit of its iterations; 0: CM's stopping rule
 pub const BELTRAMI_OPTION_REFINE_ITERATIONS: _bindgen_ty_3 = 10;
-/// float: wall seconds after which it stops; 0: none
+/// float: wall seconds of iterations; 0: any
 pub const BELTRAMI_OPTION_TIME_LIMIT: _bindgen_ty_3 = 11;
 /// int: 1 delivers single-precision numbers
 pub const BELTRAMI_OPTION_FLOAT32: _bindgen_ty_3 = 12;
@@ -287,8 +287,9 @@ extern "C" {
     pub fn beltrami_option_choice(key: i32, value: i32) -> *const ::core::ffi::c_char;
 }
 extern "C" {
-    /** Sets an option for later runs. Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range;
- the old value stays), INVALID_STATE (during a run).*/
+    /** Sets an option for later runs, in any order: whether options go together is judged by the run.
+ Errors: INVALID_ARGUMENT (unknown key, wrong type, out of range; the old value stays),
+ INVALID_STATE (during a run).*/
     pub fn beltrami_set_int(
         context: *mut beltrami_context,
         key: i32,
@@ -446,7 +447,10 @@ extern "C" {
 extern "C" {
     /** Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
  Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32; errors:
- INVALID_STATE (no mesh), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
+ INVALID_STATE (no mesh), INVALID_ARGUMENT (an option that another one leaves without effect is
+ not at its default: flatten with another method than beltrami, delaunay with cm, tutte or
+ uv-prolongation, injectivity with tutte, gif or bff unless refined, refine-iterations without
+ refine), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
  the option memory-limit), SOLVER, INTERNAL (also if `progress` throws a C++ exception).*/
     pub fn beltrami_run(
         context: *mut beltrami_context,
@@ -612,7 +616,7 @@ pub struct beltrami_result {
     pub global_fixes: u64,
     /// patches optimised around faces of enormous energy
     pub cleaned_patches: u64,
-    /// tries with a coarser mesh, after a map that was not injective
+    /// tries after the first, whose map was not injective
     pub restarts: u64,
     /// vertices that are not at the nearest float in F32
     pub float32_moves: u64,
@@ -748,7 +752,8 @@ impl Default for beltrami_stage {
     }
 }
 extern "C" {
-    /// Counts, area and cost of the last run with a result. Errors: INVALID_STATE, INVALID_ARGUMENT.
+    /** Counts, area and cost of the last run with a result; the counts are those of the try whose map
+ was kept. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_result(
         context: *mut beltrami_context,
         out: *mut beltrami_result,
