@@ -65,16 +65,31 @@ Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
   return box;
 }
 
-/// Rounds a map to the numbers, moved by `shift`, and notes where that leaves it not injective.
-void round_chart(const DiskMesh& mesh, const Vec2& shift, const Numbers& numbers, ChartMap& map) {
+/// Rounds a map, moved by `shift`, to doubles that rounded to nearest stay injective in single
+/// precision; or to single-precision numbers at once. Notes where it does not stay injective.
+void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32,
+                 ChartMap& map) {
+  const Numbers doubles{.single = false, .exponent = exponent};
+  const Numbers floats{.single = true, .exponent = exponent};
+  const bool was_injective = map.status == BELTRAMI_OK || map.status == BELTRAMI_NOT_CONVERGED;
+  const auto note = [&](const Numbers& numbers, const Certificate& certificate,
+                        beltrami_status status) {
+    if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) map.status = status;
+  };
   std::vector<Vec2> placed = map.uvs;
   for (Vec2& w : placed) w += shift;
-  const bool was_injective = map.status == BELTRAMI_OK || map.status == BELTRAMI_NOT_CONVERGED;
-  Rounded rounded = round_map(mesh, map.uvs, placed, numbers, 1);
-  if (was_injective && !(numbers.hold(placed) && rounded.certificate.injective())) {
-    map.status = numbers.single ? BELTRAMI_NOT_INJECTIVE_FLOAT32 : BELTRAMI_NOT_INJECTIVE;
-  }
+  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, 1);
   map.uvs = std::move(rounded.uvs);
+  note(doubles, rounded.certificate, BELTRAMI_NOT_INJECTIVE);
+  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, 1);
+  if (float32) {
+    if (map.status != BELTRAMI_NOT_INJECTIVE) {
+      note(floats, single.certificate, BELTRAMI_NOT_INJECTIVE_FLOAT32);
+    }
+    map.uvs = std::move(single.uvs);
+  } else if (single.moved > 0 && single.certificate.injective()) {
+    map.uvs = std::move(single.uvs);
+  }
 }
 
 /// Lays the maps out without overlap, in the numbers to be delivered but for 2^exponent. A single
@@ -88,15 +103,12 @@ void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
     shifts = place_in_rows(sizes);
     for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
   }
-  const Numbers doubles{.single = false, .exponent = exponent};
-  const Numbers floats{.single = true, .exponent = exponent};
   parallel_for(work.threads(), size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].status < 0) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
       return;
     }
-    round_chart(charts[c].mesh, shifts[c], doubles, maps[c]);
-    if (float32) round_chart(charts[c].mesh, Vec2::Zero(), floats, maps[c]);
+    round_chart(charts[c].mesh, shifts[c], exponent, float32, maps[c]);
   });
 }
 
@@ -105,8 +117,8 @@ void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
 void put_aside(const std::vector<Triangle>& faces, const std::vector<Index>& set_aside,
                const std::vector<Index>& uv_of, Atlas& atlas) {
   for (const Index f : set_aside) {
-    const auto met = std::find_if(faces[f].begin(), faces[f].end(),
-                                  [&](Index v) { return uv_of[v] != kNone; });
+    const auto met =
+        std::find_if(faces[f].begin(), faces[f].end(), [&](Index v) { return uv_of[v] != kNone; });
     const Vec2 place = atlas.uvs[met != faces[f].end() ? uv_of[*met] : 0];
     for (int k = 0; k < 3; ++k) {
       atlas.faces[f][k] = size_of(atlas.uvs);
@@ -150,8 +162,9 @@ void collect(const std::vector<Triangle>& faces, const Admitted& admitted,
   put_aside(faces, admitted.set_aside, uv_of, atlas);
 }
 
-/// Judges the faces as they were oriented, but for those set aside.
-AtlasCertificate judge(const Atlas& atlas, const Work& work) {
+/// Judges the faces as they were oriented, but for those set aside: the UVs as they are, and
+/// rounded to single precision.
+void judge(const Numbers& floats, const Work& work, Atlas& atlas) {
   AtlasRules rules;
   rules.excepted.resize(atlas.faces.size());
   std::vector<Triangle> faces = atlas.faces;
@@ -159,7 +172,11 @@ AtlasCertificate judge(const Atlas& atlas, const Work& work) {
     if (atlas.reversed[f]) std::swap(faces[f][1], faces[f][2]);
     rules.excepted[f] = atlas.chart_of_face[f] == kNone;
   }
-  return certify_atlas(faces, atlas.uvs, rules, work);
+  atlas.certificate = certify_atlas(faces, atlas.uvs, rules, work.part(0, 0.5));
+  std::vector<Vec2> single = atlas.uvs;
+  for (Vec2& w : single) w = floats.nearest(w);
+  atlas.single_certificate =
+      single == atlas.uvs ? atlas.certificate : certify_atlas(faces, single, rules, work);
 }
 
 beltrami_status status_of(const Atlas& atlas, bool float32) {
@@ -198,7 +215,7 @@ Atlas unwrap(const std::vector<Vec3>& positions, const std::vector<Triangle>& fa
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
   atlas.seam_over_root_area = seam_length(charts, admitted.input_vertex) / std::sqrt(area);
-  atlas.certificate = judge(atlas, work.part(kPlaced, 1).named("certify"));
+  judge({.single = true, .exponent = exponent}, work.part(kPlaced, 1).named("certify"), atlas);
   atlas.status = status_of(atlas, options.float32);
 
   // Into the input's unit, by a power of two.

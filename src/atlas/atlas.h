@@ -52,11 +52,13 @@ struct Atlas {
   AdmitCounts admitted;
   double area = 0;  ///< of the surface, in the input's unit squared
   AtlasEnergy energy;
-  double seam_over_root_area = 0;  ///< each seam once, and no border of the surface
-  AtlasCertificate certificate;    ///< of the numbers delivered
+  double seam_over_root_area = 0;       ///< each seam once, and no border of the surface
+  AtlasCertificate certificate;         ///< of the numbers delivered
+  AtlasCertificate single_certificate;  ///< of the single-precision numbers nearest to them
 };
 
-/// Cuts the surface into disks, flattens each and lays them out in rows. The same bits at any
+/// Cuts the surface into disks, flattens each and lays them out in rows. A chart that rounding to
+/// single precision would fold is delivered in such numbers at once, mended. The same bits at any
 /// number of threads; powers of two of the input's unit scale the UVs alone. A chart that fails is
 /// named in its info; the others are not touched. Throws what admit does, Cancelled, or
 /// std::bad_alloc.
