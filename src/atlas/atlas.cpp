@@ -67,7 +67,7 @@ Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
 
 /// Rounds a map, moved by `shift`, to doubles that rounded to nearest stay injective in single
 /// precision; or to single-precision numbers at once. Notes where it does not stay injective.
-void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32,
+void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32, int threads,
                  ChartMap& map) {
   const Numbers doubles{.single = false, .exponent = exponent};
   const Numbers floats{.single = true, .exponent = exponent};
@@ -78,10 +78,10 @@ void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool flo
   };
   std::vector<Vec2> placed = map.uvs;
   for (Vec2& w : placed) w += shift;
-  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, 1);
+  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, threads);
   map.uvs = std::move(rounded.uvs);
   note(doubles, rounded.certificate, BELTRAMI_NOT_INJECTIVE);
-  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, 1);
+  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, threads);
   if (float32) {
     if (map.status != BELTRAMI_NOT_INJECTIVE) {
       note(floats, single.certificate, BELTRAMI_NOT_INJECTIVE_FLOAT32);
@@ -103,12 +103,13 @@ void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
     shifts = place_in_rows(sizes);
     for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
   }
+  const int threads = maps.size() == 1 ? work.threads() : 1;
   parallel_for(work.threads(), size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].status < 0) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
       return;
     }
-    round_chart(charts[c].mesh, shifts[c], exponent, float32, maps[c]);
+    round_chart(charts[c].mesh, shifts[c], exponent, float32, threads, maps[c]);
   });
 }
 
