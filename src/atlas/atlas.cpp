@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atlas/chart_map.h"
+#include "atlas/map_charts.h"
 #include "atlas/measure.h"
 #include "atlas/rows.h"
 #include "base/error.h"
@@ -68,23 +68,24 @@ Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
 /// Rounds a map, moved by `shift`, to doubles that rounded to nearest stay injective in single
 /// precision; or to single-precision numbers at once. Notes where it does not stay injective.
 void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32, int threads,
-                 ChartMap& map) {
+                 MappedChart& map) {
   const Numbers doubles{.single = false, .exponent = exponent};
   const Numbers floats{.single = true, .exponent = exponent};
-  const bool was_injective = map.status == BELTRAMI_OK || map.status == BELTRAMI_NOT_CONVERGED;
-  const auto note = [&](const Numbers& numbers, const Certificate& certificate,
-                        beltrami_status status) {
-    if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) map.status = status;
+  const bool was_injective = map.outcome <= Outcome::kNotConverged;
+  const auto note = [&](const Numbers& numbers, const Certificate& certificate, Outcome outcome) {
+    if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) {
+      map.outcome = outcome;
+    }
   };
   std::vector<Vec2> placed = map.uvs;
   for (Vec2& w : placed) w += shift;
   Rounded rounded = round_map(mesh, map.uvs, placed, doubles, threads);
   map.uvs = std::move(rounded.uvs);
-  note(doubles, rounded.certificate, BELTRAMI_NOT_INJECTIVE);
+  note(doubles, rounded.certificate, Outcome::kNotInjective);
   Rounded single = round_map(mesh, map.uvs, map.uvs, floats, threads);
   if (float32) {
-    if (map.status != BELTRAMI_NOT_INJECTIVE) {
-      note(floats, single.certificate, BELTRAMI_NOT_INJECTIVE_FLOAT32);
+    if (map.outcome != Outcome::kNotInjective) {
+      note(floats, single.certificate, Outcome::kNotInjectiveFloat32);
     }
     map.uvs = std::move(single.uvs);
   } else if (single.moved > 0 && single.certificate.injective()) {
@@ -95,17 +96,17 @@ void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool flo
 /// Lays the maps out without overlap, in the numbers to be delivered but for 2^exponent. A single
 /// one stays where it is.
 void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
-                std::vector<ChartMap>& maps, const Work& work) {
+                std::vector<MappedChart>& maps, const Work& work) {
   std::vector<Vec2> shifts(maps.size(), Vec2::Zero());
   if (maps.size() > 1) {
     std::vector<Vec2> sizes;
-    for (const ChartMap& map : maps) sizes.push_back(box_of(map.uvs).sizes());
+    for (const MappedChart& map : maps) sizes.push_back(box_of(map.uvs).sizes());
     shifts = place_in_rows(sizes);
     for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
   }
   const int threads = maps.size() == 1 ? work.threads() : 1;
   parallel_for(work.threads(), size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
-    if (maps[c].status < 0) {
+    if (maps[c].error != BELTRAMI_OK) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
       return;
     }
@@ -131,7 +132,7 @@ void put_aside(const std::vector<Triangle>& faces, const std::vector<Index>& set
 
 /// The maps as UVs of the input's corners.
 void collect(const std::vector<Triangle>& faces, const Admitted& admitted,
-             const std::vector<Chart>& charts, const std::vector<ChartMap>& maps, Atlas& atlas) {
+             const std::vector<Chart>& charts, const std::vector<MappedChart>& maps, Atlas& atlas) {
   atlas.faces.resize(faces.size());
   atlas.chart_of_face.assign(faces.size(), kNone);
   atlas.reversed.assign(faces.size(), false);
@@ -180,16 +181,16 @@ void judge(const Numbers& floats, const Work& work, Atlas& atlas) {
       single == atlas.uvs ? atlas.certificate : certify_atlas(faces, single, rules, work);
 }
 
-beltrami_status status_of(const Atlas& atlas, bool float32) {
-  beltrami_status status = BELTRAMI_OK;
+Outcome outcome_of(const Atlas& atlas, bool float32) {
+  Outcome outcome = Outcome::kOk;
   bool in_doubles = true;
   for (const ChartInfo& chart : atlas.charts) {
-    if (chart.status < 0 || chart.status == BELTRAMI_NOT_INJECTIVE) in_doubles = false;
-    status = std::max(status, chart.status);
+    in_doubles = in_doubles && chart.outcome != Outcome::kNotInjective;
+    outcome = std::max(outcome, chart.outcome);
   }
-  if (!in_doubles) return BELTRAMI_NOT_INJECTIVE;
-  if (atlas.certificate.injective()) return status;
-  return float32 ? BELTRAMI_NOT_INJECTIVE_FLOAT32 : BELTRAMI_NOT_INJECTIVE;
+  if (!in_doubles) return Outcome::kNotInjective;
+  if (atlas.certificate.injective()) return outcome;
+  return float32 ? Outcome::kNotInjectiveFloat32 : Outcome::kNotInjective;
 }
 
 }  // namespace
@@ -201,15 +202,16 @@ Atlas unwrap(const std::vector<Vec3>& positions, const std::vector<Triangle>& fa
   const int exponent = bring_to_unit(admitted.surface, work);
   const std::vector<Chart> charts =
       cut_open(admitted.surface, admitted.topology, work.part(kAdmitted, kCut).named("cut"));
-  std::vector<ChartMap> maps = map_charts(charts, work.part(kCut, kMapped).named("flatten"));
+  std::vector<MappedChart> maps = map_charts(charts, work.part(kCut, kMapped).named("flatten"));
   place_maps(charts, exponent, options.float32, maps, work);
   work.named("place").report(kPlaced);
 
   Atlas atlas;
   for (const Chart& chart : charts) {
-    atlas.charts.push_back({.faces = chart.mesh.face_count()});
+    const MappedChart& map = maps[atlas.charts.size()];
+    atlas.charts.push_back(
+        {.faces = chart.mesh.face_count(), .outcome = map.outcome, .error = map.error});
   }
-  for (std::size_t c = 0; c < maps.size(); ++c) atlas.charts[c].status = maps[c].status;
   atlas.admitted = admitted.counts;
   collect(faces, admitted, charts, maps, atlas);
   atlas.energy = measure_charts(charts, maps, atlas.charts, work);
@@ -217,7 +219,7 @@ Atlas unwrap(const std::vector<Vec3>& positions, const std::vector<Triangle>& fa
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
   atlas.seam_over_root_area = seam_length(charts, admitted.input_vertex) / std::sqrt(area);
   judge({.single = true, .exponent = exponent}, work.part(kPlaced, 1).named("certify"), atlas);
-  atlas.status = status_of(atlas, options.float32);
+  atlas.outcome = outcome_of(atlas, options.float32);
 
   // Into the input's unit, by a power of two.
   const Numbers numbers{.single = options.float32, .exponent = exponent};

@@ -9,6 +9,7 @@
 #include "admit/admit.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
 
 namespace beltrami {
@@ -24,8 +25,8 @@ struct AtlasOptions {
 struct ChartInfo {
   Index faces = 0;
   double area = 0;  ///< of the surface, in the input's unit squared
-  /// OK, a reservation about its map, or the error for which it has none: its UVs are one point.
-  beltrami_status status = BELTRAMI_OK;
+  Outcome outcome = Outcome::kOk;
+  beltrami_status error = BELTRAMI_OK;      ///< why it has no map, but one point, where that is so
   double symmetric_dirichlet = 0, max = 0;  ///< as those of the atlas
 };
 
@@ -42,11 +43,11 @@ struct AtlasEnergy {
 /// Charts come by their least face, UV vertices by their chart. Faces that were set aside are in no
 /// chart: each is a point in the plane, with a UV vertex for each corner, at the end.
 struct Atlas {
-  beltrami_status status = BELTRAMI_OK;  ///< OK, or the greatest reservation
-  std::vector<Vec2> uvs;                 ///< one per UV vertex, in the input's unit
-  std::vector<Index> input_vertex;       ///< per UV vertex: the least of those welded
-  std::vector<Triangle> faces;           ///< per face of the input: UV vertices of its corners
-  std::vector<Index> chart_of_face;      ///< per face of the input, or kNone
+  Outcome outcome = Outcome::kOk;
+  std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit
+  std::vector<Index> input_vertex;   ///< per UV vertex: the least of those welded
+  std::vector<Triangle> faces;       ///< per face of the input: UV vertices of its corners
+  std::vector<Index> chart_of_face;  ///< per face of the input, or kNone
   std::vector<bool> reversed;  ///< per face of the input: positive in the plane the other way round
   std::vector<ChartInfo> charts;
   AdmitCounts admitted;

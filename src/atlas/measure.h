@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
-#include "atlas/chart_map.h"
+#include "atlas/map_charts.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/chart.h"
@@ -13,7 +13,7 @@ namespace beltrami {
 
 /// Measures maps, one per chart, and fills the energies and areas of `charts`, in the unit of the
 /// surface.
-AtlasEnergy measure_charts(const std::vector<Chart>& parts, const std::vector<ChartMap>& maps,
+AtlasEnergy measure_charts(const std::vector<Chart>& parts, const std::vector<MappedChart>& maps,
                            std::vector<ChartInfo>& charts, const Work& work);
 
 /// Length of the edges of the surface at which charts end on two sides or more, half of it for each

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -13,12 +12,13 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "chart/pipeline.h"
+#include "chart/flattening.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "support/cuts.h"
 #include "support/disks.h"
 #include "support/meshes.h"
+#include "support/run.h"
 #include "support/surfaces.h"
 
 namespace beltrami {
@@ -41,7 +41,7 @@ double area_in_space(const TriangleList& mesh) {
 /// Every corner has a UV vertex of its place, every face a chart or none, and the very numbers
 /// delivered are injective.
 void expect_sound(const TriangleList& mesh, const Atlas& atlas) {
-  EXPECT_EQ(atlas.status, BELTRAMI_OK);
+  EXPECT_EQ(atlas.outcome, Outcome::kOk);
   EXPECT_TRUE(atlas.certificate.injective());
   EXPECT_EQ(atlas.certificate.touching_places, 0);
   EXPECT_TRUE(atlas.single_certificate.injective());
@@ -64,7 +64,7 @@ void expect_sound(const TriangleList& mesh, const Atlas& atlas) {
   EXPECT_TRUE(certify_atlas(oriented, atlas.uvs, rules, Work(1)).injective());
   for (std::size_t c = 0; c < atlas.charts.size(); ++c) {
     EXPECT_EQ(atlas.charts[c].faces, in_chart[c]);
-    EXPECT_EQ(atlas.charts[c].status, BELTRAMI_OK);
+    EXPECT_EQ(atlas.charts[c].outcome, Outcome::kOk);
   }
   EXPECT_NEAR(atlas.area, area_in_space(mesh), 1e-9 * atlas.area);
   EXPECT_GE(atlas.energy.symmetric_dirichlet, 2 - 1e-9);
@@ -97,10 +97,7 @@ std::vector<Vec2> bits_of_the_disk_pipeline(const TriangleList& mesh) {
     for (Index& v : face) v = place[v];
   }
   for (const Index f : by_least_vertex(size_of(order), faces)) sorted.push_back(faces[f]);
-  const Normalisation frame = normalise(positions, sorted);
-  const std::atomic<bool> cancelled{false};
-  const Flattening flattened =
-      flatten(build_disk(positions, sorted), frame, Options(), {}, cancelled);
+  const Flattening flattened = disks::run({positions, sorted});
   std::vector<Vec2> uvs;
   for (const Index v : place) uvs.push_back(flattened.uvs[v]);
   return uvs;

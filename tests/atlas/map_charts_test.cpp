@@ -1,5 +1,5 @@
 // Charts side by side: what one of them does not take from the others.
-#include "atlas/chart_map.h"
+#include "atlas/map_charts.h"
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ Chart hopeless() {
   return chart_of(std::move(mesh));
 }
 
-void expect_injective(const Chart& chart, const ChartMap& map) {
-  EXPECT_EQ(map.status, BELTRAMI_OK);
+void expect_injective(const Chart& chart, const MappedChart& map) {
+  EXPECT_EQ(map.outcome, Outcome::kOk);
   EXPECT_TRUE(certify(chart.mesh.faces, chart.mesh.boundary, map.uvs, 1).injective());
 }
 
@@ -36,11 +36,12 @@ TEST(MapCharts, KeepsAFailureToItsChart) {
   const std::vector<Chart> charts = {chart_of(meshes::bumps(6, 6)), hopeless(),
                                      chart_of(meshes::triangle())};
   for (const int threads : {1, 2}) {
-    const std::vector<ChartMap> maps = map_charts(charts, Work(threads));
+    const std::vector<MappedChart> maps = map_charts(charts, Work(threads));
     ASSERT_EQ(maps.size(), 3);
     expect_injective(charts[0], maps[0]);
     expect_injective(charts[2], maps[2]);
-    EXPECT_EQ(maps[1].status, BELTRAMI_E_ZERO_AREA);
+    EXPECT_EQ(maps[1].error, BELTRAMI_E_ZERO_AREA);
+    EXPECT_EQ(maps[1].outcome, Outcome::kNotInjective);
     EXPECT_EQ(maps[1].uvs, std::vector<Vec2>(charts[1].mesh.positions.size(), Vec2::Zero()));
   }
 }
@@ -49,7 +50,7 @@ TEST(MapCharts, LaysUpToTwoFacesFlatInTheirShape) {
   const std::vector<Chart> charts = {
       chart_of({{{1, 2, 3}, {4, 1, 0}, {0, 0, 7}}, {{0, 1, 2}}}),
       chart_of({{{0, 0, 0}, {3, 0, 1}, {2, 2, 5}, {-1, 4, 0}}, {{0, 1, 2}, {0, 2, 3}}})};
-  const std::vector<ChartMap> maps = map_charts(charts, Work(1));
+  const std::vector<MappedChart> maps = map_charts(charts, Work(1));
   for (std::size_t c = 0; c < charts.size(); ++c) {
     const DiskMesh& mesh = charts[c].mesh;
     const std::vector<Vec2>& uvs = maps[c].uvs;
@@ -73,7 +74,8 @@ TEST(MapCharts, GivesALargeChartTheSameBitsOnAllThreads) {
   std::vector<Chart> charts;
   charts.push_back(chart_of(meshes::bumps(110, 100)));
   charts.push_back(chart_of(meshes::bumps(5, 5)));
-  const std::vector<ChartMap> one = map_charts(charts, Work(1)), two = map_charts(charts, Work(2));
+  const std::vector<MappedChart> one = map_charts(charts, Work(1)),
+                                 two = map_charts(charts, Work(2));
   for (std::size_t c = 0; c < charts.size(); ++c) {
     expect_injective(charts[c], one[c]);
     EXPECT_EQ(one[c].uvs, two[c].uvs);

@@ -7,19 +7,21 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/flattening.h"
 #include "mesh/chart.h"
 
 namespace beltrami {
 
-struct ChartMap {
-  beltrami_status status = BELTRAMI_OK;  ///< OK, a reservation, or an error
-  std::vector<Vec2> uvs;                 ///< one per vertex of the chart, in its unit; after an
-                                         ///< error all at one point
+struct MappedChart {
+  std::vector<Vec2> uvs;  ///< one per vertex of the chart, in its unit
+  Outcome outcome = Outcome::kOk;
+  /// Why there is no map, where there is none: not injective then, all its UVs at one point.
+  beltrami_status error = BELTRAMI_OK;
 };
 
 /// Flattens every chart: large ones with all threads, one after the other, the rest side by side on
 /// one thread each, the largest first. Charts of up to two faces are laid flat as they are.
 /// Errors stay in the map of their chart. Throws Cancelled or std::bad_alloc.
-std::vector<ChartMap> map_charts(const std::vector<Chart>& charts, const Work& work);
+std::vector<MappedChart> map_charts(const std::vector<Chart>& charts, const Work& work);
 
 }  // namespace beltrami

@@ -1,4 +1,4 @@
-#include "atlas/chart_map.h"
+#include "atlas/map_charts.h"
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "chart/pipeline.h"
+#include "chart/options.h"
 #include "descend/flat_start.h"
 #include "mesh/locality.h"
 #include "mesh/rest_shape.h"
@@ -48,29 +48,21 @@ ArrangedDisk arrange(const DiskMesh& mesh, int threads) {
   return arranged;
 }
 
-ChartMap flattened(const Chart& chart, const Work& work) {
+MappedChart flattened(const Chart& chart, const Work& work) {
   ArrangedDisk arranged = arrange(chart.mesh, work.threads());
   DiskMesh& disk = arranged.disk;
   const Normalisation frame = normalise(disk.positions, disk.faces, work.threads());
-  Options options;
-  options.threads = work.threads();
-  options.memory_limit = work.memory_limit();
-  const std::atomic<bool> never{false};  // a request is heard by polling
-  const auto report = [&](double fraction, const char*) {
-    work.report(fraction);
-    return false;
-  };
-  const Flattening result = flatten(disk, frame, options, report, never);
-  ChartMap map{result.status, std::vector<Vec2>(result.uvs.size())};
+  const Flattening result = flatten(disk, frame, ChartOptions(), work);
+  MappedChart map{std::vector<Vec2>(result.uvs.size()), result.status};
   for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[arranged.order[i]] = result.uvs[i];
   return map;
 }
 
 /// The faces unfolded, their longest edge along the first axis: in rows of slivers the numbers of
 /// the second one are small, and dense.
-ChartMap unfolded(const Chart& chart) {
+MappedChart unfolded(const Chart& chart) {
   const DiskMesh& mesh = chart.mesh;
-  ChartMap map{BELTRAMI_OK, unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, 1))};
+  MappedChart map{unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, 1))};
   Complex longest = 0;
   for (Index h = 0; h < size_of(mesh.twin); ++h) {
     const Vec2 edge = map.uvs[mesh.target(h)] - map.uvs[mesh.origin(h)];
@@ -85,18 +77,19 @@ ChartMap unfolded(const Chart& chart) {
   return map;
 }
 
-ChartMap map_chart(const Chart& chart, const Work& work) {
+MappedChart map_chart(const Chart& chart, const Work& work) {
   try {
     return chart.mesh.face_count() <= kFewFaces ? unfolded(chart) : flattened(chart, work);
   } catch (const Error& error) {
-    return {error.status(), std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero())};
+    return {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
+            error.status()};
   }
 }
 
 }  // namespace
 
-std::vector<ChartMap> map_charts(const std::vector<Chart>& charts, const Work& work) {
-  std::vector<ChartMap> maps(charts.size());
+std::vector<MappedChart> map_charts(const std::vector<Chart>& charts, const Work& work) {
+  std::vector<MappedChart> maps(charts.size());
   std::vector<Index> order(charts.size());
   std::iota(order.begin(), order.end(), 0);
   const auto faces = [&](Index c) -> std::int64_t { return charts[c].mesh.face_count(); };
