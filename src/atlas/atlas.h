@@ -41,7 +41,7 @@ struct AtlasEnergy {
 };
 
 /// Charts come by their least face, UV vertices by their chart. Faces that were set aside are in no
-/// chart: each is a point in the plane, with a UV vertex for each corner, at the end.
+/// chart: each is a point in the plane, with a UV vertex for each corner, of that corner's vertex.
 struct Atlas {
   Outcome outcome = Outcome::kOk;
   std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit
