@@ -150,6 +150,15 @@ TEST(Unwrap, PartsAMoebiusStripOnce) {
   EXPECT_EQ(atlas.admitted.one_sided_edges, 1);
 }
 
+TEST(Unwrap, PartsCubesThatTouchAlongAnEdge) {
+  TriangleList mesh = meshes::together({meshes::cube(), meshes::cube()});
+  for (std::size_t v = 8; v < mesh.positions.size(); ++v) mesh.positions[v] += Vec3(1, 1, 0);
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 2);
+  EXPECT_EQ(atlas.admitted.crowded_edges, 1);
+}
+
 TEST(Unwrap, WeldsASoupUnlessToldNotTo) {
   const TriangleList mesh = meshes::soup(meshes::cube());
   const Atlas welded = unwrapped(mesh);
