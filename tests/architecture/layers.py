@@ -20,6 +20,7 @@ LIBRARY = [
     {"cut", "descend"},
     {"flatten", "repair"},
     {"chart"},
+    {"atlas"},
     {"abi"},
 ]
 # The program sees the library through the public header alone.

@@ -22,12 +22,12 @@ namespace beltrami {
 namespace {
 
 using disks::Random;
-AtlasCertificate certify(const Atlas& atlas, const AtlasRules& rules = {}, int threads = 1) {
+AtlasCertificate certify(const UvFaces& atlas, const AtlasRules& rules = {}, int threads = 1) {
   return certify_atlas(atlas.faces, atlas.uvs, rules, Work(threads));
 }
 
 /// The verdict is that of force; so are the pairs of faces, and boundary edges cross in theirs.
-void expect_as_by_force(const Atlas& atlas, int& injective) {
+void expect_as_by_force(const UvFaces& atlas, int& injective) {
   const AtlasCertificate found = certify(atlas, {{}, false, 1000});
   const std::vector<Pair> all = overlaps_by_force(atlas);
   ASSERT_EQ(found.overlaps.faces == 0, all.empty());
@@ -46,8 +46,8 @@ void expect_as_by_force(const Atlas& atlas, int& injective) {
 }
 
 /// Triangles on a grid of `range` places a side; every other one takes over an edge of an earlier.
-Atlas random_soup(Random& random, int faces, int range) {
-  Atlas atlas;
+UvFaces random_soup(Random& random, int faces, int range) {
+  UvFaces atlas;
   const auto any = [&]() -> Vec2 {
     return {static_cast<double>(random.below(range)), static_cast<double>(random.below(range))};
   };
@@ -68,7 +68,7 @@ TEST(AtlasCertificate, AgreesWithAreasOfRandomTrianglesOnATinyGrid) {
   Random random(1);
   int injective = 0;
   for (int i = 0; i < 6000; ++i) {
-    const Atlas atlas = random_soup(random, 2 + random.below(5), 3 + random.below(3));
+    const UvFaces atlas = random_soup(random, 2 + random.below(5), 3 + random.below(3));
     ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
   }
   EXPECT_GT(injective, 500);
@@ -77,14 +77,14 @@ TEST(AtlasCertificate, AgreesWithAreasOfRandomTrianglesOnATinyGrid) {
 
 /// Cells of a grid in random charts: each of its own vertices or of those of its neighbours, whole
 /// or in four, cut along either diagonal, some missing; all of them mapped to skew integers.
-Atlas random_mosaic(Random& random) {
+UvFaces random_mosaic(Random& random) {
   const Index n = 2 + random.below(2);
   std::vector<std::vector<Index>> shared(2 * n + 1, std::vector<Index>(2 * n + 1, kNone));
   const std::array<std::array<double, 4>, 4> maps = {
       {{1, 0, 0, 1}, {2, -1, 1, 3}, {3, 2, -2, 1}, {5, 3, 3, 2}}};
   const auto& m = maps[random.below(4)];
   const int welding = random.below(4);
-  Atlas atlas;
+  UvFaces atlas;
   const auto vertex = [&](Index i, Index j) {
     if (shared[i][j] == kNone || random.below(3) >= welding) {
       shared[i][j] = size_of(atlas.uvs);
@@ -113,7 +113,7 @@ Atlas random_mosaic(Random& random) {
 }
 
 /// Places of boundary vertices on which there is another one, or an edge; of whole numbers.
-std::int64_t touching_by_force(const Atlas& atlas) {
+std::int64_t touching_by_force(const UvFaces& atlas) {
   std::set<Pair> edges;
   for (const Triangle& t : atlas.faces) {
     for (std::size_t k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
@@ -135,7 +135,7 @@ std::int64_t touching_by_force(const Atlas& atlas) {
 TEST(AtlasCertificate, LetsTheChartsOfAMosaicTouchInAnyWay) {
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
-    const Atlas atlas = random_mosaic(random);
+    const UvFaces atlas = random_mosaic(random);
     const AtlasCertificate found = certify(atlas);
     ASSERT_TRUE(found.injective()) << i;
     ASSERT_EQ(found.overlaps.edges, 0) << i;
@@ -144,25 +144,26 @@ TEST(AtlasCertificate, LetsTheChartsOfAMosaicTouchInAnyWay) {
 }
 
 TEST(AtlasCertificate, CountsThePlacesWhereBoundariesTouch) {
-  const auto touching = [](const Atlas& atlas) {
+  const auto touching = [](const UvFaces& atlas) {
     const AtlasCertificate found = certify(atlas);
     EXPECT_TRUE(found.injective());
     return std::pair(found.touching_places, found.first_touching);
   };
-  Atlas atlas;
+  UvFaces atlas;
   atlas.add({0, 0}, {4, 0}, {0, 4});
-  EXPECT_EQ(touching(Atlas(atlas).add({5, 0}, {9, 0}, {9, 4})), std::pair(std::int64_t{0}, kNone));
+  EXPECT_EQ(touching(UvFaces(atlas).add({5, 0}, {9, 0}, {9, 4})),
+            std::pair(std::int64_t{0}, kNone));
   // A vertex on a vertex, on an edge; edges on each other, which end there.
-  EXPECT_EQ(touching(Atlas(atlas).add({4, 0}, {9, 0}, {9, 4})),
+  EXPECT_EQ(touching(UvFaces(atlas).add({4, 0}, {9, 0}, {9, 4})),
             std::pair(std::int64_t{1}, Index{1}));
-  EXPECT_EQ(touching(Atlas(atlas).add({2, 2}, {9, 3}, {9, 4})),
+  EXPECT_EQ(touching(UvFaces(atlas).add({2, 2}, {9, 3}, {9, 4})),
             std::pair(std::int64_t{1}, Index{3}));
-  EXPECT_EQ(touching(Atlas(atlas).add({3, 0}, {1, 0}, {2, -1})),
+  EXPECT_EQ(touching(UvFaces(atlas).add({3, 0}, {1, 0}, {2, -1})),
             std::pair(std::int64_t{2}, Index{3}));
-  EXPECT_EQ(touching(Atlas(atlas).add({4, 0}, {0, 0}, {2, -1})),
+  EXPECT_EQ(touching(UvFaces(atlas).add({4, 0}, {0, 0}, {2, -1})),
             std::pair(std::int64_t{2}, Index{0}));
   // A vertex that is shared.
-  const Atlas bow{{{0, 0}, {2, 1}, {1, 2}, {-2, -1}, {-1, -2}}, {{0, 1, 2}, {0, 3, 4}}};
+  const UvFaces bow{{{0, 0}, {2, 1}, {1, 2}, {-2, -1}, {-1, -2}}, {{0, 1, 2}, {0, 3, 4}}};
   EXPECT_EQ(touching(bow), std::pair(std::int64_t{0}, kNone));
 }
 
@@ -170,7 +171,7 @@ TEST(AtlasCertificate, AgreesWithAreasWhereAVertexOrAFaceOfAMosaicIsMisplaced) {
   Random random(3);
   int injective = 0;
   for (int i = 0; i < 600; ++i) {
-    Atlas atlas = random_mosaic(random);
+    UvFaces atlas = random_mosaic(random);
     if (atlas.faces.empty()) continue;
     const auto any_place = [&] { return atlas.uvs[random.below(size_of(atlas.uvs))]; };
     if (random.below(2) == 0) {
@@ -189,7 +190,7 @@ TEST(AtlasCertificate, AgreesWithAreasWhereRoundingMovesVerticesOffTheEdgesThatT
   Random random(5);
   int injective = 0;
   for (int i = 0; i < 600; ++i) {
-    Atlas atlas = random_mosaic(random);
+    UvFaces atlas = random_mosaic(random);
     const double x = random.unit(), y = random.unit();
     for (Vec2& w : atlas.uvs) w = {x * w.x() - y * w.y(), y * w.x() + x * w.y()};
     ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
@@ -201,12 +202,12 @@ TEST(AtlasCertificate, AgreesWithAreasWhereRoundingMovesVerticesOffTheEdgesThatT
 // ---- Charts within and beside each other ------------------------------------------------------
 
 TEST(AtlasCertificate, HoldsForAnEmptyAtlas) {
-  EXPECT_TRUE(certify(Atlas()).injective());
-  EXPECT_TRUE(certify(Atlas{{{1, 2}}, {}}).injective());
+  EXPECT_TRUE(certify(UvFaces()).injective());
+  EXPECT_TRUE(certify(UvFaces{{{1, 2}}, {}}).injective());
 }
 
-Atlas ring_of_cells() {
-  return Atlas().add_cells(
+UvFaces ring_of_cells() {
+  return UvFaces().add_cells(
       5, 5, [](Index i, Index j) { return i == 0 || i == 4 || j == 0 || j == 4; },
       [](Vec2 p) -> Vec2 { return p; });
 }
@@ -216,7 +217,7 @@ TEST(AtlasCertificate, LetsAChartLieInAHoleOfAnotherOrInABay) {
   // It fills the hole, and touches all of its border from within.
   EXPECT_TRUE(certify(ring_of_cells().add_grid(3, 3, {1, 1})).injective());
   const auto horseshoe = [] {
-    return Atlas().add_cells(
+    return UvFaces().add_cells(
         3, 3, [](Index i, Index j) { return i != 1 || j == 0; }, [](Vec2 p) -> Vec2 { return p; });
   };
   EXPECT_TRUE(certify(horseshoe().add({1.25, 1.5}, {1.75, 1.5}, {1.5, 9})).injective());
@@ -224,7 +225,7 @@ TEST(AtlasCertificate, LetsAChartLieInAHoleOfAnotherOrInABay) {
 }
 
 TEST(AtlasCertificate, LetsChartsBeNestedThroughHolesManyTimes) {
-  Atlas atlas;
+  UvFaces atlas;
   for (int i = 0; i < 6; ++i) {
     atlas.add_cells(
         3, 3, [](Index x, Index y) { return x != 1 || y != 1; },
@@ -240,7 +241,7 @@ TEST(AtlasCertificate, LetsChartsBeNestedThroughHolesManyTimes) {
 }
 
 TEST(AtlasCertificate, NamesTheFaceAndTheChartThatLiesWithinIt) {
-  Atlas atlas;
+  UvFaces atlas;
   atlas.add_grid(1, 1, {10, 10}).add({0, 0}, {9, 0}, {0, 9}).add({1, 1}, {2, 1}, {1, 2});
   const AtlasCertificate found = certify(atlas);
   EXPECT_FALSE(found.injective());
@@ -250,7 +251,7 @@ TEST(AtlasCertificate, NamesTheFaceAndTheChartThatLiesWithinIt) {
 }
 
 TEST(AtlasCertificate, NamesTheEdgesThatCrossByTheirFacesAndCorners) {
-  Atlas atlas;
+  UvFaces atlas;
   atlas.add({0, 0}, {4, 0}, {0, 4}).add({1, -1}, {2, -1}, {1, 1});
   const AtlasCertificate found = certify(atlas);
   EXPECT_EQ(found.overlaps.faces, 1);
@@ -258,17 +259,17 @@ TEST(AtlasCertificate, NamesTheEdgesThatCrossByTheirFacesAndCorners) {
 }
 
 TEST(AtlasCertificate, LetsTwoChartsShareAWholeEdgeButNotOneSideOfIt) {
-  Atlas atlas;
+  UvFaces atlas;
   atlas.add({0, 0}, {4, 0}, {0, 4});
-  EXPECT_TRUE(certify(Atlas(atlas).add({4, 0}, {0, 0}, {0, -4})).injective());
-  EXPECT_TRUE(certify(Atlas(atlas).add({3, 0}, {1, 0}, {2, -4})).injective());
-  const AtlasCertificate found = certify(Atlas(atlas).add({1, 0}, {3, 0}, {1, 1}));
+  EXPECT_TRUE(certify(UvFaces(atlas).add({4, 0}, {0, 0}, {0, -4})).injective());
+  EXPECT_TRUE(certify(UvFaces(atlas).add({3, 0}, {1, 0}, {2, -4})).injective());
+  const AtlasCertificate found = certify(UvFaces(atlas).add({1, 0}, {3, 0}, {1, 1}));
   EXPECT_EQ(found.overlaps.first_faces, (std::vector<Pair>{{0, 1}}));
   EXPECT_EQ(found.overlaps.first_edges, (std::vector<Pair>{{0, 3}}));
 }
 
 TEST(AtlasCertificate, SeesAChartThatIsThereTwice) {
-  const Atlas twice = Atlas().add_grid(4, 4, {0, 0}).add_grid(4, 4, {0, 0});
+  const UvFaces twice = UvFaces().add_grid(4, 4, {0, 0}).add_grid(4, 4, {0, 0});
   const AtlasCertificate found = certify(twice);
   EXPECT_EQ(found.orientations.positive, 64);
   EXPECT_EQ(found.overlaps.faces, 14);  // those along the border
@@ -278,15 +279,15 @@ TEST(AtlasCertificate, SeesAChartThatIsThereTwice) {
 
 TEST(AtlasCertificate, SeesFacesOnOneSideOfAnEdgeOfTheirOwnVertices) {
   // Three at one edge; and a face that is there twice.
-  const Atlas three{{{0, 0}, {4, 0}, {0, 4}, {0, -4}, {4, 4}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
+  const UvFaces three{{{0, 0}, {4, 0}, {0, 4}, {0, -4}, {4, 4}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
   EXPECT_EQ(certify(three).overlaps.first_faces, (std::vector<Pair>{{0, 2}}));
-  const Atlas copies{{{0, 0}, {4, 0}, {0, 4}}, {{0, 1, 2}, {1, 2, 0}}};
+  const UvFaces copies{{{0, 0}, {4, 0}, {0, 4}}, {{0, 1, 2}, {1, 2, 0}}};
   EXPECT_EQ(certify(copies).overlaps.first_faces, (std::vector<Pair>{{0, 1}}));
 }
 
 TEST(AtlasCertificate, SeesAChartThatWindsAroundAVertexTwice) {
   // All triangles positive, and the boundary is one closed polygon.
-  Atlas atlas{{{0, 0}}, {}};
+  UvFaces atlas{{{0, 0}}, {}};
   const std::vector<Vec2> around = {{4, 0}, {0, 4}, {-4, 0}, {0, -4}};
   for (Index k = 0; k < 8; ++k) {
     atlas.uvs.push_back((1 + k) * around[k % 4]);
@@ -298,8 +299,8 @@ TEST(AtlasCertificate, SeesAChartThatWindsAroundAVertexTwice) {
 }
 
 /// A strip of cells along a spiral of squares, whose turns are `pitch` apart; it is 1 wide.
-Atlas square_spiral(int turns, double pitch) {
-  Atlas atlas;
+UvFaces square_spiral(int turns, double pitch) {
+  UvFaces atlas;
   for (int side = 0; side < 4 * turns; ++side) {
     // Each side from its inner corner to the next; they share the cells at the corners by halves.
     const double inner = pitch * (side / 4.0 + 1), next = pitch * ((side + 1) / 4.0 + 1);
@@ -328,17 +329,17 @@ TEST(AtlasCertificate, TellsASpiralThatTouchesItselfFromOneThatOverlaps) {
 TEST(AtlasCertificate, IsDecidedExactly) {
   // The tip is one unit in the last place below the edge, or on it.
   const auto with_tip = [](double y) {
-    return Atlas().add({0, 0}, {3, 3}, {0, 3}).add({1, y}, {2, 0}, {3, 0});
+    return UvFaces().add({0, 0}, {3, 3}, {0, 3}).add({1, y}, {2, 0}, {3, 0});
   };
-  EXPECT_EQ(certify(Atlas().add({0, 0}, {3, 3}, {0, 3}).add({2, 0}, {3, 0}, {1, 1})).overlaps.faces,
-            0);
+  EXPECT_EQ(
+      certify(UvFaces().add({0, 0}, {3, 3}, {0, 3}).add({2, 0}, {3, 0}, {1, 1})).overlaps.faces, 0);
   EXPECT_EQ(certify(with_tip(std::nextafter(1, 2))).overlaps.faces, 1);
 }
 
 // ---- Signs ------------------------------------------------------------------------------------
 
-Atlas with_a_mirrored_chart() {
-  Atlas atlas;
+UvFaces with_a_mirrored_chart() {
+  UvFaces atlas;
   return atlas.add_grid(2, 2, {0, 0})
       .add_cells(
           2, 2, [](Index, Index) { return true; },
@@ -348,7 +349,7 @@ Atlas with_a_mirrored_chart() {
 }
 
 TEST(AtlasCertificate, TakesWholeChartsThatAreMirroredWhereItIsAllowed) {
-  Atlas atlas = with_a_mirrored_chart();
+  UvFaces atlas = with_a_mirrored_chart();
   const AtlasCertificate refused = certify(atlas);
   EXPECT_EQ(refused.orientations.negative, 8);
   EXPECT_EQ(refused.orientations.first_bad_face, 8);
@@ -370,7 +371,7 @@ TEST(AtlasCertificate, TakesWholeChartsThatAreMirroredWhereItIsAllowed) {
 }
 
 TEST(AtlasCertificate, ExceptsFacesWithoutAreaWhereverTheyLie) {
-  Atlas atlas;
+  UvFaces atlas;
   atlas.add_grid(2, 2, {0, 0}).add({1, 1}, {1, 1}, {1, 1}).add({0, 0}, {0, 1}, {1, 0});
   AtlasRules rules;
   EXPECT_EQ(certify(atlas).orientations.degenerate, 1);
@@ -386,8 +387,8 @@ TEST(AtlasCertificate, ExceptsFacesWithoutAreaWhereverTheyLie) {
 TEST(AtlasCertificate, SeesFacesThatAFoldedSliverBetweenThemLetsOverlap) {
   // The middle of the edge has been rounded to the wrong side of it.
   const double wrong = 0x1p-52;
-  const Atlas atlas{{{0, 0}, {2, 0}, {1, 2}, {1, wrong}, {1, -2}},
-                    {{0, 1, 2}, {0, 3, 1}, {0, 4, 3}, {4, 1, 3}}};
+  const UvFaces atlas{{{0, 0}, {2, 0}, {1, 2}, {1, wrong}, {1, -2}},
+                      {{0, 1, 2}, {0, 3, 1}, {0, 4, 3}, {4, 1, 3}}};
   AtlasRules rules;
   rules.excepted = {false, true, false, false};
   const AtlasCertificate found = certify(atlas, rules);
@@ -397,7 +398,7 @@ TEST(AtlasCertificate, SeesFacesThatAFoldedSliverBetweenThemLetsOverlap) {
 TEST(AtlasCertificate, NamesTheFirstVertexThatIsNoNumber) {
   for (const double bad :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    Atlas atlas = Atlas().add_grid(2, 2, {0, 0});
+    UvFaces atlas = UvFaces().add_grid(2, 2, {0, 0});
     atlas.uvs.push_back({bad, 0});  // no face uses it
     EXPECT_TRUE(certify(atlas).injective());
     atlas.uvs[7].y() = bad;
@@ -412,12 +413,12 @@ TEST(AtlasCertificate, NamesTheFirstVertexThatIsNoNumber) {
 TEST(AtlasCertificate, HoldsForTheLargestAndTheSmallestNumbers) {
   for (const double unit : {std::numeric_limits<double>::max(), 0x1p-1073}) {
     const auto scaled = [&](const Vec2& corner, double cell) {
-      return Atlas().add_cells(
+      return UvFaces().add_cells(
           1, 1, [](Index, Index) { return true; },
           [&](Vec2 p) -> Vec2 { return unit * (corner + cell * p); });
     };
     EXPECT_TRUE(certify(scaled({-1, -1}, 2)).injective());
-    Atlas two = scaled({-1, -1}, 2);
+    UvFaces two = scaled({-1, -1}, 2);
     two.add({0, 0}, {unit, 0}, {0, unit});
     EXPECT_GT(certify(two).overlaps.faces, 0);
   }
@@ -426,8 +427,8 @@ TEST(AtlasCertificate, HoldsForTheLargestAndTheSmallestNumbers) {
 // ---- Cost -------------------------------------------------------------------------------------
 
 /// Charts in rows, a little apart.
-Atlas many_charts(Index rows, Index columns, Index cells) {
-  Atlas atlas;
+UvFaces many_charts(Index rows, Index columns, Index cells) {
+  UvFaces atlas;
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < columns; ++j) {
       atlas.add_grid(cells, cells, Vec2(i, j) * (cells + 0.25));
@@ -437,8 +438,8 @@ Atlas many_charts(Index rows, Index columns, Index cells) {
 }
 
 /// Long thin triangles side by side: the box of each meets those of most others.
-Atlas many_slivers(Index count) {
-  Atlas atlas;
+UvFaces many_slivers(Index count) {
+  UvFaces atlas;
   for (Index i = 0; i < count; ++i) {
     const double x = i;
     atlas.add({x, 0}, {x + 1, 0}, {x + count, static_cast<double>(count)});
@@ -446,14 +447,14 @@ Atlas many_slivers(Index count) {
   return atlas;
 }
 
-Atlas all_in_one_place(Index count) {
-  Atlas atlas;
+UvFaces all_in_one_place(Index count) {
+  UvFaces atlas;
   for (Index i = 0; i < count; ++i) atlas.add({0, 0}, {1, 0}, {0, 1});
   return atlas;
 }
 
-Atlas fan_of_charts(Index count) {
-  Atlas atlas;
+UvFaces fan_of_charts(Index count) {
+  UvFaces atlas;
   for (Index i = 0; i < count; ++i) {
     const double x = i;
     atlas.add({0, 0}, {1e6, x}, {1e6, x + 1});
@@ -466,10 +467,10 @@ TEST(AtlasCertificate, TakesLittleMoreThanTwiceTheWorkForTwiceTheCharts) {
     return many_slivers(count).add({0, 0}, {1.0 * count, 0}, {0, 0.5});
   };
   const auto rows = [](Index count) { return many_charts(count / 100, 100, 1); };
-  for (const auto& make : std::vector<std::function<Atlas(Index)>>{
+  for (const auto& make : std::vector<std::function<UvFaces(Index)>>{
            rows, many_slivers, crossed_slivers, all_in_one_place, fan_of_charts}) {
     const auto polls = [&](Index count) {
-      const Atlas atlas = make(count);
+      const UvFaces atlas = make(count);
       return count_polls([&] { certify(atlas); });
     };
     EXPECT_LE(polls(20000), 2.5 * static_cast<double>(polls(10000)) + 10);
@@ -477,7 +478,7 @@ TEST(AtlasCertificate, TakesLittleMoreThanTwiceTheWorkForTwiceTheCharts) {
 }
 
 TEST(AtlasCertificate, IsTheSameOnTwoAndThreeThreads) {
-  Atlas atlas = many_charts(60, 60, 3);
+  UvFaces atlas = many_charts(60, 60, 3);
   Random random(4);
   for (int i = 0; i < 200; ++i) atlas.uvs[random.below(size_of(atlas.uvs))] += random.vec2();
   AtlasRules rules;
@@ -498,7 +499,7 @@ TEST(AtlasCertificate, IsTheSameOnTwoAndThreeThreads) {
 }
 
 TEST(AtlasCertificate, IsCancelledAtEveryPoll) {
-  const Atlas atlas = many_charts(15, 15, 2).add({0.5, 0.5}, {9.5, 0.5}, {0.5, 9.5});
+  const UvFaces atlas = many_charts(15, 15, 2).add({0.5, 0.5}, {9.5, 0.5}, {0.5, 9.5});
   const auto run = [&] { certify(atlas); };
   const std::int64_t polls = count_polls(run);
   ASSERT_GT(polls, 10);

@@ -14,12 +14,12 @@
 
 namespace beltrami {
 
-struct Atlas {
+struct UvFaces {
   std::vector<Vec2> uvs;
   std::vector<Triangle> faces;
 
   /// Triangles of their own vertices.
-  Atlas& add(const Vec2& a, const Vec2& b, const Vec2& c) {
+  UvFaces& add(const Vec2& a, const Vec2& b, const Vec2& c) {
     const Index first = size_of(uvs);
     uvs.insert(uvs.end(), {a, b, c});
     faces.push_back({first, first + 1, first + 2});
@@ -28,7 +28,7 @@ struct Atlas {
 
   /// The cells of an nx by ny grid that `keeps(i, j)` keeps, from `corner` on, mapped by `place`.
   template <class Keeps, class Place>
-  Atlas& add_cells(Index nx, Index ny, const Keeps& keeps, const Place& place) {
+  UvFaces& add_cells(Index nx, Index ny, const Keeps& keeps, const Place& place) {
     const Index first = size_of(uvs);
     for (Index j = 0; j <= ny; ++j) {
       for (Index i = 0; i <= nx; ++i) uvs.push_back(place(Vec2(i, j)));
@@ -44,7 +44,7 @@ struct Atlas {
     return *this;
   }
 
-  Atlas& add_grid(Index nx, Index ny, const Vec2& corner, double cell = 1) {
+  UvFaces& add_grid(Index nx, Index ny, const Vec2& corner, double cell = 1) {
     return add_cells(
         nx, ny, [](Index, Index) { return true; },
         [&](Vec2 p) -> Vec2 { return corner + cell * p; });
@@ -59,7 +59,7 @@ inline Rational twice_area(const RationalPoint& a, const RationalPoint& b, const
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-inline std::array<RationalPoint, 3> rational_corners(const Atlas& atlas, Index f) {
+inline std::array<RationalPoint, 3> rational_corners(const UvFaces& atlas, Index f) {
   std::array<RationalPoint, 3> points;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2& w = atlas.uvs[atlas.faces[f][k]];
@@ -68,13 +68,13 @@ inline std::array<RationalPoint, 3> rational_corners(const Atlas& atlas, Index f
   return points;
 }
 
-inline int rational_sign(const Atlas& atlas, Index f) {
+inline int rational_sign(const UvFaces& atlas, Index f) {
   const auto [a, b, c] = rational_corners(atlas, f);
   return static_cast<int>(CGAL::sign(twice_area(a, b, c)));
 }
 
 /// Counter-clockwise; empty if it has no area.
-inline std::vector<RationalPoint> rational_triangle(const Atlas& atlas, Index f) {
+inline std::vector<RationalPoint> rational_triangle(const UvFaces& atlas, Index f) {
   const int sign = rational_sign(atlas, f);
   const auto [a, b, c] = rational_corners(atlas, f);
   if (sign == 0) return {};
@@ -109,7 +109,7 @@ inline bool overlap_in_rationals(const std::vector<RationalPoint>& f,
   return area > Rational(0);
 }
 
-inline std::vector<Pair> overlaps_by_force(const Atlas& atlas) {
+inline std::vector<Pair> overlaps_by_force(const UvFaces& atlas) {
   std::vector<std::vector<RationalPoint>> triangles;
   std::vector<Eigen::AlignedBox2d> boxes(atlas.faces.size());
   for (Index f = 0; f < size_of(atlas.faces); ++f) {
@@ -127,7 +127,7 @@ inline std::vector<Pair> overlaps_by_force(const Atlas& atlas) {
 }
 
 /// Per face, whether an edge of it is used by other than one face on each side.
-inline std::vector<bool> faces_at_boundary(const Atlas& atlas) {
+inline std::vector<bool> faces_at_boundary(const UvFaces& atlas) {
   std::map<Pair, int> uses;
   const auto directed = [&](Index f, int sign, std::size_t k) {
     const Triangle& t = atlas.faces[f];

@@ -1,0 +1,127 @@
+#include "atlas/map_charts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <numeric>
+#include <thread>
+#include <utility>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "chart/options.h"
+#include "descend/flat_start.h"
+#include "mesh/locality.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+namespace {
+
+/// Charts from here on gain from several threads. Below, side by side is faster.
+constexpr Index kLargeChart = 20'000;
+/// Charts of so few faces unfold without distortion, and cannot overlap.
+constexpr Index kFewFaces = 2;
+
+/// A disk with its vertices numbered by where they are.
+struct ArrangedDisk {
+  DiskMesh disk;
+  std::vector<Index> order;  ///< per vertex: that of the chart
+};
+
+ArrangedDisk arrange(const DiskMesh& mesh, int threads) {
+  ArrangedDisk arranged{{}, along_hilbert_curve(mesh.positions, threads)};
+  const std::vector<Index>& order = arranged.order;
+  std::vector<Vec3> positions(order.size());
+  std::vector<Index> place(order.size());
+  for (Index i = 0; i < size_of(order); ++i) {
+    positions[i] = mesh.positions[order[i]];
+    place[order[i]] = i;
+  }
+  std::vector<Triangle> faces = mesh.faces;
+  for (Triangle& face : faces) {
+    for (Index& v : face) v = place[v];
+  }
+  std::vector<Triangle> sorted;
+  sorted.reserve(faces.size());
+  for (const Index f : by_least_vertex(size_of(order), faces, threads)) sorted.push_back(faces[f]);
+  arranged.disk = build_disk(std::move(positions), std::move(sorted), threads);
+  return arranged;
+}
+
+MappedChart flattened(const Chart& chart, const Work& work) {
+  ArrangedDisk arranged = arrange(chart.mesh, work.threads());
+  DiskMesh& disk = arranged.disk;
+  const Normalisation frame = normalise(disk.positions, disk.faces, work.threads());
+  const Flattening result = flatten(disk, frame, ChartOptions(), work);
+  MappedChart map{std::vector<Vec2>(result.uvs.size()), result.status};
+  for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[arranged.order[i]] = result.uvs[i];
+  return map;
+}
+
+/// The faces unfolded, their longest edge along the first axis: in rows of slivers the numbers of
+/// the second one are small, and dense.
+MappedChart unfolded(const Chart& chart) {
+  const DiskMesh& mesh = chart.mesh;
+  MappedChart map{unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, 1))};
+  Complex longest = 0;
+  for (Index h = 0; h < size_of(mesh.twin); ++h) {
+    const Vec2 edge = map.uvs[mesh.target(h)] - map.uvs[mesh.origin(h)];
+    const Complex z(edge.x(), edge.y());
+    if (std::norm(z) > std::norm(longest)) longest = z;
+  }
+  const Complex turn = std::conj(longest) / modulus(longest);
+  for (Vec2& w : map.uvs) {
+    const Complex turned = turn * Complex(w.x(), w.y());
+    w = {turned.real(), turned.imag()};
+  }
+  return map;
+}
+
+MappedChart map_chart(const Chart& chart, const Work& work) {
+  try {
+    return chart.mesh.face_count() <= kFewFaces ? unfolded(chart) : flattened(chart, work);
+  } catch (const Error& error) {
+    return {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
+            error.status()};
+  }
+}
+
+}  // namespace
+
+std::vector<MappedChart> map_charts(const std::vector<Chart>& charts, const Work& work) {
+  std::vector<MappedChart> maps(charts.size());
+  std::vector<Index> order(charts.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto faces = [&](Index c) -> std::int64_t { return charts[c].mesh.face_count(); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return faces(a) > faces(b); });
+  std::int64_t all = 0;
+  for (const Index c : order) all += faces(c);
+  const auto share = [&](std::int64_t of) {
+    return static_cast<double>(of) / static_cast<double>(all);
+  };
+
+  std::int64_t mapped = 0;
+  std::int64_t large = 0;
+  // Others would wait for a chart of more than a thread's share.
+  const auto is_large = [&](Index c) {
+    return faces(c) >= kLargeChart && faces(c) * work.threads() > all - mapped;
+  };
+  for (; large < size_of(order) && is_large(order[large]); ++large) {
+    const Index c = order[large];
+    maps[c] = map_chart(charts[c], work.part(share(mapped), share(mapped + faces(c))));
+    mapped += faces(c);
+  }
+  std::atomic<std::int64_t> done{mapped};
+  const std::thread::id caller = std::this_thread::get_id();
+  const Limits aside{.threads = 1, .memory_bytes = work.memory_limit()};
+  parallel_for(work.threads(), size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
+    const Index c = order[large + i];
+    maps[c] = map_chart(charts[c], Work(aside, nullptr));
+    done += faces(c);
+    if (std::this_thread::get_id() == caller) work.report(share(done));
+  });
+  return maps;
+}
+
+}  // namespace beltrami

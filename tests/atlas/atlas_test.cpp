@@ -1,0 +1,313 @@
+// Any triangles as an atlas: certified, every corner kept, the same whatever the threads and the
+// unit.
+#include "atlas/atlas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "chart/flattening.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/locality.h"
+#include "support/cuts.h"
+#include "support/disks.h"
+#include "support/meshes.h"
+#include "support/run.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::TriangleList;
+
+Atlas unwrapped(const TriangleList& mesh, const AtlasOptions& options = {}, int threads = 1) {
+  return unwrap(mesh.positions, mesh.faces, options, Work(threads));
+}
+
+double area_in_space(const TriangleList& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.faces) {
+    area += triangle_area(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+  }
+  return area;
+}
+
+/// Every corner has a UV vertex of its place, every face a chart or none, and the very numbers
+/// delivered are injective.
+void expect_sound(const TriangleList& mesh, const Atlas& atlas) {
+  EXPECT_EQ(atlas.outcome, Outcome::kOk);
+  EXPECT_TRUE(atlas.certificate.injective());
+  EXPECT_EQ(atlas.certificate.touching_places, 0);
+  EXPECT_TRUE(atlas.single_certificate.injective());
+  ASSERT_EQ(atlas.faces.size(), mesh.faces.size());
+  AtlasRules rules;
+  std::vector<Triangle> oriented = atlas.faces;
+  std::vector<Index> in_chart(atlas.charts.size(), 0);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const Index uv = atlas.faces[f][k];
+      ASSERT_TRUE(uv >= 0 && uv < size_of(atlas.uvs));
+      EXPECT_EQ(mesh.positions[atlas.input_vertex[uv]], mesh.positions[mesh.faces[f][k]]);
+      EXPECT_TRUE(atlas.uvs[uv].allFinite());
+    }
+    if (atlas.reversed[f]) std::swap(oriented[f][1], oriented[f][2]);
+    const Index chart = atlas.chart_of_face[f];
+    rules.excepted.push_back(chart == kNone);
+    if (chart != kNone) ++in_chart[chart];
+  }
+  EXPECT_TRUE(certify_atlas(oriented, atlas.uvs, rules, Work(1)).injective());
+  for (std::size_t c = 0; c < atlas.charts.size(); ++c) {
+    EXPECT_EQ(atlas.charts[c].faces, in_chart[c]);
+    EXPECT_EQ(atlas.charts[c].outcome, Outcome::kOk);
+  }
+  EXPECT_NEAR(atlas.area, area_in_space(mesh), 1e-9 * atlas.area);
+  EXPECT_GE(atlas.energy.symmetric_dirichlet, 2 - 1e-9);
+  EXPECT_LE(atlas.energy.symmetric_dirichlet, atlas.energy.max);
+  EXPECT_LE(atlas.energy.p99, atlas.energy.max);
+}
+
+void expect_same_bits(const Atlas& a, const Atlas& b) {
+  EXPECT_EQ(a.uvs, b.uvs);
+  EXPECT_EQ(a.faces, b.faces);
+  EXPECT_EQ(a.input_vertex, b.input_vertex);
+  EXPECT_EQ(a.chart_of_face, b.chart_of_face);
+  EXPECT_EQ(a.energy.symmetric_dirichlet, b.energy.symmetric_dirichlet);
+  EXPECT_EQ(a.energy.p99, b.energy.p99);
+  EXPECT_EQ(a.seam_over_root_area, b.seam_over_root_area);
+}
+
+/// What flattening gives where the mesh is one disk, numbered by where its vertices are: one place
+/// per vertex.
+std::vector<Vec2> bits_of_the_disk_pipeline(const TriangleList& mesh) {
+  const std::vector<Index> order = along_hilbert_curve(mesh.positions);
+  std::vector<Vec3> positions;
+  std::vector<Index> place(order.size());
+  for (const Index v : order) {
+    place[v] = size_of(positions);
+    positions.push_back(mesh.positions[v]);
+  }
+  std::vector<Triangle> faces = mesh.faces, sorted;
+  for (Triangle& face : faces) {
+    for (Index& v : face) v = place[v];
+  }
+  for (const Index f : by_least_vertex(size_of(order), faces)) sorted.push_back(faces[f]);
+  const Flattening flattened = disks::run({positions, sorted});
+  std::vector<Vec2> uvs;
+  for (const Index v : place) uvs.push_back(flattened.uvs[v]);
+  return uvs;
+}
+
+/// A bit of everything: closed, with handles, one-sided, a disk, single triangles.
+TriangleList zoo() {
+  TriangleList mesh = meshes::together({disks::blob(2), meshes::torus(6), meshes::moebius(8),
+                                        meshes::grid(4, 3), meshes::soup(meshes::octahedron())});
+  // Each part in a place of its own, so that nothing is welded across.
+  Index next = 0;
+  for (const Index parts : {size_of(disks::blob(2).positions), Index{36}, Index{16}}) {
+    for (Index v = 0; v < parts; ++v) mesh.positions[next + v].z() += 10 + next;
+    next += parts;
+  }
+  return mesh;
+}
+
+TEST(Unwrap, OpensATetrahedron) {
+  const TriangleList mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 1);
+  EXPECT_EQ(atlas.admitted.closed_components, 1);
+}
+
+TEST(Unwrap, OpensACubeAlongItsSeamOnce) {
+  const TriangleList mesh = meshes::cube();
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 1);
+  // Cut along a path, a disk has twice the edges of the path on its boundary.
+  EXPECT_GE(atlas.seam_over_root_area, 2 / std::sqrt(6.0) - 1e-12);
+}
+
+TEST(Unwrap, OpensATorus) {
+  const TriangleList mesh = meshes::torus(8);
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 1);
+  EXPECT_GT(atlas.seam_over_root_area, 0);
+}
+
+TEST(Unwrap, PartsAMoebiusStripOnce) {
+  const TriangleList mesh = meshes::moebius(12);
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 1);
+  EXPECT_EQ(atlas.admitted.one_sided_edges, 1);
+}
+
+TEST(Unwrap, PartsCubesThatTouchAlongAnEdge) {
+  TriangleList mesh = meshes::together({meshes::cube(), meshes::cube()});
+  for (std::size_t v = 8; v < mesh.positions.size(); ++v) mesh.positions[v] += Vec3(1, 1, 0);
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 2);
+  EXPECT_EQ(atlas.admitted.crowded_edges, 1);
+}
+
+TEST(Unwrap, WeldsASoupUnlessToldNotTo) {
+  const TriangleList mesh = meshes::soup(meshes::cube());
+  const Atlas welded = unwrapped(mesh);
+  expect_sound(mesh, welded);
+  EXPECT_EQ(welded.charts.size(), 1);
+  const Atlas apart = unwrapped(mesh, {.admit = {.weld_distance = {}}});
+  expect_sound(mesh, apart);
+  EXPECT_EQ(apart.charts.size(), 12);
+  EXPECT_NEAR(apart.energy.max, 2, 1e-12);  // single triangles are isometric
+}
+
+TEST(Unwrap, LaysComponentsSideBySideAtTheirScale) {
+  TriangleList mesh = meshes::together({meshes::grid(6, 6), meshes::grid(3, 3)});
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (v >= meshes::grid(6, 6).positions.size()) mesh.positions[v] += Vec3(5, 0, 0);
+  }
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 2);
+  EXPECT_NEAR(atlas.energy.max, 2, 1e-6);  // flat parts keep their size
+  EXPECT_EQ(atlas.seam_over_root_area, 0);
+}
+
+TEST(Unwrap, LeavesADiskAsItStands) {
+  // Its seam runs between vertices at one place.
+  const TriangleList mesh = disks::opened(disks::blob(2), disks::seams_through(disks::blob(2), 3));
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.admitted.welded_vertices, 0);
+  EXPECT_EQ(atlas.uvs.size(), mesh.positions.size());
+  const Atlas welded = unwrapped(mesh, {.keep_disk = false});
+  expect_sound(mesh, welded);
+  EXPECT_GT(welded.admitted.welded_vertices, 0);
+}
+
+TEST(Unwrap, GivesOneDiskTheBitsOfTheDiskPipeline) {
+  const TriangleList mesh = disks::opened(disks::blob(3), disks::seams_through(disks::blob(3), 3));
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+
+  const std::vector<Vec2> uvs = bits_of_the_disk_pipeline(mesh);
+  ASSERT_EQ(atlas.uvs.size(), uvs.size());
+  for (std::size_t uv = 0; uv < uvs.size(); ++uv) {
+    EXPECT_EQ(atlas.uvs[uv], uvs[atlas.input_vertex[uv]]);
+  }
+}
+
+TEST(Unwrap, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const TriangleList mesh = zoo();
+  const Atlas one = unwrapped(mesh);
+  expect_sound(mesh, one);
+  EXPECT_EQ(one.charts.size(), 5);
+  expect_same_bits(one, unwrapped(mesh, {}, 2));
+}
+
+TEST(Unwrap, ScalesWithPowersOfTwo) {
+  const TriangleList mesh = zoo();
+  const Atlas atlas = unwrapped(mesh);
+  for (const int exponent : {-1000, -3, 4, 900}) {
+    TriangleList scaled = mesh;
+    for (Vec3& p : scaled.positions) {
+      for (double& x : p) x = std::ldexp(x, exponent);
+    }
+    Atlas same = unwrapped(scaled);
+    for (Vec2& w : same.uvs) {
+      for (double& x : w) x = std::ldexp(x, -exponent);
+    }
+    expect_same_bits(atlas, same);
+  }
+}
+
+TEST(Unwrap, StaysInjectiveInSinglePrecision) {
+  const TriangleList mesh = zoo();
+  const Atlas atlas = unwrapped(mesh, {.float32 = true});
+  expect_sound(mesh, atlas);
+  for (const Vec2& w : atlas.uvs) EXPECT_EQ(w, w.cast<float>().cast<double>());
+}
+
+TEST(Unwrap, StaysInjectiveWhereItsDoublesAreRounded) {
+  // Thin faces amid large ones: the floats nearest to their corners fold them.
+  TriangleList mesh = meshes::grid(8, 8);
+  for (Vec3& p : mesh.positions) {
+    if (p.x() > 0 && p.x() < 1 && p.y() > 0 && p.y() < 1) p.y() = 0.9 + 1e-8 * p.y();
+  }
+  const auto rounded_injective = [&](const std::vector<Vec2>& uvs) {
+    std::vector<Vec2> rounded = uvs;
+    for (Vec2& w : rounded) w = w.cast<float>().cast<double>();
+    return certify_atlas(mesh.faces, rounded, {}, Work(1)).injective();
+  };
+  EXPECT_FALSE(rounded_injective(bits_of_the_disk_pipeline(mesh)));
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_TRUE(rounded_injective(atlas.uvs));
+}
+
+TEST(Unwrap, PutsFacesWithoutAreaAtAPoint) {
+  TriangleList mesh = meshes::grid(3, 3);
+  mesh.faces.push_back({0, 1, 1});
+  mesh.positions.push_back(0.5 * (mesh.positions[0] + mesh.positions[1]));
+  mesh.faces.push_back({0, size_of(mesh.positions) - 1, 1});
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.admitted.repeated_faces, 1);
+  EXPECT_EQ(atlas.admitted.faces_without_area, 1);
+  EXPECT_EQ(atlas.certificate.excepted_faces, 2);
+  for (const std::size_t f : {mesh.faces.size() - 2, mesh.faces.size() - 1}) {
+    EXPECT_EQ(atlas.chart_of_face[f], kNone);
+    // Where the grid has its corner.
+    const Vec2& place = atlas.uvs[atlas.faces[f][0]];
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(atlas.uvs[atlas.faces[f][k]], place);
+    EXPECT_NE(std::find(atlas.uvs.begin(), atlas.uvs.end() - 6, place), atlas.uvs.end() - 6);
+  }
+}
+
+TEST(Unwrap, GivesCopiesOfFacesALayerOfTheirOwn) {
+  TriangleList mesh = meshes::grid(3, 3);
+  const std::vector<Triangle> front = mesh.faces;
+  for (const auto& [a, b, c] : front) mesh.faces.push_back({a, c, b});
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.admitted.copies, size_of(front));
+  EXPECT_EQ(atlas.charts.size(), 2);
+}
+
+TEST(Unwrap, RefusesWhatHasNoArea) {
+  const TriangleList mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+  try {
+    unwrapped(mesh);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), BELTRAMI_E_ZERO_AREA);
+  }
+}
+
+TEST(Unwrap, EndsOnRequestWithProgressThatNeverFalls) {
+  const TriangleList mesh = zoo();
+  double last = 0;
+  int reports = 0;
+  const auto watch = [&](double fraction, const char*) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    ++reports;
+    return false;
+  };
+  unwrap(mesh.positions, mesh.faces, {}, Work(Limits{}, watch));
+  EXPECT_GT(reports, 5);
+  const auto stop = [](double fraction, const char*) { return fraction > 0.3; };
+  EXPECT_THROW(unwrap(mesh.positions, mesh.faces, {}, Work(Limits{}, stop)), Cancelled);
+}
+
+}  // namespace
+}  // namespace beltrami
