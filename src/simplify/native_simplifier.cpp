@@ -2,9 +2,8 @@
 
 namespace beltrami {
 
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads,
-                    const Checkpoint& checkpoint) {
-  return simplify_in_passes(fine, target_faces, threads, checkpoint);
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work) {
+  return simplify_in_passes(fine, target_faces, work);
 }
 
 const char* simplifier_name() {
