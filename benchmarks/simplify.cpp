@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
@@ -67,10 +66,8 @@ void benchmark(const std::string& path, std::uint64_t faces, Index target, int r
   auto file = read_triangles(path);
   if (faces > file.face_count()) file = refine(file, faces);
   const DiskMesh fine = disk_of(file);
-  const Outcome ours =
-      run([&] { return simplify_in_passes(fine, target, 1, no_checkpoint); }, rounds);
-  const Outcome openmesh =
-      run([&] { return simplify_by_openmesh(fine, target, no_checkpoint); }, rounds);
+  const Outcome ours = run([&] { return simplify_in_passes(fine, target, Work(1)); }, rounds);
+  const Outcome openmesh = run([&] { return simplify_by_openmesh(fine, target, Work(1)); }, rounds);
   const double near = distance(fine, ours.coarse.mesh);
   const double openmesh_near = distance(fine, openmesh.coarse.mesh);
   std::printf("%-24s %8d %6d %8.3f %9.3f %7.1f %9.2e %9.2e %6.2f\n",

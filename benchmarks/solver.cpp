@@ -24,7 +24,7 @@ namespace beltrami::benchmarks {
 namespace {
 
 Cost run_native(const System& system, Precision precision, int threads) {
-  const auto solver = make_native_solver({precision, threads});
+  const auto solver = make_native_solver({precision}, kLeastSingle, Work(threads));
   return measure(
       system, [&] { solver->analyze(system.lower, system.places); },
       [&] {

@@ -114,7 +114,7 @@ System interior_laplacian(const TriangleMesh& file, Numbering numbering) {
   }
   if (numbering == Numbering::kAlongCurve) number_along_curve(positions, faces);
   const DiskMesh mesh = build_disk(std::move(positions), std::move(faces));
-  MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+  MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1, Work(1));
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triangle& t = mesh.faces[f];
     for (int k = 0; k < 3; ++k) {

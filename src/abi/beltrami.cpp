@@ -230,7 +230,7 @@ beltrami_status beltrami_set_float(beltrami_context* context, int32_t key, doubl
 beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh* mesh) {
   return enter(context, [&](beltrami_context& self) {
     self.cancelled.store(false);
-    self.mesh = beltrami::load_mesh(mesh, self.options.threads, self.cancelled);
+    self.mesh = beltrami::load_mesh(mesh, beltrami::Work(self.options.threads), self.cancelled);
     self.flattening.reset();
     return BELTRAMI_OK;
   });

@@ -73,11 +73,11 @@ void require_type(std::int32_t type, std::int32_t narrow, std::int32_t wide, con
 
 template <class Integer>
 std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
-                                    std::uint64_t vertex_count, int threads) {
+                                    std::uint64_t vertex_count, const Work& work) {
   std::vector<Triangle> faces;
-  parallel_assign(threads, faces, count);
+  parallel_assign(work, faces, count);
   const auto items = static_cast<std::int64_t>(count);
-  parallel_for(threads, items, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, items, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
       for (int k = 0; k < 3; ++k) faces[f][k] = static_cast<Index>(reader.read<Integer>(f, k));
     }
@@ -85,7 +85,7 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
   const auto in_range = [&](std::int64_t f, int k) {
     return reader.read<Integer>(static_cast<std::size_t>(f), k) < vertex_count;
   };
-  const auto outside = parallel_find(threads, items, kGrain, [&](std::int64_t f) {
+  const auto outside = parallel_find(work, items, kGrain, [&](std::int64_t f) {
     return !in_range(f, 0) || !in_range(f, 1) || !in_range(f, 2);
   });
   if (outside == items) return faces;
@@ -101,9 +101,9 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
 
 template <class Scalar, class Vector>
 std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& original,
-                                int threads) {
+                                const Work& work) {
   std::vector<Vector> points(original.size());
-  parallel_for(threads, size_of(original), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(original), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       for (int k = 0; k < Vector::RowsAtCompileTime; ++k) {
         points[i][k] = reader.read<Scalar>(static_cast<std::size_t>(original[i]), k);
@@ -130,30 +130,30 @@ beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
   return mesh;
 }
 
-std::vector<Triangle> read_faces(const beltrami_mesh& mesh, int threads) {
+std::vector<Triangle> read_faces(const beltrami_mesh& mesh, const Work& work) {
   require_type(mesh.indices.type, BELTRAMI_U32, BELTRAMI_U64, "indices");
   const Reader reader(mesh.indices, mesh.face_count, 3, "indices");
   return mesh.indices.type == BELTRAMI_U32
-             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count, threads)
-             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count, threads);
+             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count, work)
+             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count, work);
 }
 
 std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
-                                 int threads) {
+                                 const Work& work) {
   require_type(mesh.positions.type, BELTRAMI_F32, BELTRAMI_F64, "positions");
   const Reader reader(mesh.positions, mesh.vertex_count, 3, "positions");
-  return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original, threads)
-                                             : read_points<double, Vec3>(reader, original, threads);
+  return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original, work)
+                                             : read_points<double, Vec3>(reader, original, work);
 }
 
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
-                           const std::vector<Index>& original) {
+                           const std::vector<Index>& original, const Work& work) {
   if (uvs == nullptr) refuse("uvs is NULL");
   require_type(uvs->type, BELTRAMI_F32, BELTRAMI_F64, "UVs");
   const Reader reader(*uvs, vertex_count, 2, "UVs");
   std::vector<Vec2> points = uvs->type == BELTRAMI_F32
-                                 ? read_points<float, Vec2>(reader, original, 1)
-                                 : read_points<double, Vec2>(reader, original, 1);
+                                 ? read_points<float, Vec2>(reader, original, work)
+                                 : read_points<double, Vec2>(reader, original, work);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) {
       const auto vertex = static_cast<std::uint64_t>(original[i]);

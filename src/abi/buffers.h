@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -70,16 +71,16 @@ void write_sized(Struct* theirs, Struct ours) {
 beltrami_mesh read_mesh_header(const beltrami_mesh* mesh);
 
 /// Reads the faces. Throws Error INVALID_ARGUMENT, or INDEX_OUT_OF_RANGE with the face.
-std::vector<Triangle> read_faces(const beltrami_mesh& mesh, int threads = 1);
+std::vector<Triangle> read_faces(const beltrami_mesh& mesh, const Work& work);
 
 /// Reads positions: item `original[i]` for each i. Throws Error INVALID_ARGUMENT.
 std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
-                                 int threads = 1);
+                                 const Work& work);
 
 /// Reads UVs: item `original[i]` for each i, of `vertex_count` in the buffer.
 /// Throws Error INVALID_ARGUMENT, or NON_FINITE with the vertex.
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
-                           const std::vector<Index>& original);
+                           const std::vector<Index>& original, const Work& work);
 
 /// Writes faces as items of 3 elements of `type` U32 or U64, `stride` bytes apart (0: packed): face
 /// i as item `original_face[i]`, its vertices as `original` numbers them. Throws Error

@@ -24,21 +24,22 @@ beltrami_status judge(Scope scope, const beltrami_mesh* theirs, const beltrami_b
                       beltrami_certificate& report) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
   const InterruptScope interruptible({nullptr, mesh.cancel, {}});
+  const Work work(kThreads);
   if (scope == Scope::kTriangles) {
-    const InputTriangles triangles = read_triangles(mesh);
-    const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, triangles.original);
-    const Orientations found = count_orientations(triangles.faces, points, kThreads);
+    const InputTriangles triangles = read_triangles(mesh, work);
+    const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, triangles.original, work);
+    const Orientations found = count_orientations(triangles.faces, points, work);
     describe_orientations(report, found);
     return found.negative + found.degenerate == 0 ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
   }
-  const InputDisk input = read_topology(mesh);
-  const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, input.original);
+  const InputDisk input = read_topology(mesh, work);
+  const std::vector<Vec2> points = read_uvs(uvs, mesh.vertex_count, input.original, work);
   if (scope == Scope::kBoundary) {
     const Crossings found = count_crossings(input.disk.boundary, points);
     describe_crossings(report, found, input.original);
     return found.count == 0 ? BELTRAMI_OK : BELTRAMI_NOT_INJECTIVE;
   }
-  const Certificate found = certify(input.disk.faces, input.disk.boundary, points, kThreads);
+  const Certificate found = certify(input.disk.faces, input.disk.boundary, points, work);
   describe_orientations(report, found.orientations);
   describe_crossings(report, found.crossings, input.original);
   report.injective = found.injective() ? 1 : 0;
@@ -72,11 +73,11 @@ struct Measured {
 };
 
 /// Throws Error.
-Measured read_measured(const beltrami_mesh& mesh, const beltrami_buffer* uvs) {
-  Measured input{read_triangles(mesh), {}, {}};
-  input.positions = read_positions(mesh, input.triangles.original);
-  validate_positions(input.positions);
-  input.uvs = read_uvs(uvs, mesh.vertex_count, input.triangles.original);
+Measured read_measured(const beltrami_mesh& mesh, const beltrami_buffer* uvs, const Work& work) {
+  Measured input{read_triangles(mesh, work), {}, {}};
+  input.positions = read_positions(mesh, input.triangles.original, work);
+  validate_positions(input.positions, work);
+  input.uvs = read_uvs(uvs, mesh.vertex_count, input.triangles.original, work);
   return input;
 }
 
@@ -105,10 +106,11 @@ beltrami_status beltrami_measure(const beltrami_mesh* mesh, const beltrami_buffe
     beltrami::require_sized(out, "out");
     const beltrami_mesh header = beltrami::read_mesh_header(mesh);
     const beltrami::InterruptScope interruptible({nullptr, header.cancel, {}});
-    const beltrami::Measured input = beltrami::read_measured(header, uvs);
-    beltrami::write_sized(out, beltrami::describe_distortion(beltrami::measure_distortion(
-                                   input.positions, input.triangles.faces, input.uvs,
-                                   beltrami::kThreads, face_energies)));
+    const beltrami::Work work(beltrami::kThreads);
+    const beltrami::Measured input = beltrami::read_measured(header, uvs, work);
+    beltrami::write_sized(
+        out, beltrami::describe_distortion(beltrami::measure_distortion(
+                 input.positions, input.triangles.faces, input.uvs, face_energies, work)));
     return BELTRAMI_OK;
   });
 }
@@ -119,7 +121,8 @@ beltrami_status beltrami_measure_faces(const beltrami_mesh* mesh, const beltrami
   return beltrami::guarded(unused, [&] {
     const beltrami_mesh header = beltrami::read_mesh_header(mesh);
     const beltrami::InterruptScope interruptible({nullptr, header.cancel, {}});
-    const beltrami::Measured input = beltrami::read_measured(header, uvs);
+    const beltrami::Work work(beltrami::kThreads);
+    const beltrami::Measured input = beltrami::read_measured(header, uvs, work);
     const std::vector<beltrami::Triangle>& faces = input.triangles.faces;
     beltrami::Writer writer(out, BELTRAMI_F64, stride, faces.size(), 4);
     beltrami::PollSometimes poll;

@@ -81,16 +81,17 @@ void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
 
 }  // namespace
 
-LoadedMesh load_mesh(const beltrami_mesh* theirs, int threads, const std::atomic<bool>& cancelled) {
+LoadedMesh load_mesh(const beltrami_mesh* theirs, const Work& work,
+                     const std::atomic<bool>& cancelled) {
   const beltrami_mesh mesh = read_mesh_header(theirs);
   const InterruptScope interruptible({&cancelled, mesh.cancel, {}});
   LoadedMesh loaded;
   loaded.vertex_count = mesh.vertex_count;
-  loaded.input = read_disk(mesh, threads);
+  loaded.input = read_disk(mesh, work);
   DiskMesh& disk = loaded.input.disk;
-  loaded.frame = normalise(disk.positions, disk.faces, threads);
-  loaded.area = std::ldexp(surface_area(disk, threads), -2 * loaded.frame.exponent);
-  for (const Index f : degenerate_faces(disk.positions, disk.faces, threads)) {
+  loaded.frame = normalise(disk.positions, disk.faces, work);
+  loaded.area = std::ldexp(surface_area(disk, work), -2 * loaded.frame.exponent);
+  for (const Index f : degenerate_faces(disk.positions, disk.faces, work)) {
     ++loaded.degenerate_faces;
     const Index original = loaded.input.original_face[f];
     Index& first = loaded.first_degenerate_face;

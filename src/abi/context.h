@@ -9,6 +9,7 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/options.h"
+#include "base/work.h"
 #include "chart/flattening.h"
 
 namespace beltrami {
@@ -25,7 +26,8 @@ struct LoadedMesh {
 
 /// Reads, validates and normalises. `cancelled` may be set from another thread. Throws Error
 /// INVALID_ARGUMENT or a mesh status, or Cancelled.
-LoadedMesh load_mesh(const beltrami_mesh* mesh, int threads, const std::atomic<bool>& cancelled);
+LoadedMesh load_mesh(const beltrami_mesh* mesh, const Work& work,
+                     const std::atomic<bool>& cancelled);
 
 }  // namespace beltrami
 

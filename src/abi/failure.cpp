@@ -3,7 +3,6 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
-#include <system_error>
 
 #include "abi/status.h"
 #include "base/interrupt.h"
@@ -46,13 +45,6 @@ beltrami_status describe_exception(Failure& failure) noexcept {
     // A container longer than the address space allows: memory in another word.
     failure.set_static(status_advice(BELTRAMI_E_OUT_OF_MEMORY));
     return BELTRAMI_E_OUT_OF_MEMORY;
-  } catch (const std::system_error& error) {
-    if (error.code() == std::errc::resource_unavailable_try_again) {
-      failure.set_static("No further thread could be started: lower the option threads.");
-      return BELTRAMI_E_OUT_OF_MEMORY;
-    }
-    failure.set(BELTRAMI_E_INTERNAL, error.what(), {});
-    return BELTRAMI_E_INTERNAL;
   } catch (const std::exception& error) {
     failure.set(BELTRAMI_E_INTERNAL, error.what(), {});
     return BELTRAMI_E_INTERNAL;

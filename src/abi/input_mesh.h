@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -18,7 +19,7 @@ struct InputTriangles {
 
 /// Reads the faces; needs no topology. Throws Error INVALID_ARGUMENT, or INDEX_OUT_OF_RANGE with
 /// the face. `mesh` has passed read_mesh_header.
-InputTriangles read_triangles(const beltrami_mesh& mesh, int threads = 1);
+InputTriangles read_triangles(const beltrami_mesh& mesh, const Work& work);
 
 /// A disk over the vertices that the input's faces use.
 struct InputDisk {
@@ -30,9 +31,9 @@ struct InputDisk {
 /// Reads and validates the caller's mesh, and numbers its vertices and faces by where they are.
 /// Throws Error INVALID_ARGUMENT or a mesh status, whose element and message count as the input
 /// does. Positions of unused vertices are not looked at.
-InputDisk read_disk(const beltrami_mesh& mesh, int threads);
+InputDisk read_disk(const beltrami_mesh& mesh, const Work& work);
 
 /// The same for checks of the topology alone: all positions zero, the order as in the input.
-InputDisk read_topology(const beltrami_mesh& mesh);
+InputDisk read_topology(const beltrami_mesh& mesh, const Work& work);
 
 }  // namespace beltrami

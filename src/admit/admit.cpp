@@ -30,7 +30,7 @@ std::vector<Triangle> welded(const std::vector<Vec3>& positions, std::vector<Tri
   if (!options.weld_distance) return faces;
   const std::vector<Index> first = weld(positions, *options.weld_distance, work);
   for (Index v = 0; v < size_of(first); ++v) counts.welded_vertices += first[v] != v ? 1 : 0;
-  parallel_for(work.threads(), size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : faces[f]) v = first[v];
     }
@@ -75,7 +75,7 @@ std::vector<Size> sizes_of(const std::vector<Vec3>& positions, const std::vector
   const double half = std::ldexp(1.0, exponent / 2),
                rest = std::ldexp(1.0, exponent - exponent / 2);
   std::vector<Size> sizes(faces.size());
-  parallel_for(work.threads(), size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       if (names_twice(faces[f])) continue;
       std::array<Vec3, 3> corner;
@@ -125,7 +125,7 @@ std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& fa
     Triangle corners;  // in increasing order
     Index face;
   };
-  const std::vector<Index> order = by_least_vertex(vertex_count, faces, work.threads());
+  const std::vector<Index> order = by_least_vertex(vertex_count, faces, work);
   std::vector<Index> layers(faces.size(), 0);
   std::vector<Entry> entries;
   PollSometimes poll;
@@ -177,8 +177,8 @@ void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work) {
   const Index vertex_count = size_of(positions);
-  validate_indices(vertex_count, faces, work.threads(), RepeatedVertices::kAllowed);
-  validate_positions(positions, work.threads());
+  validate_indices(vertex_count, faces, RepeatedVertices::kAllowed, work);
+  validate_positions(positions, work);
   Admitted admitted;
   AdmitCounts& counts = admitted.counts;
   counts.unused_vertices = unused_vertices(vertex_count, faces);

@@ -35,16 +35,15 @@ Index turned(Index h) {
 
 Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
             const std::vector<Index>& layers, const Work& work) {
-  const int threads = work.threads();
   Gluing gluing;
-  parallel_assign(threads, gluing.twin, 3 * faces.size(), kNone);
+  parallel_assign(work, gluing.twin, 3 * faces.size(), kNone);
   const auto join = [&](Index one, Index other) {
     gluing.twin[one] = other;
     gluing.twin[other] = one;
   };
   std::atomic<Index> crowded{0};
-  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, threads);
-  for_each_edge(buckets, faces, threads, [&](std::span<const Spoke> edge) {
+  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
+  for_each_edge(work, buckets, faces, [&](std::span<const Spoke> edge) {
     if (edge.size() < 2) return;
     if (edge.size() == 2) {
       const Index one = edge[0].halfedge, other = edge[1].halfedge;
@@ -99,7 +98,7 @@ Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin, const
     keep_majority(order, begin, reversed);
   }
 
-  parallel_for(work.threads(), size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
       if (reversed[f]) {
         std::swap(faces[f][1], faces[f][2]);

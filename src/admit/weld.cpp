@@ -24,9 +24,9 @@ constexpr int kReach = 2;
 /// Points by a hash of their coordinates.
 class PointTable {
  public:
-  PointTable(const std::vector<Vec3>& points, int threads)
+  PointTable(const std::vector<Vec3>& points, const Work& work)
       : points_(points), mask_(std::bit_ceil(points.size()) - 1), found_(points.size()) {
-    BucketSort<Index> sort(threads, size_of(points), static_cast<std::int64_t>(mask_) + 1, start_,
+    BucketSort<Index> sort(work, size_of(points), static_cast<std::int64_t>(mask_) + 1, start_,
                            [&](std::int64_t i, const auto& count) { count(bucket(points[i])); });
     sort.place([&](std::int64_t i, const auto& place) {
       found_[place(bucket(points[i]))] = static_cast<Index>(i);
@@ -60,9 +60,9 @@ class PointTable {
 };
 
 std::vector<Index> weld_equal(const std::vector<Vec3>& positions, const PointTable& table,
-                              int threads) {
+                              const Work& work) {
   std::vector<Index> first(positions.size());
-  parallel_for(threads, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) first[i] = table.find(positions[i]);
   });
   return first;
@@ -99,20 +99,21 @@ std::vector<Vec3> later_neighbours() {
   return offsets;
 }
 
-std::vector<Index> weld_near(const std::vector<Vec3>& positions, double distance, int threads) {
+std::vector<Index> weld_near(const std::vector<Vec3>& positions, double distance,
+                             const Work& work) {
   const Index count = size_of(positions);
   const double side = distance / kReach;
   std::vector<Vec3> corner(positions.size());
-  parallel_for(threads, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       for (int k = 0; k < 3; ++k) corner[i][k] = std::floor(positions[i][k] / side);
     }
   });
-  const PointTable table(corner, threads);
-  const std::vector<Index> cell = weld_equal(corner, table, threads);
+  const PointTable table(corner, work);
+  const std::vector<Index> cell = weld_equal(corner, table, work);
   Cells cells;
   cells.point.resize(positions.size());
-  BucketSort<Index> sort(threads, count, count, cells.start,
+  BucketSort<Index> sort(work, count, count, cells.start,
                          [&](std::int64_t i, const auto& visit) { visit(cell[i]); });
   sort.place([&](std::int64_t i, const auto& place) {
     cells.point[place(cell[i])] = static_cast<Index>(i);
@@ -128,7 +129,7 @@ std::vector<Index> weld_near(const std::vector<Vec3>& positions, double distance
   }
   std::vector<std::vector<std::array<Index, 2>>> near(kBlock / kGrain);
   for (std::int64_t first = 0; first < count; first += kBlock) {
-    parallel_for(threads, std::min(kBlock, count - first), kGrain,
+    parallel_for(work, std::min(kBlock, count - first), kGrain,
                  [&](std::int64_t begin, std::int64_t end) {
                    auto& found = near[begin / kGrain];
                    found.clear();
@@ -154,15 +155,14 @@ std::vector<Index> weld_near(const std::vector<Vec3>& positions, double distance
 }  // namespace
 
 std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, const Work& work) {
-  const int threads = work.threads();
   double greatest = 0;
   PollSometimes poll;
   for (const Vec3& p : positions) {
     poll();
     greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
   }
-  if (distance > std::ldexp(greatest, -50)) return weld_near(positions, distance, threads);
-  return weld_equal(positions, PointTable(positions, threads), threads);
+  if (distance > std::ldexp(greatest, -50)) return weld_near(positions, distance, work);
+  return weld_equal(positions, PointTable(positions, work), work);
 }
 
 }  // namespace beltrami

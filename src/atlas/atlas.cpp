@@ -41,13 +41,12 @@ Admitted admitted_surface(const std::vector<Vec3>& positions, const std::vector<
 /// exponent.
 int bring_to_unit(Surface& surface, const Work& work) {
   std::vector<Vec3> moved = surface.positions;
-  const int exponent = normalise(moved, surface.faces, work.threads()).exponent;
-  parallel_for(work.threads(), surface.vertex_count(), kGrain,
-               [&](std::int64_t begin, std::int64_t end) {
-                 for (std::int64_t v = begin; v < end; ++v) {
-                   for (double& x : surface.positions[v]) x = std::ldexp(x, exponent);
-                 }
-               });
+  const int exponent = normalise(moved, surface.faces, work).exponent;
+  parallel_for(work, surface.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      for (double& x : surface.positions[v]) x = std::ldexp(x, exponent);
+    }
+  });
   return exponent;
 }
 
@@ -67,8 +66,8 @@ Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
 
 /// Rounds a map, moved by `shift`, to doubles that rounded to nearest stay injective in single
 /// precision; or to single-precision numbers at once. Notes where it does not stay injective.
-void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32, int threads,
-                 MappedChart& map) {
+void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32,
+                 const Work& work, MappedChart& map) {
   const Numbers doubles{.single = false, .exponent = exponent};
   const Numbers floats{.single = true, .exponent = exponent};
   const bool was_injective = map.outcome <= Outcome::kNotConverged;
@@ -79,10 +78,10 @@ void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool flo
   };
   std::vector<Vec2> placed = map.uvs;
   for (Vec2& w : placed) w += shift;
-  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, threads);
+  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, work);
   map.uvs = std::move(rounded.uvs);
   note(doubles, rounded.certificate, Outcome::kNotInjective);
-  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, threads);
+  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, work);
   if (float32) {
     if (map.outcome != Outcome::kNotInjective) {
       note(floats, single.certificate, Outcome::kNotInjectiveFloat32);
@@ -104,13 +103,13 @@ void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
     shifts = place_in_rows(sizes);
     for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
   }
-  const int threads = maps.size() == 1 ? work.threads() : 1;
-  parallel_for(work.threads(), size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
+  const Work of_chart = maps.size() == 1 ? work : work.aside();
+  parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].error != BELTRAMI_OK) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
       return;
     }
-    round_chart(charts[c].mesh, shifts[c], exponent, float32, threads, maps[c]);
+    round_chart(charts[c].mesh, shifts[c], exponent, float32, of_chart, maps[c]);
   });
 }
 

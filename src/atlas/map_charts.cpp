@@ -28,8 +28,8 @@ struct ArrangedDisk {
   std::vector<Index> order;  ///< per vertex: that of the chart
 };
 
-ArrangedDisk arrange(const DiskMesh& mesh, int threads) {
-  ArrangedDisk arranged{{}, along_hilbert_curve(mesh.positions, threads)};
+ArrangedDisk arrange(const DiskMesh& mesh, const Work& work) {
+  ArrangedDisk arranged{{}, along_hilbert_curve(mesh.positions, work)};
   const std::vector<Index>& order = arranged.order;
   std::vector<Vec3> positions(order.size());
   std::vector<Index> place(order.size());
@@ -43,15 +43,15 @@ ArrangedDisk arrange(const DiskMesh& mesh, int threads) {
   }
   std::vector<Triangle> sorted;
   sorted.reserve(faces.size());
-  for (const Index f : by_least_vertex(size_of(order), faces, threads)) sorted.push_back(faces[f]);
-  arranged.disk = build_disk(std::move(positions), std::move(sorted), threads);
+  for (const Index f : by_least_vertex(size_of(order), faces, work)) sorted.push_back(faces[f]);
+  arranged.disk = build_disk(std::move(positions), std::move(sorted), work);
   return arranged;
 }
 
 MappedChart flattened(const Chart& chart, const Work& work) {
-  ArrangedDisk arranged = arrange(chart.mesh, work.threads());
+  ArrangedDisk arranged = arrange(chart.mesh, work);
   DiskMesh& disk = arranged.disk;
-  const Normalisation frame = normalise(disk.positions, disk.faces, work.threads());
+  const Normalisation frame = normalise(disk.positions, disk.faces, work);
   const Flattening result = flatten(disk, frame, ChartOptions(), work);
   MappedChart map{std::vector<Vec2>(result.uvs.size()), result.status};
   for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[arranged.order[i]] = result.uvs[i];
@@ -60,9 +60,9 @@ MappedChart flattened(const Chart& chart, const Work& work) {
 
 /// The faces unfolded, their longest edge along the first axis: in rows of slivers the numbers of
 /// the second one are small, and dense.
-MappedChart unfolded(const Chart& chart) {
+MappedChart unfolded(const Chart& chart, const Work& work) {
   const DiskMesh& mesh = chart.mesh;
-  MappedChart map{unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, 1))};
+  MappedChart map{unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, work))};
   Complex longest = 0;
   for (Index h = 0; h < size_of(mesh.twin); ++h) {
     const Vec2 edge = map.uvs[mesh.target(h)] - map.uvs[mesh.origin(h)];
@@ -79,7 +79,7 @@ MappedChart unfolded(const Chart& chart) {
 
 MappedChart map_chart(const Chart& chart, const Work& work) {
   try {
-    return chart.mesh.face_count() <= kFewFaces ? unfolded(chart) : flattened(chart, work);
+    return chart.mesh.face_count() <= kFewFaces ? unfolded(chart, work) : flattened(chart, work);
   } catch (const Error& error) {
     return {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
             error.status()};
@@ -114,10 +114,10 @@ std::vector<MappedChart> map_charts(const std::vector<Chart>& charts, const Work
   }
   std::atomic<std::int64_t> done{mapped};
   const std::thread::id caller = std::this_thread::get_id();
-  const Limits aside{.threads = 1, .memory_bytes = work.memory_limit()};
-  parallel_for(work.threads(), size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
+  const Work aside = work.aside();
+  parallel_for(work, size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
     const Index c = order[large + i];
-    maps[c] = map_chart(charts[c], Work(aside, nullptr));
+    maps[c] = map_chart(charts[c], aside);
     done += faces(c);
     if (std::this_thread::get_id() == caller) work.report(share(done));
   });

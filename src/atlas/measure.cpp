@@ -69,7 +69,7 @@ double percentile(std::vector<Weighted>& faces) {
 AtlasEnergy measure_charts(const std::vector<Chart>& parts, const std::vector<MappedChart>& maps,
                            std::vector<ChartInfo>& charts, const Work& work) {
   std::vector<std::vector<Weighted>> energies(parts.size());
-  parallel_for(work.threads(), size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
+  parallel_for(work, size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
     energies[c] = face_energies(parts[c].mesh, maps[c].uvs);
   });
   AtlasEnergy atlas;

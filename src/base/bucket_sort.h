@@ -13,7 +13,7 @@ namespace beltrami {
 /// Sorts the entries of `items` items stably into `buckets` buckets: entries of one bucket come in
 /// the order of their items, whatever the number of threads. Count first, then place:
 ///   std::vector<Index> start;
-///   BucketSort sort(threads, items, buckets, start, [&](std::int64_t item, const auto& visit) {
+///   BucketSort sort(work, items, buckets, start, [&](std::int64_t item, const auto& visit) {
 ///     visit(bucket); });                       // once for each entry of the item
 ///   sort.place([&](std::int64_t item, const auto& visit) { sorted[visit(bucket)] = entry; });
 template <class Start>
@@ -21,10 +21,10 @@ class BucketSort {
  public:
   /// Sets start[b] to the number of entries before those of bucket b; buckets + 1 of them.
   template <class Each>
-  BucketSort(int threads, std::int64_t items, std::int64_t buckets, std::vector<Start>& start,
+  BucketSort(const Work& work, std::int64_t items, std::int64_t buckets, std::vector<Start>& start,
              const Each& each)
-      : threads_(threads), items_(items) {
-    const std::int64_t parts = std::clamp<std::int64_t>(items / kLeastPart, 1, threads);
+      : work_(work), items_(items) {
+    const std::int64_t parts = std::clamp<std::int64_t>(items / kLeastPart, 1, work.threads());
     cursors_.resize(static_cast<std::size_t>(std::min<std::int64_t>(parts, kMostParts)));
     for_each_part(
         [&](std::int64_t item, Start* counts) {
@@ -52,7 +52,7 @@ class BucketSort {
   template <class Body>
   void for_each_part(const Body& body, std::int64_t buckets) {
     const auto parts = static_cast<std::int64_t>(cursors_.size());
-    parallel_for(threads_, parts, 1, [&](std::int64_t part, std::int64_t) {
+    parallel_for(work_, parts, 1, [&](std::int64_t part, std::int64_t) {
       std::vector<Start>& cursor = cursors_[static_cast<std::size_t>(part)];
       if (buckets > 0) cursor.assign(static_cast<std::size_t>(buckets), 0);
       Start* const own = cursor.data();
@@ -69,7 +69,7 @@ class BucketSort {
   void add_up(std::int64_t buckets, std::vector<Start>& start) {
     start.resize(static_cast<std::size_t>(buckets) + 1);
     std::vector<Start> before(static_cast<std::size_t>((buckets + kGrain - 1) / kGrain) + 1, 0);
-    parallel_for(threads_, buckets, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, buckets, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Start sum = 0;
       for (const std::vector<Start>& counts : cursors_) {
         for (std::int64_t b = begin; b < end; ++b) sum += counts[b];
@@ -77,7 +77,7 @@ class BucketSort {
       before[begin / kGrain + 1] = sum;
     });
     for (std::size_t block = 1; block < before.size(); ++block) before[block] += before[block - 1];
-    parallel_for(threads_, buckets, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, buckets, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Start next = before[begin / kGrain];
       for (std::int64_t b = begin; b < end; ++b) {
         start[b] = next;
@@ -91,7 +91,7 @@ class BucketSort {
     start[static_cast<std::size_t>(buckets)] = before.back();
   }
 
-  int threads_;
+  const Work work_;
   std::int64_t items_;
   std::vector<std::vector<Start>> cursors_;  // per part and bucket: counts, then next places
 };

@@ -15,13 +15,13 @@ class Grouping {
  public:
   /// `group_of(item)` in [0, groups), or kNone for an item in none.
   template <class GroupOf>
-  Grouping(Index items, Index groups, const GroupOf& group_of, int threads)
+  Grouping(Index items, Index groups, const GroupOf& group_of, const Work& work)
       : items_(static_cast<std::size_t>(items)), places_(items_.size(), kNone) {
     const auto visit_group = [&](std::int64_t i, const auto& visit) {
       const Index group = group_of(static_cast<Index>(i));
       if (group != kNone) visit(group);
     };
-    BucketSort<Index> sort(threads, items, groups, start_, visit_group);
+    BucketSort<Index> sort(work, items, groups, start_, visit_group);
     sort.place([&](std::int64_t i, const auto& place) {
       visit_group(i, [&](Index group) {
         const Index at = place(group);

@@ -1,4 +1,4 @@
-// How a request to cancel reaches the loops of a run. A Checkpoint is for the steps of a stage,
+// How a request to cancel reaches the loops of a run. Work::report is for the steps of a stage,
 // with their progress; this is for the sweeps inside a step, which take seconds on the largest
 // meshes.
 #pragma once

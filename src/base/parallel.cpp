@@ -15,13 +15,14 @@
 
 #include "base/floating_point.h"
 #include "base/interrupt.h"
+#include "base/pool.h"
 
 namespace beltrami {
 
-void parallel_for(int threads, std::int64_t count, std::int64_t grain,
+void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
                   const std::function<void(std::int64_t, std::int64_t)>& body) {
   const std::int64_t chunks = (count + grain - 1) / grain;
-  const int workers = static_cast<int>(std::min<std::int64_t>(threads, chunks));
+  const int workers = static_cast<int>(std::min<std::int64_t>(work.threads(), chunks));
   if (workers <= 1) {
     for (std::int64_t begin = 0; begin < count; begin += grain) {
       poll_interrupt();
@@ -33,7 +34,7 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
   std::exception_ptr failure;
   std::mutex failure_guard;
   const InterruptSource request = interrupt_for_workers();
-  const auto work = [&] {
+  const auto take_chunks = [&] {
     const StandardFloatingPoint standard_mode;
     try {
       for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
@@ -46,20 +47,19 @@ void parallel_for(int threads, std::int64_t count, std::int64_t grain,
       next.store(chunks);
     }
   };
-  {
-    std::vector<std::jthread> pool;
-    pool.reserve(static_cast<std::size_t>(workers - 1));
-    const auto work_aside = [&] {
-      const InterruptScope interruptible(request);
-      work();
-    };
-    for (int i = 1; i < workers; ++i) pool.emplace_back(work_aside);
-    work();
-  }
+  const std::thread::id caller = std::this_thread::get_id();
+  work.pool().run(workers - 1, [&] {
+    if (std::this_thread::get_id() == caller) {
+      take_chunks();
+      return;
+    }
+    const InterruptScope interruptible(request);
+    take_chunks();
+  });
   if (failure) std::rethrow_exception(failure);
 }
 
-void touch_memory([[maybe_unused]] int threads, [[maybe_unused]] void* memory,
+void touch_memory([[maybe_unused]] const Work& work, [[maybe_unused]] void* memory,
                   [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
   constexpr std::size_t kChunk = std::size_t{1} << 20;
@@ -67,7 +67,7 @@ void touch_memory([[maybe_unused]] int threads, [[maybe_unused]] void* memory,
   void* first = memory;
   std::size_t left = bytes;
   if (bytes < 2 * kChunk || std::align(page, page, first, left) == nullptr) return;
-  parallel_for(threads, static_cast<std::int64_t>(left / page * page), kChunk,
+  parallel_for(work, static_cast<std::int64_t>(left / page * page), kChunk,
                [&](std::int64_t begin, std::int64_t end) {
                  // A hint: what it does not do is done at the first touch.
                  madvise(static_cast<char*>(first) + begin, static_cast<std::size_t>(end - begin),
@@ -76,10 +76,10 @@ void touch_memory([[maybe_unused]] int threads, [[maybe_unused]] void* memory,
 #endif
 }
 
-double parallel_sum(int threads, std::int64_t count, std::int64_t grain,
+double parallel_sum(const Work& work, std::int64_t count, std::int64_t grain,
                     const std::function<double(std::int64_t, std::int64_t)>& term) {
   std::vector<double> partial(static_cast<std::size_t>((count + grain - 1) / grain));
-  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, count, grain, [&](std::int64_t begin, std::int64_t end) {
     partial[static_cast<std::size_t>(begin / grain)] = term(begin, end);
   });
   double sum = 0;

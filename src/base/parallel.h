@@ -7,36 +7,39 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
-/// Calls `body(begin, end)` over [0, count) in chunks of `grain`, on up to `threads` threads
-/// (the caller's included). Chunk borders depend on `count` and `grain` only, so a body that
-/// writes per-item or per-chunk results gives the same bits at any thread count.
-/// The first exception thrown by a body is rethrown here, after all threads have stopped; so is the
-/// one by which a run ends that is cancelled (poll_interrupt).
-void parallel_for(int threads, std::int64_t count, std::int64_t grain,
+/// Calls `body(begin, end)` over [0, count) in chunks of `grain`, on the threads of the run that
+/// `work` allows; in the body of another loop of that run, on its thread alone. Chunk borders
+/// depend on `count` and `grain` only, so a body that writes per-item or per-chunk results gives
+/// the same bits at any thread count. The first exception thrown by a body is rethrown here, after
+/// all threads have stopped; so is the one by which a run ends that is cancelled (poll_interrupt).
+void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
                   const std::function<void(std::int64_t begin, std::int64_t end)>& body);
 
 /// Lets several threads be the first to touch memory, which costs more than to fill it.
-void touch_memory(int threads, void* memory, std::size_t bytes);
+void touch_memory(const Work& work, void* memory, std::size_t bytes);
 
 /// items.assign(count, value) for large arrays, with memory that several threads have touched.
 template <class T>
-void parallel_assign(int threads, std::vector<T>& items, std::size_t count, const T& value = T()) {
+void parallel_assign(const Work& work, std::vector<T>& items, std::size_t count,
+                     const T& value = T()) {
   if (items.capacity() < count) {
     std::vector<T>().swap(items);
     items.reserve(count);
-    touch_memory(threads, items.data(), count * sizeof(T));
+    touch_memory(work, items.data(), count * sizeof(T));
   }
   items.assign(count, value);
 }
 
 /// The first of the items [0, count) for which `test` holds, or `count`.
 template <class Test>
-std::int64_t parallel_find(int threads, std::int64_t count, std::int64_t grain, const Test& test) {
+std::int64_t parallel_find(const Work& work, std::int64_t count, std::int64_t grain,
+                           const Test& test) {
   std::atomic<std::int64_t> first{count};
-  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, count, grain, [&](std::int64_t begin, std::int64_t end) {
     if (begin > first) return;
     std::int64_t i = begin;
     while (i < end && !test(i)) ++i;
@@ -50,9 +53,10 @@ std::int64_t parallel_find(int threads, std::int64_t count, std::int64_t grain, 
 
 /// The items [0, count) for which `test` holds, in order.
 template <class Test>
-std::vector<Index> parallel_filter(int threads, Index count, std::int64_t grain, const Test& test) {
+std::vector<Index> parallel_filter(const Work& work, Index count, std::int64_t grain,
+                                   const Test& test) {
   std::vector<std::vector<Index>> of_chunk(static_cast<std::size_t>((count + grain - 1) / grain));
-  parallel_for(threads, count, grain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, count, grain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Index>& found = of_chunk[static_cast<std::size_t>(begin / grain)];
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
       if (test(i)) found.push_back(i);
@@ -64,7 +68,7 @@ std::vector<Index> parallel_filter(int threads, Index count, std::int64_t grain,
 }
 
 /// Sum of `term(begin, end)` over fixed chunks, added in order: the same bits at any thread count.
-double parallel_sum(int threads, std::int64_t count, std::int64_t grain,
+double parallel_sum(const Work& work, std::int64_t count, std::int64_t grain,
                     const std::function<double(std::int64_t begin, std::int64_t end)>& term);
 
 }  // namespace beltrami

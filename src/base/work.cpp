@@ -4,24 +4,33 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "base/pool.h"
 #include "base/resources.h"
 
 namespace beltrami {
 
 struct Work::Run {
-  Limits limits;
-  Progress progress;
-  double started = wall_seconds();
+  Run(const Limits& all, Progress watcher)
+      : limits(all), progress(std::move(watcher)), pool(all.threads) {}
+
+  const Limits limits;
+  const Progress progress;
+  const double started = wall_seconds();
   double fraction = 0;  // that was reported last
+  Pool pool;
 };
 
 Work::Work(int threads) : Work(Limits{.threads = threads}, nullptr) {}
 
 Work::Work(const Limits& limits, Progress progress)
-    : run_(std::make_shared<Run>(Run{limits, std::move(progress)})) {}
+    : run_(std::make_shared<Run>(limits, std::move(progress))) {}
 
 int Work::threads() const {
-  return run_->limits.threads;
+  return aside_ ? 1 : run_->limits.threads;
+}
+
+Pool& Work::pool() const {
+  return run_->pool;
 }
 
 std::int64_t Work::memory_limit() const {
@@ -33,6 +42,10 @@ bool Work::out_of_time() const {
 }
 
 void Work::report(double fraction) const {
+  if (aside_) {
+    poll_interrupt();
+    return;
+  }
   const double whole = from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0);
   run_->fraction = std::max(run_->fraction, whole);
   if (run_->progress && run_->progress(run_->fraction, name_)) throw Cancelled();
@@ -43,6 +56,12 @@ Work Work::part(double from, double to) const {
   Work inner = *this;
   inner.from_ = from_ + (to_ - from_) * from;
   inner.to_ = from_ + (to_ - from_) * to;
+  return inner;
+}
+
+Work Work::aside() const {
+  Work inner = *this;
+  inner.aside_ = true;
   return inner;
 }
 

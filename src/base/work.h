@@ -7,6 +7,8 @@
 
 namespace beltrami {
 
+class Pool;
+
 /// Called on the thread that runs the work; `fraction` in [0, 1] never decreases. Returns true to
 /// cancel.
 using Progress = std::function<bool(double fraction, const char* stage)>;
@@ -22,13 +24,16 @@ struct Limits {
 /// Copies are cheap and belong to the same run. A stage calls report() with the share of *its* work
 /// done, at least once per solver step, and asks out_of_time() before it begins a step that it can
 /// do without; it need not know what it is a part of.
+///
+/// Functions take it as their last parameter; loops, which end with their body, as the first.
 class Work {
  public:
   /// A run of its own that nobody watches, without limits but for the threads.
   explicit Work(int threads = 1);
   Work(const Limits& limits, Progress progress);
 
-  int threads() const;
+  int threads() const;                ///< for a loop of this share, the caller's included
+  Pool& pool() const;                 ///< the threads of the run; parallel_for lends them
   std::int64_t memory_limit() const;  ///< bytes; 0: none
 
   /// Whether the time is up. Work that improves on what it has ends then, and keeps the best.
@@ -40,6 +45,10 @@ class Work {
   /// From `from` to `to` of this share, both in [0, 1].
   Work part(double from, double to) const;
 
+  /// For a part too small to be shared or seen, and on threads of a loop: on one thread, without
+  /// progress. report() still throws where the run is to end.
+  Work aside() const;
+
   /// The same share under the name that progress is reported with. `name` outlives the run.
   Work named(const char* name) const;
 
@@ -48,6 +57,7 @@ class Work {
   std::shared_ptr<Run> run_;
   double from_ = 0, to_ = 1;
   const char* name_ = "";
+  bool aside_ = false;
 };
 
 }  // namespace beltrami

@@ -72,7 +72,7 @@ Attempt attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way
   const DiskMesh& disk = made.map.retriangulated ? *made.map.retriangulated : mesh;
   if (options.refine) refine(disk, options, work.part(method_done, kMethod), made.map);
   {
-    const auto rest = rest_triangles(disk.positions, disk.faces, work.threads());
+    const auto rest = rest_triangles(disk.positions, disk.faces, work);
     scale_best(disk, rest, options, made.map.uvs);
   }
   made.delivery = prepare(disk, frame, made.map.uvs, options, work.part(kMethod, 1),

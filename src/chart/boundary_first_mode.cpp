@@ -6,10 +6,10 @@
 
 namespace beltrami {
 
-double boundary_first_bytes(const MeshCounts& n) {
+double boundary_first_bytes(const MeshCounts& n, int threads) {
   // Columns of curvatures and of factors, the places, and products of the Laplacian with them.
   return fine_bytes(n) + 5 * n.vertices * sizeof(Vec2) +
-         system_bytes(n, 1, Precision::kSingle, 1).peak;
+         system_bytes(n, 1, Precision::kSingle, threads).peak;
 }
 
 ChartMap boundary_first_mode(const FineProblem& fine, const ChartOptions& options,
@@ -18,14 +18,12 @@ ChartMap boundary_first_mode(const FineProblem& fine, const ChartOptions& option
   ChartMap map;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     const auto lengths = metric_boundary_lengths(mesh, fine.rest, fine.metric);
-    map.uvs =
-        flatten_boundary_first(mesh, fine.rest, fine.metric, lengths, checkpoint_of(inner)).uvs;
+    map.uvs = flatten_boundary_first(mesh, fine.rest, fine.metric, lengths, inner).uvs;
     // A conformal map is as good at any scale; the energies are not.
     const double scale = best_scale(options.energy, mesh.faces, fine.rest, map.uvs);
     for (Vec2& w : map.uvs) w *= scale;
   });
-  map.statistics.flips_before_repair =
-      size_of(non_positive_faces(mesh.faces, map.uvs, work.threads()));
+  map.statistics.flips_before_repair = size_of(non_positive_faces(mesh.faces, map.uvs, work));
   return map;
 }
 

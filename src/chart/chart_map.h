@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/resources.h"
 #include "base/types.h"
 #include "base/work.h"
@@ -44,10 +43,6 @@ struct ChartMap {
 
 /// The time of stages whose results are not kept, as the one stage "given-up".
 StageStatistics given_up(const std::vector<StageStatistics>& stages);
-
-inline Checkpoint checkpoint_of(const Work& work) {
-  return [work](double fraction) { work.report(fraction); };
-}
 
 /// Runs `body(statistics, work)` as the stage `name`, timed, and adds it to `stages`.
 template <class Body>

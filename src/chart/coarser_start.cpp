@@ -42,8 +42,8 @@ bool restrict_map(const std::vector<Vec2>& fine_uvs, const CoarseDisk& coarse,
                   const std::vector<RestTriangle>& rest, const Work& work, std::vector<Vec2>& uvs) {
   uvs.clear();
   for (const Index v : coarse.fine_vertex) uvs.push_back(fine_uvs[v]);
-  const RepairOptions mend{.threads = work.threads(), .global_fix = false};
-  return repair(coarse.mesh, rest, uvs, mend).flips_after == 0;
+  const RepairOptions mend{.global_fix = false};
+  return repair(coarse.mesh, rest, uvs, mend, work).flips_after == 0;
 }
 
 /// The minimum on a mesh of `target` faces, and its metric on the finer one; with contact from
@@ -52,11 +52,11 @@ bool restrict_map(const std::vector<Vec2>& fine_uvs, const CoarseDisk& coarse,
 std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index target, bool simple,
                                                double tolerance, const std::vector<Vec2>* start,
                                                const ChartOptions& options, const Work& work) {
-  CoarserMinimum minimum{simplify(mesh, target, work.threads()), {}, {}};
+  CoarserMinimum minimum{simplify(mesh, target, work), {}, {}};
   const DiskMesh& coarse = minimum.coarse.mesh;
   if (coarse.face_count() > kLeastReduction * mesh.face_count()) return std::nullopt;
-  const auto rest = rest_triangles(coarse.positions, coarse.faces, work.threads());
-  NewtonOptions newton = newton_options(options, work);
+  const auto rest = rest_triangles(coarse.positions, coarse.faces, work);
+  NewtonOptions newton = newton_options(options);
   newton.tolerance = std::max(newton.tolerance, tolerance);
   const std::vector<double> lengths = boundary_lengths(coarse);
   const BoundaryContact contact(coarse.boundary, lengths, lengths);
@@ -66,12 +66,12 @@ std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index targe
     minimum.uvs = descend_led(coarse, rest, std::move(uvs), newton, work).uvs;
   } else {
     uvs = start_map(coarse, rest, options, work);
-    if (!non_positive_faces(coarse.faces, uvs, 1).empty()) return std::nullopt;
+    if (!non_positive_faces(coarse.faces, uvs, work).empty()) return std::nullopt;
     scale_best(coarse, rest, options, uvs);
     minimum.uvs = descend(coarse, rest, std::move(uvs), newton, simple, options, work).uvs;
   }
   minimum.metric = prolong_metric(coarse, face_metrics(coarse.faces, rest, minimum.uvs), mesh,
-                                  minimum.coarse.nearby, work.threads());
+                                  minimum.coarse.nearby, work);
   return minimum;
 }
 
@@ -89,14 +89,12 @@ std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<Res
     const auto minimum = minimise_coarser(mesh, target, simple, 0, nullptr, options, still);
     if (!minimum) continue;
     std::vector<Vec2> uvs = carry_boundary(mesh, minimum->coarse, minimum->uvs);
-    solve_harmonic(mesh, modified_cotangents(rest, minimum->metric, work.threads()), uvs,
-                   work.threads());
+    solve_harmonic(mesh, modified_cotangents(rest, minimum->metric, work), uvs, work);
     const RepairOptions mend{.simple_boundary = simple,
-                             .threads = work.threads(),
                              .global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
-    if (repair(mesh, rest, uvs, mend).flips_after > 0) continue;
+    if (repair(mesh, rest, uvs, mend, still).flips_after > 0) continue;
     if (simple && count_crossings(mesh.boundary, uvs).count > 0) continue;
-    clean_outliers(options.energy, mesh, rest, uvs, work.threads());
+    clean_outliers(options.energy, mesh, rest, uvs, {}, still);
     return uvs;
   }
   return {};
@@ -110,7 +108,7 @@ std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh, const std::vector<R
                                         kLeadTolerance, &start, options, still);
   if (!minimum) return {};
   const std::vector<Vec2> carried = carry_boundary(mesh, minimum->coarse, minimum->uvs);
-  const auto stiffness = energy_stiffness(options.energy, rest, minimum->metric, work.threads());
+  const auto stiffness = energy_stiffness(options.energy, rest, minimum->metric, work);
   std::vector<bool> anchored =
       vertices_in_contact(minimum->coarse, minimum->uvs, mesh.vertex_count());
   std::unique_ptr<MetricLaplacian> laplacian;
@@ -121,24 +119,22 @@ std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh, const std::vector<R
     if (laplacian) {
       laplacian->refit(mesh, stiffness, anchors.springs);
     } else {
-      laplacian = std::make_unique<MetricLaplacian>(
-          mesh, stiffness, only_first_of_boundary(mesh),
-          SolverOptions{.precision = Precision::kSingle, .threads = work.threads()},
-          anchors.springs);
+      laplacian = std::make_unique<MetricLaplacian>(mesh, stiffness, only_first_of_boundary(mesh),
+                                                    SolverOptions{.precision = Precision::kSingle},
+                                                    anchors.springs, still);
     }
     uvs = carried;
-    solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false, work.threads(),
-                 uvs);
+    solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false, uvs, work);
     put_in_place(anchored, carried, uvs);
-    const RepairOptions mend{.threads = work.threads(), .global_fix = false};
-    return repair(mesh, rest, uvs, mend).flips_after == 0;
+    const RepairOptions mend{.global_fix = false};
+    return repair(mesh, rest, uvs, mend, still).flips_after == 0;
   };
   try {
     if (!solve_until_simple(mesh, uvs, anchored, solve)) return {};
   } catch (const Error&) {  // the solver's: there is another start
     return {};
   }
-  clean_outliers(options.energy, mesh, rest, uvs, work.threads());
+  clean_outliers(options.energy, mesh, rest, uvs, {}, still);
   return uvs;
 }
 

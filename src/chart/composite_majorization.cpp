@@ -31,15 +31,15 @@ double cm_bytes(const MeshCounts& n, bool scaffold, int threads) {
 
 Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const ChartOptions& options,
                               const Work& work) {
-  const auto rest = rest_triangles(mesh.positions, mesh.faces, work.threads());
+  const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
   std::vector<Vec2> uvs = start_map(mesh, rest, options, work);
   work.report(0.02);
-  if (!non_positive_faces(mesh.faces, uvs, work.threads()).empty()) {
+  if (!non_positive_faces(mesh.faces, uvs, work).empty()) {
     return {.uvs = std::move(uvs), .converged = true};
   }
   scale_best(mesh, rest, options, uvs);
-  start_flat(mesh, rest, options, uvs);
-  NewtonOptions newton = newton_options(options, work);
+  start_flat(mesh, rest, options, uvs, work);
+  NewtonOptions newton = newton_options(options);
   newton.tolerance = tolerance;
   const bool simple = keeps_boundary_simple(options);
   Descent best = descend(mesh, rest, std::move(uvs), newton, simple, options, work);

@@ -42,7 +42,7 @@ std::vector<Vec2> placed(const std::vector<Vec2>& uvs, bool unit_square) {
 
 /// Against the normalised mesh in its own unit: there no energy leaves the range of numbers because
 /// of the caller's. `exponent`: of that unit in the unit of `uvs`.
-void measure(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int exponent, int threads,
+void measure(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int exponent, const Work& work,
              Flattening& result) {
   std::vector<Vec2> in_mesh_unit;
   if (exponent != 0) {
@@ -51,8 +51,8 @@ void measure(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int exponent, i
   }
   result.face_energies.resize(mesh.faces.size());
   result.distortion =
-      measure_distortion(mesh.positions, mesh.faces, exponent != 0 ? in_mesh_unit : uvs, threads,
-                         result.face_energies.data());
+      measure_distortion(mesh.positions, mesh.faces, exponent != 0 ? in_mesh_unit : uvs,
+                         result.face_energies.data(), work);
 }
 
 /// Where single precision does not have the nearest number to `uvs`, as it is delivered.
@@ -73,15 +73,14 @@ Delivery prepare(const DiskMesh& mesh, const Normalisation& frame, const std::ve
                  std::vector<StageStatistics>& stages) {
   Delivery made;
   run_stage("certify", work, stages, [&](StageStatistics&, const Work& inner) {
-    Rounded rounded =
-        round_map(mesh, uvs, placed(uvs, options.unit_square), numbers(frame, options, false),
-                  inner.threads(), checkpoint_of(inner));
+    Rounded rounded = round_map(mesh, uvs, placed(uvs, options.unit_square),
+                                numbers(frame, options, false), inner.part(0, 0.5));
     inner.report(0.5);
     made.certificate = rounded.certificate;
     made.uvs = std::move(rounded.uvs);
     if (options.float32) {
-      made.single = round_map(mesh, made.uvs, made.uvs, numbers(frame, options, true),
-                              inner.threads(), checkpoint_of(inner));
+      made.single =
+          round_map(mesh, made.uvs, made.uvs, numbers(frame, options, true), inner.part(0.5, 0.5));
     }
   });
   return made;
@@ -104,8 +103,7 @@ Flattening deliver(const DiskMesh& mesh, const Normalisation& frame, Delivery ma
   run_stage("certify", work, result.statistics.stages, [&](StageStatistics&, const Work& inner) {
     result.certificate = made.certificate;
     Rounded single = made.single ? *std::move(made.single)
-                                 : round_map(mesh, made.uvs, made.uvs, floats, inner.threads(),
-                                             checkpoint_of(inner));
+                                 : round_map(mesh, made.uvs, made.uvs, floats, inner.part(0, 0.8));
     result.single_certificate = single.certificate;
     result.float32_moves = single.moved;
     if (options.float32) {
@@ -118,7 +116,7 @@ Flattening deliver(const DiskMesh& mesh, const Normalisation& frame, Delivery ma
       result.single_moves = moves(made.uvs, single.uvs, floats);
     }
     inner.report(0.8);
-    measure(mesh, made.uvs, frame.exponent - asked.exponent, inner.threads(), result);
+    measure(mesh, made.uvs, frame.exponent - asked.exponent, inner, result);
     for (Vec2& w : made.uvs) w = asked.delivered(w);
   });
   if (!(held && result.certificate.injective()) && result.status != Outcome::kNotInjectiveFloat32) {

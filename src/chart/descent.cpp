@@ -37,12 +37,12 @@ Led descend_with_lead(const DiskMesh& mesh, const std::vector<RestTriangle>& res
     NewtonOptions lead = newton;
     lead.energy = Energy::kSymmetricDirichlet;
     lead.tolerance = std::max(lead.tolerance, kLeadTolerance);
-    led = minimise_energy(mesh.faces, rest, fixed, uvs, lead, checkpoint_of(work));
+    led = minimise_energy(mesh.faces, rest, fixed, uvs, lead, work);
     lead_steps = led.iterations();
     newton.max_iterations -= lead_steps;
     newton.proxy_steps = 0;
   }
-  NewtonResult done = minimise_energy(mesh.faces, rest, fixed, uvs, newton, checkpoint_of(work));
+  NewtonResult done = minimise_energy(mesh.faces, rest, fixed, uvs, newton, work);
   if (done.refused && done.admitted.empty()) done.admitted.swap(led.admitted);
   const int iterations = lead_steps + done.iterations();
   return {std::move(done), iterations};
@@ -67,13 +67,11 @@ void start_nearer(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, d
 
 }  // namespace
 
-NewtonOptions newton_options(const ChartOptions& options, const Work& work) {
+NewtonOptions newton_options(const ChartOptions& options) {
   NewtonOptions newton;
   newton.energy = options.energy;
   newton.tolerance = options.tolerance;
   newton.max_iterations = options.max_iterations;
-  newton.threads = work.threads();
-  newton.out_of_time = [work] { return work.out_of_time(); };
   return newton;
 }
 

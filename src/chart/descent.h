@@ -23,7 +23,7 @@ struct Descent {
 };
 
 /// Those of the options, ending when the time of `work` is up.
-NewtonOptions newton_options(const ChartOptions& options, const Work& work);
+NewtonOptions newton_options(const ChartOptions& options);
 
 /// Scales a map so that its mean energy is least.
 void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,

@@ -19,7 +19,7 @@ ChartMap dirichlet_mode(const FineProblem& fine, const std::vector<Cotangents>& 
   run_stage("flatten", work.part(0, 0.8), map.statistics.stages,
             [&](StageStatistics&, const Work& inner) {
               map.uvs = carry_boundary(*fine.mesh, fine.coarse, fine.coarse_uvs);
-              solve_harmonic(*fine.mesh, cotangents, map.uvs, inner.threads());
+              solve_harmonic(*fine.mesh, cotangents, map.uvs, inner);
             });
   mend(fine, keeps_boundary_simple(options), options, work.part(0.8, 1), map);
   return map;

@@ -22,12 +22,11 @@ constexpr double kSimplify = 225;
 
 /// Flips the mesh to the intrinsic Delaunay triangulation of the metric.
 void retriangulate(const Work& work, FineProblem& fine) {
-  DelaunayTriangulation delaunay =
-      intrinsic_delaunay(*fine.mesh, std::move(fine.cotangents), checkpoint_of(work));
+  DelaunayTriangulation delaunay = intrinsic_delaunay(*fine.mesh, std::move(fine.cotangents), work);
   fine.statistics.delaunay_flips = delaunay.flips;
   fine.statistics.delaunay_refused = delaunay.refused;
   fine.retriangulated =
-      std::make_unique<DiskMesh>(build_disk(fine.mesh->positions, std::move(delaunay.faces)));
+      std::make_unique<DiskMesh>(build_disk(fine.mesh->positions, std::move(delaunay.faces), work));
   fine.mesh = fine.retriangulated.get();
   fine.cotangents = std::move(delaunay.cotangents);
 }
@@ -50,7 +49,7 @@ Index coarse_faces(Index faces, std::int64_t asked) {
 
 void simplify_fine(Index target, const Work& work, FineProblem& fine) {
   run_stage("simplify", work, fine.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    fine.coarse = simplify(*fine.mesh, target, inner.threads(), checkpoint_of(inner));
+    fine.coarse = simplify(*fine.mesh, target, inner);
   });
 }
 
@@ -70,22 +69,20 @@ void solve_coarse(const ChartOptions& options, const Work& work, FineProblem& fi
 void measure_fine(const char* name, bool harmonic, const ChartOptions& options, const Work& work,
                   FineProblem& fine) {
   run_stage(name, work, fine.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    const int threads = inner.threads();
     const DiskMesh& coarse = fine.coarse.mesh;
-    const auto coarse_rest = rest_triangles(coarse.positions, coarse.faces, threads);
+    const auto coarse_rest = rest_triangles(coarse.positions, coarse.faces, inner);
     const auto coarse_metric = face_metrics(coarse.faces, coarse_rest, fine.coarse_uvs);
     const auto measure = [&] {
-      fine.rest = rest_triangles(fine.mesh->positions, fine.mesh->faces, threads);
+      fine.rest = rest_triangles(fine.mesh->positions, fine.mesh->faces, inner);
       if (coarse_metric.empty()) {
         fine.metric.assign(fine.mesh->faces.size(), FaceMetric{});
         return;
       }
-      fine.metric = prolong_metric(coarse, coarse_metric, *fine.mesh, fine.coarse.nearby, threads,
-                                   checkpoint_of(inner));
+      fine.metric = prolong_metric(coarse, coarse_metric, *fine.mesh, fine.coarse.nearby, inner);
     };
     measure();
     if (!harmonic && !options.delaunay) return;
-    fine.cotangents = modified_cotangents(fine.rest, fine.metric, threads);
+    fine.cotangents = modified_cotangents(fine.rest, fine.metric, inner);
     if (!options.delaunay) return;
     retriangulate(inner, fine);
     measure();
@@ -98,9 +95,8 @@ bool mend(const FineProblem& fine, bool simple_boundary, const ChartOptions& opt
   bool positive = false;
   run_stage("repair", work, all.stages, [&](StageStatistics& stage, const Work& inner) {
     const RepairOptions how{.simple_boundary = simple_boundary,
-                            .threads = inner.threads(),
                             .global_fix = affords(*fine.mesh, options, Extra::kGlobalFix, inner)};
-    const RepairResult repaired = repair(*fine.mesh, fine.rest, map.uvs, how, checkpoint_of(inner));
+    const RepairResult repaired = repair(*fine.mesh, fine.rest, map.uvs, how, inner);
     all.flips_before_repair = repaired.flips_before;
     all.kernel_fixes += repaired.kernel_fixes;
     all.patch_fixes += repaired.patch_fixes;
@@ -110,7 +106,7 @@ bool mend(const FineProblem& fine, bool simple_boundary, const ChartOptions& opt
     positive = repaired.flips_after == 0;
     if (positive) {
       all.cleaned_patches +=
-          clean_outliers(options.energy, *fine.mesh, fine.rest, map.uvs, inner.threads());
+          clean_outliers(options.energy, *fine.mesh, fine.rest, map.uvs, {}, inner.part(1, 1));
     }
   });
   return positive;

@@ -74,7 +74,7 @@ MeshCounts counts_of(const DiskMesh& mesh, bool reduced) {
   }
   const auto regular = static_cast<double>(std::count(faces_at.begin(), faces_at.end(), 6));
   const double vertices = mesh.vertex_count();
-  const Index metas = reduced ? choose_meta_vertices(mesh).count() : 0;
+  const Index metas = reduced ? choose_meta_vertices(mesh, Work(1)).count() : 0;
   return {vertices, static_cast<double>(mesh.face_count()),
           static_cast<double>(mesh.boundary.size()), regular / vertices,
           static_cast<double>(std::min(metas, kMostMetas))};

@@ -30,9 +30,9 @@ double flatten_bytes(const MeshCounts& n, Flatten flatten, int threads) {
       return dirichlet_bytes(n, threads);
     case Flatten::kGif:
     case Flatten::kFlim:
-      return reduced_bytes(n);
+      return reduced_bytes(n, threads);
     case Flatten::kBff:
-      return boundary_first_bytes(n);
+      return boundary_first_bytes(n, threads);
     default:
       return metric_bytes(n, threads);
   }
@@ -51,11 +51,11 @@ double method_bytes(const MeshCounts& n, const ChartOptions& options, int thread
     case Method::kCm:
       return cm_bytes(n, options.injectivity == Injectivity::kGlobal, threads);
     case Method::kTutte:
-      return tutte_bytes(n);
+      return tutte_bytes(n, threads);
     case Method::kGif:
-      return reduced_bytes(n);
+      return reduced_bytes(n, threads);
     case Method::kBff:
-      return boundary_first_bytes(n);
+      return boundary_first_bytes(n, threads);
     case Method::kUvProlongation:
       return coarse_bytes(n, options.coarse_faces, threads);
     default:

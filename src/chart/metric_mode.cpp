@@ -30,25 +30,23 @@ constexpr double kSolved = 0.42, kMended = 0.47;
 void take_harmonic_if_better(const FineProblem& fine, const std::vector<Vec2>& carried,
                              std::size_t flips, const Work& work, std::vector<Vec2>& uvs) {
   std::vector<Vec2> harmonic = carried;
-  solve_harmonic(*fine.mesh, modified_cotangents(fine.rest, fine.metric, work.threads()), harmonic,
-                 work.threads());
-  if (non_positive_faces(fine.mesh->faces, harmonic, work.threads()).size() < flips) {
+  solve_harmonic(*fine.mesh, modified_cotangents(fine.rest, fine.metric, work), harmonic, work);
+  if (non_positive_faces(fine.mesh->faces, harmonic, work).size() < flips) {
     uvs.swap(harmonic);
   }
 }
 
 /// Sets `laplacian` up for the stiffness and the springs, where there is none yet.
 void fit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
-         const std::vector<double>& springs, int threads,
+         const std::vector<double>& springs, const Work& work,
          std::unique_ptr<MetricLaplacian>& laplacian) {
   if (laplacian) {
     laplacian->refit(mesh, stiffness, springs);
     return;
   }
-  const SolverOptions options{
-      .precision = Precision::kSingle, .threads = threads, .residual = kRoughly};
+  const SolverOptions options{.precision = Precision::kSingle, .residual = kRoughly};
   laplacian = std::make_unique<MetricLaplacian>(mesh, stiffness, only_first_of_boundary(mesh),
-                                                options, springs);
+                                                options, springs, work);
 }
 
 /// The stage "flatten": the solve, with the boundary vertices `anchored` drawn to their `carried`
@@ -59,16 +57,15 @@ void solve_flat(const FineProblem& fine, const std::vector<Vec2>& carried,
   const DiskMesh& mesh = *fine.mesh;
   map.uvs = carried;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    const int threads = inner.threads();
-    const auto stiffness = energy_stiffness(options.energy, fine.rest, fine.metric, threads);
+    const auto stiffness = energy_stiffness(options.energy, fine.rest, fine.metric, inner);
     const Anchors anchors{stiff_springs(mesh, stiffness, anchored), carried};
-    fit(mesh, stiffness, anchors.springs, threads, laplacian);
+    fit(mesh, stiffness, anchors.springs, inner, laplacian);
     inner.report(0.75);
     const auto solve = [&](bool rotate) {
-      solve_metric(mesh, fine.rest, fine.metric, stiffness, *laplacian, anchors, rotate, threads,
-                   map.uvs);
+      solve_metric(mesh, fine.rest, fine.metric, stiffness, *laplacian, anchors, rotate, map.uvs,
+                   inner);
       put_in_place(anchored, carried, map.uvs);
-      return non_positive_faces(mesh.faces, map.uvs, threads).size();
+      return non_positive_faces(mesh.faces, map.uvs, inner).size();
     };
     std::size_t flips = solve(false);
     for (int round = 0; round < kRotations && flips > kManyFlips; ++round) flips = solve(true);
@@ -123,7 +120,7 @@ ChartMap metric_mode(const FineProblem& fine, const ChartOptions& options, const
   if (!global) {
     solve();
   } else if (!solve_until_simple(mesh, solved.uvs, anchored, solve)) {
-    const auto cotangents = modified_cotangents(fine.rest, fine.metric, work.threads());
+    const auto cotangents = modified_cotangents(fine.rest, fine.metric, work);
     ChartMap harmonic = dirichlet_mode(fine, cotangents, options, work.part(kMended, 1));
     auto& stages = harmonic.statistics.stages;
     stages.insert(stages.begin(), given_up(solved.statistics.stages));

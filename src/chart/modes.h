@@ -70,14 +70,14 @@ ChartMap boundary_first_mode(const FineProblem& fine, const ChartOptions& option
 double newton_bytes(const MeshCounts& n, int threads);
 /// From Tutte's embedding on; in a scaffold, the mesh is copied into it.
 double cm_bytes(const MeshCounts& n, bool scaffold, int threads);
-double tutte_bytes(const MeshCounts& n);
+double tutte_bytes(const MeshCounts& n, int threads);
 double metric_bytes(const MeshCounts& n, int threads);
 /// The metric mode's problem, and the factor of its solve: what is alive beside its extras.
 double metric_factor_bytes(const MeshCounts& n, int threads);
 /// The harmonic map beside another.
 double harmonic_bytes(const MeshCounts& n, int threads);
 double dirichlet_bytes(const MeshCounts& n, int threads);
-double reduced_bytes(const MeshCounts& n);
-double boundary_first_bytes(const MeshCounts& n);
+double reduced_bytes(const MeshCounts& n, int threads);
+double boundary_first_bytes(const MeshCounts& n, int threads);
 
 }  // namespace beltrami

@@ -54,10 +54,14 @@ struct State {
   bool converged = false;
 };
 
+double share(int steps) {
+  return static_cast<double>(steps) / kMostSteps;
+}
+
 void clean(const Setting& setting, const std::vector<Index>& also, State& state) {
   state.cleaned_patches +=
-      clean_outliers(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs,
-                     setting.work.threads(), also);
+      clean_outliers(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs, also,
+                     setting.work.part(share(state.iterations), share(state.iterations)));
 }
 
 /// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
@@ -69,15 +73,13 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   };
   PolishOptions options;
   options.energy = setting.options.energy;
-  options.threads = setting.work.threads();
   options.tolerance = kTolerance;
   options.max_iterations = steps;
   options.force_first = force_first;
   options.contact = setting.contact;
   const int before = state.iterations;
-  state.last =
-      polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
-             [&](double done) { setting.work.report((before + done * steps) / kMostSteps); });
+  state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
+                      setting.work.part(share(before), share(before + steps)));
   state.iterations += state.last.iterations();
   if (state.last.blocked) clean(setting, state.last.blocking, state);
 }
@@ -92,7 +94,7 @@ void fit_factor(const Setting& setting, const State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
   setting.laplacian.refit(mesh,
                           energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
-                                           state.uvs, setting.work.threads()),
+                                           state.uvs, setting.work),
                           springs);
 }
 
@@ -116,7 +118,7 @@ void take_rounds(const Setting& setting, State& state) {
 /// A few steps of composite majorization: they cost most, and are not held up by nearly singular
 /// faces.
 void take_newton_steps(const Setting& setting, State& state) {
-  NewtonOptions newton = newton_options(setting.options, setting.work);
+  NewtonOptions newton = newton_options(setting.options);
   newton.proxy_steps = 0;
   newton.contact = setting.contact;
   newton.max_iterations = kNewtonSteps;
@@ -124,7 +126,7 @@ void take_newton_steps(const Setting& setting, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
   const NewtonResult ended =
       minimise_energy(mesh.faces, setting.fine.rest, only_first_of_boundary(mesh), state.uvs,
-                      newton, checkpoint_of(setting.work.part(0.9, 0.9)));
+                      newton, setting.work.part(0.9, 0.9));
   state.iterations += ended.iterations();
   state.converged = ended.converged;
 }
@@ -152,12 +154,8 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact,
       fitted.emplace(*contact).fit(
           start, comparable_energy(options.energy, fine.statistics.coarse_energy));
     }
-    const Setting setting{fine,
-                          fitted ? &*fitted : nullptr,
-                          options,
-                          inner,
-                          surface_area(*fine.mesh, inner.threads()),
-                          laplacian};
+    const Setting setting{fine,  fitted ? &*fitted : nullptr,     options,
+                          inner, surface_area(*fine.mesh, inner), laplacian};
     State state{.uvs = std::move(start)};
     take_steps(setting, 1, false, state);
     take_rounds(setting, state);

@@ -24,29 +24,27 @@ constexpr double kSamples = 2000, kRowsOfSample = 5, kNewtonCopies = 2;
 Descent descend_from_circle(const FineProblem& fine, bool simple, const ChartOptions& options,
                             const Work& work) {
   const DiskMesh& mesh = *fine.mesh;
-  std::vector<Vec2> uvs = tutte_embedding(mesh);
+  std::vector<Vec2> uvs = tutte_embedding(mesh, work);
   const RepairOptions how{.simple_boundary = true,
-                          .threads = work.threads(),
                           .global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
-  repair(mesh, fine.rest, uvs, how, checkpoint_of(work));
-  if (!certify(mesh.faces, mesh.boundary, uvs, work.threads()).injective()) {
+  repair(mesh, fine.rest, uvs, how, work);
+  if (!certify(mesh.faces, mesh.boundary, uvs, work).injective()) {
     uvs = grid_drawing(mesh);
   }
   scale_best(mesh, fine.rest, options, uvs);
-  start_flat(mesh, fine.rest, options, uvs);
-  return descend(mesh, fine.rest, std::move(uvs), newton_options(options, work), simple, options,
-                 work);
+  start_flat(mesh, fine.rest, options, uvs, work);
+  return descend(mesh, fine.rest, std::move(uvs), newton_options(options), simple, options, work);
 }
 
 }  // namespace
 
-double reduced_bytes(const MeshCounts& n) {
+double reduced_bytes(const MeshCounts& n, int threads) {
   // A factor in double precision, then rows of the basis, which is dense.
   const double metas = n.metas;
   const double basis =
       kRowsOfSample * std::min(kSamples + metas, n.faces) * metas * sizeof(double) +
       kNewtonCopies * 4 * metas * metas * sizeof(double);
-  const System system = system_bytes(n, 1, Precision::kDouble, 1);
+  const System system = system_bytes(n, 1, Precision::kDouble, threads);
   return fine_bytes(n) + n.faces * sizeof(Cotangents) + n.vertices * sizeof(Vec2) +
          std::max(system.peak, system.kept + basis);
 }
@@ -66,10 +64,8 @@ ChartMap reduced_mode(const FineProblem& fine, bool scaffold, const ChartOptions
     }
     ReducedOptions reduced;
     reduced.scaffold = scaffold;
-    reduced.threads = inner.threads();
     reduced.energy = options.energy;
-    ReducedResult done =
-        flatten_reduced(*fine.mesh, fine.rest, fine.cotangents, reduced, checkpoint_of(inner));
+    ReducedResult done = flatten_reduced(*fine.mesh, fine.rest, fine.cotangents, reduced, inner);
     stage.iterations = static_cast<int>(done.energies.size()) - 1;
     map.converged = done.converged;
     map.uvs = std::move(done.uvs);

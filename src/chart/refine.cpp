@@ -10,17 +10,17 @@ namespace beltrami {
 
 void refine(const DiskMesh& mesh, const ChartOptions& options, const Work& work, ChartMap& map) {
   const bool simple = keeps_boundary_simple(options);
-  const Certificate certificate = certify(mesh.faces, mesh.boundary, map.uvs, work.threads());
+  const Certificate certificate = certify(mesh.faces, mesh.boundary, map.uvs, work);
   if (certificate.orientations.first_bad_face != kNone) return;
   if (simple && certificate.crossings.count > 0) return;
   run_stage("refine", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
-    const auto rest = rest_triangles(mesh.positions, mesh.faces, inner.threads());
+    const auto rest = rest_triangles(mesh.positions, mesh.faces, inner);
     const auto scaled_energy = [&](std::vector<Vec2>& uvs) {
       scale_best(mesh, rest, options, uvs);
       return mean_energy(options.energy, mesh.faces, rest, uvs);
     };
     const double before = scaled_energy(map.uvs);
-    NewtonOptions newton = newton_options(options, inner);
+    NewtonOptions newton = newton_options(options);
     newton.proxy_steps = 0;  // they pay far from the minimum
     if (options.refine_iterations > 0) newton.max_iterations = options.refine_iterations;
     Descent done = descend(mesh, rest, map.uvs, newton, simple, options, inner);

@@ -20,6 +20,6 @@ std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle
 /// Takes a flat start (descend/flat_start.h) instead of `uvs` where it is injective and has less
 /// energy, with that of its contact: where parts are a rounding error apart, nothing moves.
 void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                const ChartOptions& options, std::vector<Vec2>& uvs);
+                const ChartOptions& options, std::vector<Vec2>& uvs, const Work& work);
 
 }  // namespace beltrami

@@ -6,19 +6,18 @@
 
 namespace beltrami {
 
-double tutte_bytes(const MeshCounts& n) {
-  return 3 * n.vertices * sizeof(Vec2) + system_bytes(n, 1, Precision::kDouble, 1).peak;
+double tutte_bytes(const MeshCounts& n, int threads) {
+  return 3 * n.vertices * sizeof(Vec2) + system_bytes(n, 1, Precision::kDouble, threads).peak;
 }
 
 ChartMap tutte_mode(const DiskMesh& mesh, const ChartOptions& options, const Work& work) {
   ChartMap map;
   run_stage("tutte", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    map.uvs = tutte_embedding(mesh);
-    const auto rest = rest_triangles(mesh.positions, mesh.faces, inner.threads());
+    map.uvs = tutte_embedding(mesh, inner);
+    const auto rest = rest_triangles(mesh.positions, mesh.faces, inner);
     const RepairOptions how{.simple_boundary = true,
-                            .threads = inner.threads(),
                             .global_fix = affords(mesh, options, Extra::kGlobalFix, inner)};
-    const RepairResult repaired = repair(mesh, rest, map.uvs, how, checkpoint_of(inner));
+    const RepairResult repaired = repair(mesh, rest, map.uvs, how, inner);
     map.statistics.flips_before_repair = repaired.flips_before;
   });
   return map;

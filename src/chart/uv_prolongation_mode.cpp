@@ -13,11 +13,9 @@ ChartMap uv_prolongation_mode(const DiskMesh& mesh, Index coarse_faces, const Ch
   ChartMap map;
   run_stage("prolong", work.part(0.25, 1), map.statistics.stages,
             [&](StageStatistics&, const Work& inner) {
-              map.uvs = prolong_uvs(fine.coarse.mesh, fine.coarse_uvs, mesh, inner.threads(),
-                                    checkpoint_of(inner));
+              map.uvs = prolong_uvs(fine.coarse.mesh, fine.coarse_uvs, mesh, inner);
             });
-  map.statistics.flips_before_repair =
-      size_of(non_positive_faces(mesh.faces, map.uvs, work.threads()));
+  map.statistics.flips_before_repair = size_of(non_positive_faces(mesh.faces, map.uvs, work));
   return joined(std::move(fine), std::move(map));
 }
 

@@ -14,7 +14,8 @@ namespace {
 constexpr std::int64_t kGrain = 16384;
 
 /// Component `c` of the surface on its own: a disk. Its order is that of the surface.
-Chart extract(const SplitSurface& cut, const Grouping& vertices, const Grouping& faces, Index c) {
+Chart extract(const SplitSurface& cut, const Grouping& vertices, const Grouping& faces, Index c,
+              const Work& work) {
   const Surface& whole = cut.surface;
   const auto in_part = [&](Index h) { return h == kNone ? h : 3 * faces.place(h / 3) + h % 3; };
   Chart chart;
@@ -34,14 +35,14 @@ Chart extract(const SplitSurface& cut, const Grouping& vertices, const Grouping&
     for (int k = 0; k < 3; ++k) part.twin.push_back(in_part(whole.twin[3 * f + k]));
     chart.input_face.push_back(f);
   }
-  chart.mesh = prove_disk(std::move(part), Work(1));
+  chart.mesh = prove_disk(std::move(part), work);
   return chart;
 }
 
 /// The surface with the sides of its marked edges apart.
 SplitSurface cut_open(const Surface& surface, const EdgeMarks& marks, const Work& work) {
   std::vector<Index> twin = surface.twin;
-  parallel_for(work.threads(), size_of(twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t h = begin; h < end; ++h) {
       if (marks[h]) twin[h] = kNone;
     }
@@ -57,10 +58,10 @@ CutSurface cut_into_charts(const Surface& surface, const EdgeMarks& marks, const
   const Index components = size_of(topology.components);
   const std::vector<Index>& component_of = topology.component_of_face;
   const Grouping faces(
-      surface.face_count(), components, [&](Index f) { return component_of[f]; }, work.threads());
+      surface.face_count(), components, [&](Index f) { return component_of[f]; }, work);
   const Grouping vertices(
       cut.surface.vertex_count(), components,
-      [&](Index v) { return component_of[cut.surface.outgoing[v] / 3]; }, work.threads());
+      [&](Index v) { return component_of[cut.surface.outgoing[v] / 3]; }, work);
 
   CutSurface result;
   std::vector<Index> disks, chart_of_component(components, kNone);
@@ -75,8 +76,8 @@ CutSurface cut_into_charts(const Surface& surface, const EdgeMarks& marks, const
     }
   }
   result.charts.resize(disks.size());
-  parallel_for(work.threads(), size_of(disks), 1, [&](std::int64_t chart, std::int64_t) {
-    result.charts[chart] = extract(cut, vertices, faces, disks[chart]);
+  parallel_for(work, size_of(disks), 1, [&](std::int64_t chart, std::int64_t) {
+    result.charts[chart] = extract(cut, vertices, faces, disks[chart], work.aside());
   });
   result.chart_of_face.resize(component_of.size());
   for (std::size_t f = 0; f < component_of.size(); ++f) {

@@ -375,7 +375,6 @@ void Opening::prune(const std::vector<Index>& roots, std::vector<Index>& edges) 
 
 EdgeMarks open_minimal(const Surface& surface, const Topology& topology,
                        const std::vector<bool>& filled, const Work& work) {
-  const int threads = work.threads();
   const Index components = size_of(topology.components);
   const BoundaryLoops& loops = topology.loops;
   Graph graph(surface, loops, filled.empty() ? std::vector<bool>(loops.count(), false) : filled);
@@ -383,15 +382,15 @@ EdgeMarks open_minimal(const Surface& surface, const Topology& topology,
     const Index h = surface.outgoing[v];
     return h == kNone ? kNone : topology.component_of_face[h / 3];
   };
-  const Grouping vertices(surface.vertex_count(), components, component_of_vertex, threads);
+  const Grouping vertices(surface.vertex_count(), components, component_of_vertex, work);
   const Grouping faces(
       surface.face_count(), components, [&](Index f) { return topology.component_of_face[f]; },
-      threads);
+      work);
   const Grouping loops_of(
       loops.count(), components, [&](Index loop) { return topology.component_of_loop[loop]; },
-      threads);
+      work);
   std::vector<std::vector<Index>> cuts(components);
-  parallel_for(threads, components, 1, [&](std::int64_t begin, std::int64_t) {
+  parallel_for(work, components, 1, [&](std::int64_t begin, std::int64_t) {
     const auto c = static_cast<Index>(begin);
     Opening opening(graph, topology.components[c], vertices[c], faces[c], loops_of[c]);
     cuts[c] = opening.run();

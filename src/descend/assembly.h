@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/density.h"
 #include "linear/mesh_matrix.h"
 #include "mesh/face_chunks.h"
@@ -64,17 +65,17 @@ FaceModel face_model(const RestTriangle& rest, const LinearMap& map, const Densi
 
 /// Adds up what `model(face)`, a FaceModel, says of all faces, in parallel.
 template <class Model>
-void assemble(const std::vector<Triangle>& faces, const Model& model_of, int threads,
-              MeshMatrix& hessian, Eigen::VectorXd& gradient) {
+void assemble(const std::vector<Triangle>& faces, const Model& model_of, MeshMatrix& hessian,
+              Eigen::VectorXd& gradient, const Work& work) {
   struct Aside {
     Index row;
     Vec2 term;
   };
-  hessian.set_zero(threads);
+  hessian.set_zero(work);
   gradient.setZero(2 * hessian.free_count());
   const FaceChunks& chunks = hessian.chunks();
   std::vector<std::vector<Aside>> aside(chunks.count());
-  hessian.add_up(faces, threads, [&](Index f, const auto& add) {
+  hessian.add_up(work, faces, [&](Index f, const auto& add) {
     const Triangle& t = faces[f];
     const FaceModel model = model_of(f);
     for (int k = 0; k < 3; ++k) {

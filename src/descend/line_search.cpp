@@ -41,9 +41,9 @@ AreaPolynomial area_along(const Triangle& t, const std::vector<Vec2>& uvs,
 }  // namespace
 
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                           const std::vector<Vec2>& direction, int threads) {
+                           const std::vector<Vec2>& direction, const Work& work) {
   std::vector<double> smallest(faces.size() / kGrain + 1, std::numeric_limits<double>::infinity());
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double& least = smallest[begin / kGrain];
     for (std::int64_t f = begin; f < end; ++f) {
       const auto [c0, c1, c2] = area_along(faces[f], uvs, direction);
@@ -56,9 +56,9 @@ double first_singular_step(const std::vector<Triangle>& faces, const std::vector
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         int threads, const std::vector<std::uint8_t>* among) {
+                                         const std::vector<std::uint8_t>* among, const Work& work) {
   std::vector<std::vector<SingularStep>> found(faces.size() / kGrain + 1);
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = faces[f];
       if (among && !((*among)[t[0]] | (*among)[t[1]] | (*among)[t[2]])) continue;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -13,7 +14,7 @@ namespace beltrami {
 /// the roots are taken without cancellation and without an absolute threshold, which would fail on
 /// meshes of millions of faces.)
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                           const std::vector<Vec2>& direction, int threads);
+                           const std::vector<Vec2>& direction, const Work& work);
 
 struct SingularStep {
   Index face;
@@ -25,7 +26,6 @@ struct SingularStep {
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         int threads,
-                                         const std::vector<std::uint8_t>* among = nullptr);
+                                         const std::vector<std::uint8_t>* among, const Work& work);
 
 }  // namespace beltrami

@@ -39,8 +39,8 @@ double guessed_progress(int iterations) {
 template <class Density>
 NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                       const std::vector<bool>& fixed, std::vector<Vec2>& uvs,
-                      const NewtonOptions& options, const Checkpoint& checkpoint) {
-  NewtonStepper<Density> stepper(faces, rest, fixed, options.threads);
+                      const NewtonOptions& options, const Work& work) {
+  NewtonStepper<Density> stepper(faces, rest, fixed, work);
   NewtonResult result;
   result.energies.push_back(stepper.mean_energy(uvs));
   result.converged = stepper.free_count() == 0;
@@ -56,8 +56,8 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   };
   judge();
   while (!result.converged && result.iterations() < options.max_iterations) {
-    if (options.out_of_time && options.out_of_time()) break;
-    checkpoint(guessed_progress(result.iterations()));
+    if (work.out_of_time()) break;
+    work.report(guessed_progress(result.iterations()));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
     if (options.contact) stepper.fit_contact(uvs, comparable_energy<Density>(before));
@@ -98,9 +98,9 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
 NewtonResult minimise_energy(const std::vector<Triangle>& faces,
                              const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
                              std::vector<Vec2>& uvs, const NewtonOptions& options,
-                             const Checkpoint& checkpoint) {
+                             const Work& work) {
   return with_density(options.energy, [&]<class Density>(Density) {
-    return minimise<Density>(faces, rest, fixed, uvs, options, checkpoint);
+    return minimise<Density>(faces, rest, fixed, uvs, options, work);
   });
 }
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "descend/contact.h"
 #include "energy/energy.h"
 #include "mesh/rest_shape.h"
@@ -17,7 +17,6 @@ struct NewtonOptions {
   Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
-  int threads = 1;
   /// SLIM steps at the start, and again whenever a step is blocked by nearly singular faces: five
   /// save a third of all steps on ordinary meshes, and on hard ones make the difference between 75
   /// steps and none that helps. 0: composite majorization alone.
@@ -29,8 +28,6 @@ struct NewtonOptions {
   /// Judges the start and the map after each step, for instance: the boundary is simple. Where that
   /// does not hold once steps gain less than 1%, the run ends. Anything goes by default.
   std::function<bool(const std::vector<Vec2>& uvs)> admissible;
-  /// Asked before each step; true ends the run with what there is. Never by default.
-  std::function<bool()> out_of_time;
 };
 
 struct NewtonResult {
@@ -50,10 +47,10 @@ struct NewtonResult {
 /// singular face, then halved until the energy falls sufficiently (Armijo).
 /// Preconditions: every face is positively oriented in `uvs`; at least one vertex is fixed if the
 /// faces are connected (a free map drifts otherwise).
-/// Ends, not converged, where no shift makes a system definite.
+/// Ends, not converged, where no shift makes a system definite, and where the time is up.
 NewtonResult minimise_energy(const std::vector<Triangle>& faces,
                              const std::vector<RestTriangle>& rest, const std::vector<bool>& fixed,
                              std::vector<Vec2>& uvs, const NewtonOptions& options,
-                             const Checkpoint& checkpoint = no_checkpoint);
+                             const Work& work);
 
 }  // namespace beltrami

@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "descend/assembly.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
@@ -43,15 +44,15 @@ template <class Density>
 class NewtonStepper {
  public:
   NewtonStepper(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-                const std::vector<bool>& fixed, int threads, Density density = {})
+                const std::vector<bool>& fixed, const Work& work, Density density = {})
       : faces_(faces),
         rest_(rest),
         fixed_(fixed),
         weights_(rest.size()),
-        threads_(threads),
+        work_(work),
         density_(density),
-        hessian_(size_of(fixed), faces, fixed, 2, threads),
-        solver_(make_spd_solver({Precision::kDouble, threads})) {
+        hessian_(size_of(fixed), faces, fixed, 2, work),
+        solver_(make_spd_solver({Precision::kDouble}, work)) {
     for (const RestTriangle& r : rest) area_ += r.area();
     for (std::size_t f = 0; f < rest.size(); ++f) weights_[f] = rest[f].area() / area_;
   }
@@ -109,7 +110,7 @@ class NewtonStepper {
   const std::vector<bool>& fixed_;
   double area_ = 0;
   std::vector<double> weights_;  // of the faces in the mean
-  const int threads_;
+  const Work work_;
   Density density_;
   std::optional<BoundaryContact> contact_;
   Neighbours neighbours_;          // in the map that the last step left, if there was one
@@ -138,7 +139,7 @@ double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
     }
     return sum;
   };
-  return parallel_sum(threads_, size_of(faces_), kGrain, part);
+  return parallel_sum(work_, size_of(faces_), kGrain, part);
 }
 
 /// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
@@ -182,7 +183,7 @@ std::vector<Contact> NewtonStepper<Density>::meet_contacts(const std::vector<Vec
   std::sort(contacts_.begin(), contacts_.end(), less);
   with_contacts_ = faces_;
   for (const Contact& c : contacts_) with_contacts_.push_back({c.vertex, c.from, c.to});
-  hessian_ = MeshMatrix(size_of(fixed_), with_contacts_, fixed_, 2, threads_);
+  hessian_ = MeshMatrix(size_of(fixed_), with_contacts_, fixed_, 2, work_);
   analyzed_ = false;
   return found;
 }
@@ -224,8 +225,7 @@ void NewtonStepper<Density>::assemble_model(const Model& model, const std::vecto
     face.hessian *= weights_[f];
     return face;
   };
-  assemble(with_contacts_.empty() ? faces_ : with_contacts_, model_of, threads_, hessian_,
-           gradient_);
+  assemble(with_contacts_.empty() ? faces_ : with_contacts_, model_of, hessian_, gradient_, work_);
   add_loose(uvs);
 }
 
@@ -277,8 +277,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   }
   double length = 1;
   if (Density::kBarrier) {
-    length =
-        std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, threads_));
+    length = std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, work_));
   }
   const auto pressure = [&](const std::vector<Vec2>& map, const std::vector<Contact>& contacts) {
     return contact_ ? strength() * contact_energy(contacts, map) : 0.0;

@@ -29,20 +29,20 @@ constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergenc
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
-double sum_over(const Field& field, int threads, const Body& body) {
-  return parallel_sum(threads, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
+double sum_over(const Work& work, const Field& field, const Body& body) {
+  return parallel_sum(work, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (std::int64_t i = begin; i < end; ++i) sum += body(static_cast<std::size_t>(i));
     return sum;
   });
 }
 
-double dot(const Field& a, const Field& b, int threads) {
-  return sum_over(a, threads, [&](std::size_t i) { return a[i].dot(b[i]); });
+double dot(const Field& a, const Field& b, const Work& work) {
+  return sum_over(work, a, [&](std::size_t i) { return a[i].dot(b[i]); });
 }
 
-void add_multiple(double factor, const Field& a, int threads, Field& sum) {
-  parallel_for(threads, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
+void add_multiple(double factor, const Field& a, Field& sum, const Work& work) {
+  parallel_for(work, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) sum[i] += factor * a[i];
   });
 }
@@ -52,14 +52,14 @@ template <class Density>
 class Objective {
  public:
   Objective(Index vertex_count, const std::vector<Triangle>& faces,
-            const std::vector<RestTriangle>& rest, int threads)
-      : faces_(faces), rest_(rest), sums_(vertex_count, faces, threads) {
+            const std::vector<RestTriangle>& rest, const Work& work)
+      : faces_(faces), rest_(rest), sums_(vertex_count, faces, work) {
     const auto area = [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
       for (std::int64_t f = begin; f < end; ++f) sum += rest[f].area();
       return sum;
     };
-    inverse_area_ = 1 / parallel_sum(threads, size_of(rest), kGrain, area);
+    inverse_area_ = 1 / parallel_sum(work, size_of(rest), kGrain, area);
   }
 
   /// From now on with contact. Keeps the pointer.
@@ -104,11 +104,11 @@ class Objective {
 /// The last steps with the changes of the gradient over them, and the two-loop recursion.
 class History {
  public:
-  explicit History(int threads) : threads_(threads) {}
+  explicit History(const Work& work) : work_(work) {}
 
   /// Takes `step` and `change` over; what is left in them is of no use.
   void add(Field& step, Field& change) {
-    const double curvature = dot(step, change, threads_);
+    const double curvature = dot(step, change, work_);
     if (!(curvature > 0)) return;  // would make the model indefinite
     if (pairs_.size() < kHistory) {
       pairs_.emplace_back();
@@ -127,19 +127,19 @@ class History {
   void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
                       Field& direction) const {
     q.resize(gradient.size());
-    parallel_for(threads_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
     });
     std::array<double, kHistory> alpha{};
     for (std::size_t i = pairs_.size(); i-- > 0;) {
-      alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, threads_);
-      add_multiple(-alpha[i], pairs_[i].change, threads_, q);
+      alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, work_);
+      add_multiple(-alpha[i], pairs_[i].change, q, work_);
     }
     poll_interrupt();
     precondition(q, direction);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, direction, threads_);
-      add_multiple(alpha[i] - beta, pairs_[i].step, threads_, direction);
+      const double beta = pairs_[i].inverse_curvature * dot(pairs_[i].change, direction, work_);
+      add_multiple(alpha[i] - beta, pairs_[i].step, direction, work_);
     }
   }
 
@@ -149,7 +149,7 @@ class History {
     double inverse_curvature = 0;
   };
   std::vector<Pair> pairs_;
-  int threads_;
+  const Work work_;
 };
 
 /// Moves the face's vertices along more rigidly, so that it does not become singular where it now
@@ -168,17 +168,17 @@ void move_rigidly(const Triangle& face, const SingularStep& singular, Field& dir
 /// and then those of their neighbours that get there by it. Returns how far the whole map may go
 /// along what is left, and the faces found at first. Without `rigidly` the direction stays as it
 /// is.
-double hold_back(const std::vector<Triangle>& faces, const Field& uvs, int threads, bool rigidly,
-                 Field& direction, std::vector<Index>& blocking) {
+double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly,
+                 Field& direction, std::vector<Index>& blocking, const Work& work) {
   constexpr double kLimit = 1 / kSingularShare;
-  std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, threads);
+  std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, nullptr, work);
   blocking.clear();
   for (const SingularStep& s : singular) blocking.push_back(s.face);
   std::vector<std::uint8_t> changed;
   for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
     changed.resize(uvs.size());
     for (const SingularStep& s : singular) move_rigidly(faces[s.face], s, direction, changed);
-    singular = singular_steps(faces, uvs, direction, kLimit, threads, &changed);
+    singular = singular_steps(faces, uvs, direction, kLimit, &changed, work);
   }
   double length = 1;
   for (const SingularStep& s : singular) length = std::min(length, kSingularShare * s.length);
@@ -195,10 +195,10 @@ struct Fields {
 /// if there is none.
 template <class Density>
 double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
-                   const PolishOptions& options, Fields& fields, double& length) {
+                   const PolishOptions& options, Fields& fields, double& length, const Work& work) {
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     fields.trial = uvs;
-    add_multiple(length, fields.direction, options.threads, fields.trial);
+    add_multiple(length, fields.direction, fields.trial, work);
     const double after = objective.evaluate(fields.trial, fields.next_gradient);
     const bool low = after < before && after <= before + kArmijo * length * slope;
     if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
@@ -224,9 +224,8 @@ struct Settling {
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
-                     const Checkpoint& checkpoint) {
-  const int threads = options.threads;
-  Objective<Density> objective(size_of(uvs), faces, rest, threads);
+                     const Work& work) {
+  Objective<Density> objective(size_of(uvs), faces, rest, work);
   PolishResult result;
   Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
@@ -239,15 +238,15 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   }
   result.energies.push_back(start);
   if (!std::isfinite(start)) return result;
-  History history(threads);
+  History history(work);
   bool rigidly = true;  // whether faces may be held back alone
   Settling settling;
-  while (result.iterations() < options.max_iterations) {
-    checkpoint(static_cast<double>(result.iterations()) / options.max_iterations);
+  while (result.iterations() < options.max_iterations && !work.out_of_time()) {
+    work.report(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back(), scale = comparable_energy<Density>(before);
     history.find_direction(gradient, precondition, spare, direction);
-    double length = hold_back(faces, uvs, threads, rigidly, direction, result.blocking);
-    const double slope = dot(gradient, direction, threads);
+    double length = hold_back(faces, uvs, rigidly, direction, result.blocking, work);
+    const double slope = dot(gradient, direction, work);
     result.predicted = -slope;
     result.converged = settling.settled && 0.5 * result.predicted <= options.stationary * scale;
     if (result.converged) break;
@@ -259,9 +258,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       const double limit = length / kSingularShare;
       length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
     }
-    const double after = slope < 0
-                             ? search_line(objective, uvs, before, slope, options, fields, length)
-                             : std::numeric_limits<double>::infinity();
+    const double after =
+        slope < 0 ? search_line(objective, uvs, before, slope, options, fields, length, work)
+                  : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
       result.blocked = plain;
@@ -272,7 +271,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     }
     rigidly = true;
     result.energies.push_back(after);
-    parallel_for(threads, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
         direction[i] *= length;
         gradient[i] = next_gradient[i] - gradient[i];
@@ -291,9 +290,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
 
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
-                    const PolishOptions& options, const Checkpoint& checkpoint) {
+                    const PolishOptions& options, const Work& work) {
   return with_density(options.energy, [&]<class Density>(Density) {
-    return descend<Density>(faces, rest, precondition, uvs, options, checkpoint);
+    return descend<Density>(faces, rest, precondition, uvs, options, work);
   });
 }
 

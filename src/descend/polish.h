@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "descend/contact.h"
 #include "energy/energy.h"
 #include "mesh/rest_shape.h"
@@ -22,7 +22,6 @@ struct PolishOptions {
   /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
   /// cross itself.
   const BoundaryContact* contact = nullptr;
-  int threads = 1;
 };
 
 struct PolishResult {
@@ -43,10 +42,10 @@ using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector
 /// Minimises the mean energy by L-BFGS (Nocedal 1980; history 5) with `precondition` for the
 /// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that move
 /// more rigidly with their neighbours, and where this does not help the whole step is shortened. It
-/// ends where steps become short: clean_outliers mends the faces that block them. Precondition: all
-/// faces of `uvs` are positively oriented.
+/// ends where the time is up, and where steps become short: clean_outliers mends the faces that
+/// block them. Precondition: all faces of `uvs` are positively oriented.
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
-                    const PolishOptions& options, const Checkpoint& checkpoint = no_checkpoint);
+                    const PolishOptions& options, const Work& work);
 
 }  // namespace beltrami

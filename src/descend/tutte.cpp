@@ -11,12 +11,12 @@
 #include "mesh/boundary.h"
 
 namespace beltrami {
-std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
   std::vector<Vec2> uvs(mesh.vertex_count(), Vec2::Zero());
-  const std::vector<Vec2> circle = boundary_on_circle(mesh);
+  const std::vector<Vec2> circle = boundary_on_circle(mesh, work);
   for (std::size_t i = 0; i < circle.size(); ++i) uvs[mesh.boundary[i]] = circle[i];
 
-  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1, work);
   if (laplacian.free_count() == 0) return uvs;
   DenseMatrix rhs = DenseMatrix::Zero(laplacian.free_count(), 2);
   const auto one = [](int, int) { return 1.0; };
@@ -33,7 +33,7 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh) {
       if (rl != kNone && rk == kNone) rhs.row(rl) += 0.5 * uvs[face[k]].transpose();
     }
   }
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, work);
   solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver->factorize(laplacian.matrix())) {
     throw Error(BELTRAMI_E_SOLVER, "the linear system of the Tutte embedding is not definite");

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -14,7 +15,7 @@ namespace beltrami {
 /// every interior vertex at the mean of its neighbours: injective in exact arithmetic. Uniform
 /// weights, since cotangents can be negative and then flip. Returns one UV per vertex.
 /// Throws Error SOLVER if the system cannot be solved.
-std::vector<Vec2> tutte_embedding(const DiskMesh& mesh);
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work);
 
 /// The global scale at which the mean energy of a map is least; 1 if a face is flipped or
 /// degenerate.

@@ -101,7 +101,7 @@ FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2,
 
 Distortion measure_distortion(const std::vector<Vec3>& positions,
                               const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                              int threads, double* face_energies) {
+                              double* face_energies, const Work& work) {
   struct Partial {
     double area = 0;
     Distortion sum;
@@ -110,7 +110,7 @@ Distortion measure_distortion(const std::vector<Vec3>& positions,
   for (const Vec3& p : positions) size = std::max(size, p.cwiseAbs().maxCoeff());
   const int unit = unit_of(size);  // in which areas are neither too small nor too great to add
   std::vector<Partial> partials(faces.size() / kGrain + 1);
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Partial& part = partials[begin / kGrain];
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = faces[f];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -36,6 +37,6 @@ struct Distortion {
 /// the face is left out).
 Distortion measure_distortion(const std::vector<Vec3>& positions,
                               const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                              int threads, double* face_energies);
+                              double* face_energies, const Work& work);
 
 }  // namespace beltrami

@@ -19,9 +19,9 @@ bool is_excepted(const AtlasRules& rules, Index f) {
 
 std::vector<std::int8_t> judged_signs(const std::vector<Triangle>& faces,
                                       const std::vector<Vec2>& uvs, const AtlasRules& rules,
-                                      int threads) {
+                                      const Work& work) {
   std::vector<std::int8_t> signs(faces.size(), 0);
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
       if (is_excepted(rules, f)) continue;
       const auto [a, b, c] = faces[f];
@@ -54,7 +54,7 @@ std::vector<bool> mirrored_faces(const SignedTriangles& triangles, const Work& w
 
 void count_signs(const SignedTriangles& triangles, const AtlasRules& rules, const Work& work,
                  AtlasCertificate& result) {
-  const std::vector<Index> bad = parallel_filter(work.threads(), size_of(triangles.faces), kGrain,
+  const std::vector<Index> bad = parallel_filter(work, size_of(triangles.faces), kGrain,
                                                  [&](Index f) { return triangles.signs[f] <= 0; });
   std::vector<bool> mirrored;
   if (rules.allow_mirrored && !bad.empty()) {
@@ -77,10 +77,10 @@ void count_signs(const SignedTriangles& triangles, const AtlasRules& rules, cons
   }
 }
 
-void count_not_finite(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs, int threads,
-                      AtlasCertificate& result) {
+void count_not_finite(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                      AtlasCertificate& result, const Work& work) {
   const std::vector<Index> bad =
-      parallel_filter(threads, size_of(uvs), kGrain, [&](Index v) { return !uvs[v].allFinite(); });
+      parallel_filter(work, size_of(uvs), kGrain, [&](Index v) { return !uvs[v].allFinite(); });
   if (bad.empty()) return;
   std::vector<bool> used(uvs.size(), false);
   PollSometimes poll;
@@ -100,8 +100,8 @@ void count_not_finite(const std::vector<Triangle>& faces, const std::vector<Vec2
 AtlasCertificate certify_atlas(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
                                const AtlasRules& rules, const Work& work) {
   AtlasCertificate result;
-  count_not_finite(faces, uvs, work.threads(), result);
-  const SignedTriangles triangles{faces, uvs, judged_signs(faces, uvs, rules, work.threads())};
+  count_not_finite(faces, uvs, result, work);
+  const SignedTriangles triangles{faces, uvs, judged_signs(faces, uvs, rules, work)};
   count_signs(triangles, rules, work, result);
   work.report(0.05);
   const UvBoundary boundary = uv_boundary(triangles, work);

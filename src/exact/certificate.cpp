@@ -16,14 +16,14 @@ int face_orientation(const Triangle& face, const std::vector<Vec2>& uvs) {
 }  // namespace
 
 std::vector<Index> non_positive_faces(const std::vector<Triangle>& faces,
-                                      const std::vector<Vec2>& uvs, int threads) {
-  return parallel_filter(threads, size_of(faces), kGrain,
+                                      const std::vector<Vec2>& uvs, const Work& work) {
+  return parallel_filter(work, size_of(faces), kGrain,
                          [&](Index f) { return face_orientation(faces[f], uvs) <= 0; });
 }
 
 Orientations count_orientations(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                                int threads) {
-  const std::vector<Index> bad = non_positive_faces(faces, uvs, threads);
+                                const Work& work) {
+  const std::vector<Index> bad = non_positive_faces(faces, uvs, work);
   Orientations counts;
   counts.positive = size_of(faces) - size_of(bad);
   PollSometimes poll;
@@ -36,8 +36,8 @@ Orientations count_orientations(const std::vector<Triangle>& faces, const std::v
 }
 
 Certificate certify(const std::vector<Triangle>& faces, const std::vector<Index>& loop,
-                    const std::vector<Vec2>& uvs, int threads) {
-  return {count_orientations(faces, uvs, threads), count_crossings(loop, uvs)};
+                    const std::vector<Vec2>& uvs, const Work& work) {
+  return {count_orientations(faces, uvs, work), count_crossings(loop, uvs)};
 }
 
 }  // namespace beltrami

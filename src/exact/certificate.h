@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "exact/crossings.h"
 
 namespace beltrami {
@@ -28,14 +29,14 @@ struct Certificate {
 
 /// Counts the exact orientations of `faces` under `uvs` (one per vertex, finite).
 Orientations count_orientations(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
-                                int threads);
+                                const Work& work);
 
 /// Faces that are not positively oriented, in order.
 std::vector<Index> non_positive_faces(const std::vector<Triangle>& faces,
-                                      const std::vector<Vec2>& uvs, int threads);
+                                      const std::vector<Vec2>& uvs, const Work& work);
 
 /// Both tests. Precondition: `faces` form one oriented manifold disk with boundary `loop`.
 Certificate certify(const std::vector<Triangle>& faces, const std::vector<Index>& loop,
-                    const std::vector<Vec2>& uvs, int threads);
+                    const std::vector<Vec2>& uvs, const Work& work);
 
 }  // namespace beltrami

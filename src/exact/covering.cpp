@@ -59,13 +59,14 @@ std::vector<Index> number_places(const std::vector<Vec2>& uvs, const std::vector
   return place_of;
 }
 
-Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edges, int threads) {
+Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edges,
+                   const Work& work) {
   Events events;
   const std::vector<Index> place_of = number_places(uvs, edges, events.places);
   const std::int64_t count = size_of(edges), places = size_of(events.places);
   const auto left = [&](const UvEdge& e) { return std::min(place_of[e.from], place_of[e.to]); };
   const auto right = [&](const UvEdge& e) { return std::max(place_of[e.from], place_of[e.to]); };
-  BucketSort<Index> begin(threads, count, places, events.begins,
+  BucketSort<Index> begin(work, count, places, events.begins,
                           [&](std::int64_t e, const auto& visit) { visit(left(edges[e])); });
   events.edges.resize(edges.size());
   begin.place(
@@ -73,7 +74,7 @@ Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edge
   events.segments.resize(edges.size());
   events.right.resize(edges.size());
   events.goes_right.resize(edges.size());
-  parallel_for(threads, count, kGrain, [&](std::int64_t from, std::int64_t until) {
+  parallel_for(work, count, kGrain, [&](std::int64_t from, std::int64_t until) {
     for (std::int64_t e = from; e < until; ++e) {
       const UvEdge& edge = events.edges[e];
       events.right[e] = right(edge);
@@ -81,7 +82,7 @@ Events make_events(const std::vector<Vec2>& uvs, const std::vector<UvEdge>& edge
       events.segments[e] = {events.places[left(edge)], events.places[right(edge)]};
     }
   });
-  BucketSort<Index> end(threads, count, places, events.end_start,
+  BucketSort<Index> end(work, count, places, events.end_start,
                         [&](std::int64_t e, const auto& visit) { visit(events.right[e]); });
   events.ending.resize(edges.size());
   end.place([&](std::int64_t e, const auto& visit) {
@@ -245,7 +246,7 @@ class Sweep {
 
 Covering sweep_covering(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
                         const Work& work) {
-  const Events events = make_events(triangles.uvs, boundary, work.threads());
+  const Events events = make_events(triangles.uvs, boundary, work);
   return Sweep(events).run(work);
 }
 

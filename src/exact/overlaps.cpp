@@ -28,9 +28,9 @@ std::uint64_t spread(std::uint64_t x) {
 
 /// Faces with a sign along a Z-shaped curve, on which those that are near are mostly near.
 std::vector<Index> along_curve(const SignedTriangles& triangles, const std::vector<Box2>& boxes,
-                               int threads) {
+                               const Work& work) {
   const std::vector<Index> faces = parallel_filter(
-      threads, size_of(triangles.faces), kGrain, [&](Index f) { return triangles.signs[f] != 0; });
+      work, size_of(triangles.faces), kGrain, [&](Index f) { return triangles.signs[f] != 0; });
   Box2 whole;
   for (const Index f : faces) whole.extend(boxes[f]);
   // Halves, as the difference of the greatest numbers is none.
@@ -40,7 +40,7 @@ std::vector<Index> along_curve(const SignedTriangles& triangles, const std::vect
     Index face;
   };
   std::vector<Keyed> keyed(faces.size());
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       std::array<std::uint64_t, 2> cell;
       for (int axis = 0; axis < 2; ++axis) {
@@ -59,9 +59,9 @@ std::vector<Index> along_curve(const SignedTriangles& triangles, const std::vect
   return order;
 }
 
-std::vector<Box2> boxes_of(const SignedTriangles& triangles, int threads) {
+std::vector<Box2> boxes_of(const SignedTriangles& triangles, const Work& work) {
   std::vector<Box2> boxes(triangles.faces.size());
-  parallel_for(threads, size_of(boxes), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(boxes), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (const Index v : triangles.faces[f]) boxes[f].extend(triangles.uvs[v]);
     }
@@ -71,10 +71,10 @@ std::vector<Box2> boxes_of(const SignedTriangles& triangles, int threads) {
 
 class Search {
  public:
-  Search(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary, int threads)
+  Search(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary, const Work& work)
       : triangles_(triangles),
-        boxes_(boxes_of(triangles, threads)),
-        order_(along_curve(triangles, boxes_, threads)),
+        boxes_(boxes_of(triangles, work)),
+        order_(along_curve(triangles, boxes_, work)),
         tree_(in_order()),
         bounds_(size_of(order_)),
         at_boundary_(triangles.faces.size(), 0) {
@@ -185,7 +185,7 @@ class Search {
 
 Overlaps list_overlaps(const SignedTriangles& triangles, const std::vector<UvEdge>& boundary,
                        Index suspect, std::int64_t most, const Work& work) {
-  return Search(triangles, boundary, work.threads()).run(suspect, most, work);
+  return Search(triangles, boundary, work).run(suspect, most, work);
 }
 
 }  // namespace beltrami

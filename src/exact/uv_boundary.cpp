@@ -23,13 +23,13 @@ struct EdgeBuckets {
   std::vector<BucketEdge> edges;
 };
 
-EdgeBuckets bucket_edges(const SignedTriangles& triangles, int threads) {
+EdgeBuckets bucket_edges(const SignedTriangles& triangles, const Work& work) {
   const auto ends = [&](std::int64_t f, int k) {
     const Triangle& face = triangles.faces[f];
     return std::minmax(face[k], face[(k + 1) % 3]);
   };
   EdgeBuckets buckets;
-  BucketSort<Index> sort(threads, size_of(triangles.faces), size_of(triangles.uvs), buckets.start,
+  BucketSort<Index> sort(work, size_of(triangles.faces), size_of(triangles.uvs), buckets.start,
                          [&](std::int64_t f, const auto& visit) {
                            if (triangles.signs[f] == 0) return;
                            for (int k = 0; k < 3; ++k) visit(ends(f, k).first);
@@ -42,7 +42,7 @@ EdgeBuckets bucket_edges(const SignedTriangles& triangles, int threads) {
       buckets.edges[visit(lower)] = {higher, static_cast<Index>(3 * f + k)};
     }
   });
-  parallel_for(threads, size_of(triangles.uvs), kGrain, [&](std::int64_t from, std::int64_t until) {
+  parallel_for(work, size_of(triangles.uvs), kGrain, [&](std::int64_t from, std::int64_t until) {
     for (std::int64_t v = from; v < until; ++v) {
       sort_interruptibly(buckets.edges.begin() + buckets.start[v],
                          buckets.edges.begin() + buckets.start[v + 1],
@@ -78,7 +78,7 @@ UvEdge directed(const SignedTriangles& triangles, Index corner) {
 }  // namespace
 
 UvBoundary uv_boundary(const SignedTriangles& triangles, const Work& work) {
-  const EdgeBuckets buckets = bucket_edges(triangles, work.threads());
+  const EdgeBuckets buckets = bucket_edges(triangles, work);
   const std::int64_t count = size_of(triangles.uvs);
   std::vector<UvBoundary> parts(static_cast<std::size_t>((count + kGrain - 1) / kGrain));
   const auto collect = [&](UvBoundary& part, Index lower, const BucketEdge* first,
@@ -96,7 +96,7 @@ UvBoundary uv_boundary(const SignedTriangles& triangles, const Work& work) {
       part.edges.push_back(edge);
     }
   };
-  parallel_for(work.threads(), count, kGrain, [&](std::int64_t from, std::int64_t until) {
+  parallel_for(work, count, kGrain, [&](std::int64_t from, std::int64_t until) {
     UvBoundary& part = parts[static_cast<std::size_t>(from / kGrain)];
     for_each_edge(buckets, from, until, [&](Index lower, const auto* first, const auto* last) {
       collect(part, lower, first, last);
@@ -113,7 +113,7 @@ UvBoundary uv_boundary(const SignedTriangles& triangles, const Work& work) {
 }
 
 std::vector<Index> uv_charts(const SignedTriangles& triangles, const Work& work) {
-  const EdgeBuckets buckets = bucket_edges(triangles, work.threads());
+  const EdgeBuckets buckets = bucket_edges(triangles, work);
   std::vector<Index> parent(triangles.faces.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](Index f) {

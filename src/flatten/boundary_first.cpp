@@ -46,13 +46,13 @@ double edge_length_sq(const DiskMesh& mesh, const std::vector<RestTriangle>& res
 /// The Laplacian of the conformal class, its boundary held: the area factors are left out, which
 /// weight an elastic energy but have no part in a conformal map.
 MetricLaplacian conformal_laplacian(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                    const std::vector<FaceMetric>& metric) {
+                                    const std::vector<FaceMetric>& metric, const Work& work) {
   std::vector<EdgeWeights> weights;
   weights.reserve(rest.size());
-  for (const Cotangents& face : modified_cotangents(rest, metric, 1)) {
+  for (const Cotangents& face : modified_cotangents(rest, metric, work)) {
     weights.push_back(edge_weights(face, 0.5));
   }
-  return MetricLaplacian(mesh, weights, mesh.on_boundary);
+  return MetricLaplacian(mesh, weights, mesh.on_boundary, {Precision::kSingle}, {}, work);
 }
 
 /// A x for the Laplacian A of all vertices: nothing of it is stored but the factor of its interior
@@ -239,10 +239,10 @@ BoundaryFirstResult flatten_boundary_first(const DiskMesh& mesh,
                                            const std::vector<RestTriangle>& rest,
                                            const std::vector<FaceMetric>& metric,
                                            const std::vector<double>& boundary_lengths,
-                                           const Checkpoint& checkpoint) {
-  checkpoint(0);
-  const MetricLaplacian laplacian = conformal_laplacian(mesh, rest, metric);
-  checkpoint(0.7);
+                                           const Work& work) {
+  work.report(0);
+  const MetricLaplacian laplacian = conformal_laplacian(mesh, rest, metric, work);
+  work.report(0.7);
 
   // The Yamabe equation with the factors held on the boundary, and what the Cherrier formula says
   // of the boundary: k~ = k - h, h the Neumann data of the factors (a Dirichlet-to-Neumann map).
@@ -251,7 +251,7 @@ BoundaryFirstResult flatten_boundary_first(const DiskMesh& mesh,
       boundary_factors(mesh, metric_boundary_lengths(mesh, rest, metric), boundary_lengths);
   factors += laplacian.solve(-curvature - laplacian_times(mesh, rest, metric, factors));
   const DenseMatrix flat = curvature + laplacian_times(mesh, rest, metric, factors);
-  checkpoint(0.85);
+  work.report(0.85);
 
   std::vector<double> exterior_angles(mesh.boundary.size());
   for (std::size_t i = 0; i < exterior_angles.size(); ++i) {
@@ -277,7 +277,7 @@ BoundaryFirstResult flatten_boundary_first(const DiskMesh& mesh,
   }
   result.uvs.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) result.uvs[v] = places.row(v).transpose();
-  checkpoint(1);
+  work.report(1);
   return result;
 }
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
@@ -32,7 +32,7 @@ BoundaryFirstResult flatten_boundary_first(const DiskMesh& mesh,
                                            const std::vector<RestTriangle>& rest,
                                            const std::vector<FaceMetric>& metric,
                                            const std::vector<double>& boundary_lengths,
-                                           const Checkpoint& checkpoint = no_checkpoint);
+                                           const Work& work);
 
 /// The lengths that `metric` asks for at the boundary: of each boundary edge, in loop order, under
 /// the linear map fz z + mu fz conj(z) of its face. All positive; the identity metric gives the

@@ -61,15 +61,15 @@ std::vector<double> coarse_boundary_lengths(const DiskMesh& fine, const CoarseDi
 }
 
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
-                    std::vector<Vec2>& uvs, int threads) {
+                    std::vector<Vec2>& uvs, const Work& work) {
   DenseMatrix rhs = DenseMatrix::Zero(mesh.vertex_count(), 2);
   MeshMatrix laplacian =
-      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary, threads,
+      assemble_laplacian(work, mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
                          [&](Index row, Index vertex, double weight) {
                            rhs.row(row) += weight * uvs[vertex].transpose();
                          });
   if (laplacian.free_count() == 0) return;
-  const auto solver = factorize_laplacian(laplacian, mesh.positions, {Precision::kSingle, threads});
+  const auto solver = factorize_laplacian(laplacian, mesh.positions, {Precision::kSingle}, work);
   const DenseMatrix solution = solver->solve(rhs.topRows(laplacian.free_count()));
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (laplacian.row(v) != kNone) uvs[v] = solution.row(laplacian.row(v)).transpose();

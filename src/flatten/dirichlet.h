@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/simplify.h"
@@ -21,7 +22,7 @@ std::vector<Vec2> carry_boundary(const DiskMesh& fine, const CoarseDisk& coarse,
 /// boundary vertices of `uvs` held fixed, in place: one factorization, two right-hand sides. Throws
 /// Error SOLVER.
 void solve_harmonic(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
-                    std::vector<Vec2>& uvs, int threads = 1);
+                    std::vector<Vec2>& uvs, const Work& work);
 
 /// Per edge of the fine boundary loop: the length on the surface of the coarse boundary edge that
 /// it belongs to, > 0.

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCocircular = 1e-12;
 /// Flips per edge after which rounding must have led around in circles; 0.08 to 0.53 are usual.
 constexpr std::int64_t kMostFlipsPerEdge = 100;
-constexpr std::int64_t kBetweenCheckpoints = 1 << 16;
+constexpr std::int64_t kBetweenReports = 1 << 16;
 
 class Flipper {
  public:
@@ -25,13 +25,13 @@ class Flipper {
     }
   }
 
-  DelaunayTriangulation run(const Checkpoint& checkpoint) {
+  DelaunayTriangulation run(const Work& work) {
     DelaunayTriangulation result;
     const std::int64_t most = kMostFlipsPerEdge * static_cast<std::int64_t>(pending_.size());
     const auto at_first = static_cast<double>(pending_.size());
     for (std::int64_t visits = 0; !pending_.empty(); ++visits) {
-      if (visits % kBetweenCheckpoints == 0) {
-        checkpoint(1 - std::min(1.0, static_cast<double>(pending_.size()) / at_first));
+      if (visits % kBetweenReports == 0) {
+        work.report(1 - std::min(1.0, static_cast<double>(pending_.size()) / at_first));
       }
       const Index h = pending_.back();
       pending_.pop_back();
@@ -152,8 +152,8 @@ class Flipper {
 }  // namespace
 
 DelaunayTriangulation intrinsic_delaunay(const DiskMesh& mesh, std::vector<Cotangents> cotangents,
-                                         const Checkpoint& checkpoint) {
-  return Flipper(mesh, std::move(cotangents)).run(checkpoint);
+                                         const Work& work) {
+  return Flipper(mesh, std::move(cotangents)).run(work);
 }
 
 }  // namespace beltrami

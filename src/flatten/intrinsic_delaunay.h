@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
 
@@ -26,6 +26,6 @@ struct DelaunayTriangulation {
 /// to agree on their common edge, which makes the new cotangents a rational function of the old
 /// ones (the formulas printed in the paper misplace a root). Ends after finitely many flips.
 DelaunayTriangulation intrinsic_delaunay(const DiskMesh& mesh, std::vector<Cotangents> cotangents,
-                                         const Checkpoint& checkpoint = no_checkpoint);
+                                         const Work& work);
 
 }  // namespace beltrami

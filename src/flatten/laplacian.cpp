@@ -25,10 +25,11 @@ Cotangents modified_cotangents(const RestTriangle& rest, Complex mu) {
 }
 
 std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& rest,
-                                            const std::vector<FaceMetric>& metric, int threads) {
+                                            const std::vector<FaceMetric>& metric,
+                                            const Work& work) {
   std::vector<Cotangents> cotangents;
-  parallel_assign(threads, cotangents, rest.size());
-  parallel_for(threads, size_of(rest), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, cotangents, rest.size());
+  parallel_for(work, size_of(rest), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       cotangents[f] = modified_cotangents(rest[f], metric[f].mu);
     }
@@ -38,8 +39,8 @@ std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& res
 
 std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian,
                                                const std::vector<Vec3>& positions,
-                                               const SolverOptions& options) {
-  auto solver = make_spd_solver(options);
+                                               const SolverOptions& options, const Work& work) {
+  auto solver = make_spd_solver(options, work);
   poll_interrupt();
   solver->analyze(laplacian.matrix(), laplacian.places(positions));
   refactorize_laplacian(*solver, laplacian);

@@ -31,7 +31,8 @@ Cotangents modified_cotangents(const RestTriangle& rest, Complex mu);
 
 /// The same for all faces, with the mu of `metric`.
 std::vector<Cotangents> modified_cotangents(const std::vector<RestTriangle>& rest,
-                                            const std::vector<FaceMetric>& metric, int threads);
+                                            const std::vector<FaceMetric>& metric,
+                                            const Work& work);
 
 /// Adds the stiffness of one face by add(i, j, block): edge k, opposite to corner k, with
 /// weights[k].
@@ -49,11 +50,12 @@ void add_stiffness(const EdgeWeights& weights, const Add& add) {
 /// of a metric it is definite all the same. `pull(row, vertex, weight)` is told of every coupling
 /// of a free vertex's row to a fixed vertex, once for each face at their edge.
 template <class Pull>
-MeshMatrix assemble_laplacian(Index vertex_count, const std::vector<Triangle>& faces,
+MeshMatrix assemble_laplacian(const Work& work, Index vertex_count,
+                              const std::vector<Triangle>& faces,
                               const std::vector<Cotangents>& cotangents,
-                              const std::vector<bool>& fixed, int threads, Pull&& pull) {
-  MeshMatrix laplacian(vertex_count, faces, fixed, 1, threads);
-  laplacian.add_up(faces, threads, [&](Index f, const auto& add) {
+                              const std::vector<bool>& fixed, Pull&& pull) {
+  MeshMatrix laplacian(vertex_count, faces, fixed, 1, work);
+  laplacian.add_up(work, faces, [&](Index f, const auto& add) {
     add_stiffness(edge_weights(cotangents[f], 0.5), add);
   });
   for (Index f = 0; f < size_of(faces); ++f) {
@@ -72,7 +74,7 @@ MeshMatrix assemble_laplacian(Index vertex_count, const std::vector<Triangle>& f
 /// SOLVER where none does.
 std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian,
                                                const std::vector<Vec3>& positions,
-                                               const SolverOptions& options);
+                                               const SolverOptions& options, const Work& work);
 
 /// The same with the solver of an earlier Laplacian of the same pattern.
 void refactorize_laplacian(SpdSolver& solver, MeshMatrix& laplacian);

@@ -35,12 +35,12 @@ EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex d
 
 /// Calls stiffness(density, face) for every face.
 template <class Stiffness>
-std::vector<EdgeWeights> stiffness_of_faces(Energy energy, std::size_t count, int threads,
+std::vector<EdgeWeights> stiffness_of_faces(const Work& work, Energy energy, std::size_t count,
                                             const Stiffness& stiffness) {
   std::vector<EdgeWeights> weights;
-  parallel_assign(threads, weights, count);
+  parallel_assign(work, weights, count);
   with_density(energy, [&]<class Density>(Density density) {
-    parallel_for(threads, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t f = begin; f < end; ++f) weights[f] = stiffness(density, f);
     });
   });
@@ -87,21 +87,20 @@ Complex fitted_rotation(const EdgeWeights& weights, const std::array<Complex, 3>
 }  // namespace
 
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestTriangle>& rest,
-                                          const std::vector<FaceMetric>& metric, int threads) {
-  return stiffness_of_faces(
-      energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) {
-        const double k = modulus(metric[f].mu);
-        const Complex direction = k > 0 ? metric[f].mu / k : Complex(1);
-        const double a = portable::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
-        return stiffness_at<Density>(rest[f], a, k * a, direction);
-      });
+                                          const std::vector<FaceMetric>& metric, const Work& work) {
+  return stiffness_of_faces(work, energy, rest.size(), [&]<class Density>(Density, std::int64_t f) {
+    const double k = modulus(metric[f].mu);
+    const Complex direction = k > 0 ? metric[f].mu / k : Complex(1);
+    const double a = portable::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
+    return stiffness_at<Density>(rest[f], a, k * a, direction);
+  });
 }
 
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Triangle>& faces,
                                           const std::vector<RestTriangle>& rest,
-                                          const std::vector<Vec2>& uvs, int threads) {
+                                          const std::vector<Vec2>& uvs, const Work& work) {
   return stiffness_of_faces(
-      energy, rest.size(), threads, [&]<class Density>(Density, std::int64_t f) -> EdgeWeights {
+      work, energy, rest.size(), [&]<class Density>(Density, std::int64_t f) -> EdgeWeights {
         const Triangle& t = faces[f];
         const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
         const double a = modulus(map.fz), b = modulus(map.fzbar);
@@ -129,24 +128,24 @@ std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWe
 
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                  const std::vector<bool>& held, const SolverOptions& options,
-                                 const std::vector<double>& springs)
-    : matrix_(mesh.vertex_count(), mesh.faces, held, 1, options.threads),
-      threads_(options.threads) {
+                                 const std::vector<double>& springs, const Work& work)
+    : matrix_(mesh.vertex_count(), mesh.faces, held, 1, work), work_(work) {
   assemble(mesh, stiffness, springs);
-  if (matrix_.free_count() > 0) solver_ = factorize_laplacian(matrix_, mesh.positions, options);
+  if (matrix_.free_count() > 0)
+    solver_ = factorize_laplacian(matrix_, mesh.positions, options, work);
 }
 
 void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                             const std::vector<double>& springs) {
   if (matrix_.free_count() == 0) return;
-  matrix_.set_zero(threads_);
+  matrix_.set_zero(work_);
   assemble(mesh, stiffness, springs);
   refactorize_laplacian(*solver_, matrix_);
 }
 
 void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                const std::vector<double>& springs) {
-  matrix_.add_up(mesh.faces, threads_,
+  matrix_.add_up(work_, mesh.faces,
                  [&](Index f, const auto& add) { add_stiffness(stiffness[f], add); });
   SparseMatrix& matrix = matrix_.matrix();
   for (Index v = 0; v < size_of(springs); ++v) {
@@ -160,7 +159,7 @@ template <class Rows>
 DenseMatrix MetricLaplacian::packed(const Rows& rhs) const {
   const std::vector<Index>& row = matrix_.rows();
   DenseMatrix result(matrix_.free_count(), rhs.cols());
-  parallel_for(threads_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
       if (row[v] != kNone) result.row(row[v]) = rhs.row(v);
     }
@@ -171,7 +170,7 @@ DenseMatrix MetricLaplacian::packed(const Rows& rhs) const {
 template <class Rows>
 void MetricLaplacian::unpack(const DenseMatrix& x, Rows&& result) const {
   const std::vector<Index>& row = matrix_.rows();
-  parallel_for(threads_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work_, size_of(row), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
       if (row[v] != kNone) result.row(v) = x.row(row[v]);
     }
@@ -197,7 +196,7 @@ void MetricLaplacian::precondition(const std::vector<Vec2>& rhs, std::vector<Vec
 void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                   const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
                   const MetricLaplacian& laplacian, const Anchors& anchors, bool rotate,
-                  int threads, std::vector<Vec2>& uvs) {
+                  std::vector<Vec2>& uvs, const Work& work) {
   // The residual of the present map, so that held vertices need no treatment of their own.
   const auto give = [&](Index f, VertexSums::Terms& terms) {
     const EdgeWeights& weights = stiffness[f];
@@ -213,12 +212,12 @@ void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     return 0.0;
   };
   std::vector<Vec2> residual, change;
-  VertexSums(mesh.vertex_count(), mesh.faces, threads).add_up(give, residual);
+  VertexSums(mesh.vertex_count(), mesh.faces, work).add_up(give, residual);
   for (Index v = 0; v < size_of(anchors.springs); ++v) {
     residual[v] += anchors.springs[v] * (anchors.places[v] - uvs[v]);
   }
   laplacian.solve(residual, change);
-  parallel_for(threads, mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) uvs[v] += change[v];
   });
 }

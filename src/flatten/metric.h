@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/energy.h"
 #include "flatten/laplacian.h"
 #include "linear/mesh_matrix.h"
@@ -21,12 +22,12 @@ namespace beltrami {
 /// map that has the metric: per face the mean of the Hessian's radial and angular parts along each
 /// singular direction, the same for u and v.
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestTriangle>& rest,
-                                          const std::vector<FaceMetric>& metric, int threads);
+                                          const std::vector<FaceMetric>& metric, const Work& work);
 
 /// The same at the map `uvs`.
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Triangle>& faces,
                                           const std::vector<RestTriangle>& rest,
-                                          const std::vector<Vec2>& uvs, int threads);
+                                          const std::vector<Vec2>& uvs, const Work& work);
 
 /// Springs that draw vertices to places of their own.
 struct Anchors {
@@ -45,9 +46,8 @@ class MetricLaplacian {
   /// `held`: per vertex; at least one must be. `springs`: per vertex, or empty. Throws Error
   /// SOLVER.
   MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
-                  const std::vector<bool>& held,
-                  const SolverOptions& options = {Precision::kSingle},
-                  const std::vector<double>& springs = {});
+                  const std::vector<bool>& held, const SolverOptions& options,
+                  const std::vector<double>& springs, const Work& work);
 
   /// Factorizes anew. Throws Error SOLVER.
   void refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
@@ -68,7 +68,7 @@ class MetricLaplacian {
   void unpack(const DenseMatrix& x, Rows&& result) const;
 
   MeshMatrix matrix_;
-  int threads_;
+  const Work work_;
   std::unique_ptr<SpdSolver> solver_;
 };
 
@@ -81,6 +81,6 @@ class MetricLaplacian {
 void solve_metric(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                   const std::vector<FaceMetric>& metric, const std::vector<EdgeWeights>& stiffness,
                   const MetricLaplacian& laplacian, const Anchors& anchors, bool rotate,
-                  int threads, std::vector<Vec2>& uvs);
+                  std::vector<Vec2>& uvs, const Work& work);
 
 }  // namespace beltrami

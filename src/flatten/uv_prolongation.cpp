@@ -9,18 +9,18 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
-constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
+constexpr std::int64_t kBatch = 64 * kGrain;  // between two reports
 
 }  // namespace
 
 std::vector<Vec2> prolong_uvs(const DiskMesh& coarse, const std::vector<Vec2>& coarse_uvs,
-                              const DiskMesh& fine, int threads, const Checkpoint& checkpoint) {
+                              const DiskMesh& fine, const Work& work) {
   const ClosestPoint tree(coarse.positions, coarse.faces);
   std::vector<Vec2> uvs(fine.vertex_count());
   for (std::int64_t first = 0; first < fine.vertex_count(); first += kBatch) {
-    checkpoint(static_cast<double>(first) / fine.vertex_count());
+    work.report(static_cast<double>(first) / fine.vertex_count());
     const std::int64_t count = std::min(kBatch, fine.vertex_count() - first);
-    parallel_for(threads, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Index seed = kNone;
       for (std::int64_t i = begin; i < end; ++i) {
         const auto v = static_cast<Index>(first + i);

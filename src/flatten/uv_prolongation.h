@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -13,7 +13,6 @@ namespace beltrami {
 /// Gives each fine vertex the UV of the coarse point that is closest to it, linear on coarse faces.
 /// No guarantee of any kind: the reason for prolonging coefficients instead.
 std::vector<Vec2> prolong_uvs(const DiskMesh& coarse, const std::vector<Vec2>& coarse_uvs,
-                              const DiskMesh& fine, int threads,
-                              const Checkpoint& checkpoint = no_checkpoint);
+                              const DiskMesh& fine, const Work& work);
 
 }  // namespace beltrami

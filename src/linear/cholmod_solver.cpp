@@ -70,8 +70,7 @@ class CholmodSolver final : public SpdSolver {
   }
 
   /// The supernodal factor hides its columns.
-  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
-                         int /*threads*/) const override {
+  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const override {
     return rows_of_whole_solves(*this, rhs, rows);
   }
 
@@ -106,7 +105,7 @@ class CholmodSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/) {
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/, const Work& /*work*/) {
   return std::make_unique<CholmodSolver>();
 }
 

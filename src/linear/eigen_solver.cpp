@@ -112,6 +112,8 @@ class PrunedSolve {
 
 class EigenSolver final : public SpdSolver {
  public:
+  explicit EigenSolver(const Work& work) : work_(work) {}
+
   void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
     factor_.analyzePattern(lower);
   }
@@ -136,27 +138,27 @@ class EigenSolver final : public SpdSolver {
     return result;
   }
 
-  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
-                         int threads) const override {
+  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const override {
     DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
     if (rows.empty() || rhs.cols() == 0) return result;
     const auto lower = factor_.matrixL();
     const Eigen::VectorXi place = factor_.permutationP().indices();
     const PrunedSolve pruned(lower.nestedExpression(), place, rhs, rows);
-    parallel_for(
-        threads, rhs.cols(), PrunedSolve::kBlock,
-        [&](std::int64_t begin, std::int64_t end) { pruned.run(begin, end - begin, result); });
+    parallel_for(work_, rhs.cols(), PrunedSolve::kBlock, [&](std::int64_t begin, std::int64_t end) {
+      pruned.run(begin, end - begin, result);
+    });
     return result;
   }
 
  private:
+  const Work work_;
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
 };
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/) {
-  return std::make_unique<EigenSolver>();
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& /*options*/, const Work& work) {
+  return std::make_unique<EigenSolver>(work);
 }
 
 const char* spd_solver_name() {

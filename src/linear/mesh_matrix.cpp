@@ -12,8 +12,8 @@ constexpr std::int64_t kGrain = 8192;
 }  // namespace
 
 MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
-                       const std::vector<bool>& fixed, int block_size, int threads)
-    : block_size_(block_size), chunks_(vertex_count, faces, threads), row_(vertex_count, kNone) {
+                       const std::vector<bool>& fixed, int block_size, const Work& work)
+    : block_size_(block_size), chunks_(vertex_count, faces, work), row_(vertex_count, kNone) {
   for (Index v = 0; v < vertex_count; ++v) {
     if (!fixed[v]) row_[v] = free_count_++;
   }
@@ -26,25 +26,25 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
     }
   };
   const Index face_count = size_of(faces);
-  BucketSort<Index> sort(threads, face_count, free_count_, start,
+  BucketSort<Index> sort(work, face_count, free_count_, start,
                          [&](std::int64_t f, const auto& count) {
                            for_each_edge(f, [&](int, Index column, Index) { count(column); });
                          });
   std::vector<Index> rows;
-  parallel_assign(threads, rows, static_cast<std::size_t>(start.back()));
+  parallel_assign(work, rows, static_cast<std::size_t>(start.back()));
   sort.place([&](std::int64_t f, const auto& place) {
     for_each_edge(f, [&](int, Index column, Index row) { rows[place(column)] = row; });
   });
   std::vector<Index> unique_count(free_count_);
-  parallel_for(threads, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t c = begin; c < end; ++c) {
       const auto first = rows.begin() + start[c], last = rows.begin() + start[c + 1];
       std::sort(first, last);
       unique_count[c] = static_cast<Index>(std::unique(first, last) - first);
     }
   });
-  parallel_assign(threads, slot_, faces.size());
-  parallel_for(threads, face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, slot_, faces.size());
+  parallel_for(work, face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       slot_[f] = {kNone, kNone, kNone};
       for_each_edge(f, [&](int k, Index column, Index row) {
@@ -65,7 +65,7 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
     }
   }
   matrix_.resizeNonZeros(outer[b * free_count_]);
-  parallel_for(threads, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, free_count_, kGrain, [&](std::int64_t begin, std::int64_t end) {
     int* inner = matrix_.innerIndexPtr() + outer[b * begin];
     for (auto c = static_cast<Index>(begin); c < end; ++c) {
       for (Index i = 0; i < b; ++i) {
@@ -76,11 +76,11 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
       }
     }
   });
-  set_zero(threads);
+  set_zero(work);
 }
 
-void MeshMatrix::set_zero(int threads) {
-  parallel_for(threads, matrix_.nonZeros(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+void MeshMatrix::set_zero(const Work& work) {
+  parallel_for(work, matrix_.nonZeros(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::fill(matrix_.valuePtr() + begin, matrix_.valuePtr() + end, 0.0);
   });
 }

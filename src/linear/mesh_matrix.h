@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "linear/spd_solver.h"
 #include "mesh/face_chunks.h"
 
@@ -24,7 +25,7 @@ class MeshMatrix {
  public:
   /// `fixed`: per vertex, whether it is left out of the system.
   MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces, const std::vector<bool>& fixed,
-             int block_size, int threads = 1);
+             int block_size, const Work& work);
 
   /// Block row of a vertex, or kNone if it is fixed.
   Index row(Index vertex) const { return row_[vertex]; }
@@ -35,7 +36,7 @@ class MeshMatrix {
   template <class Point>
   std::vector<Place> places(const std::vector<Point>& points) const;
 
-  void set_zero(int threads);
+  void set_zero(const Work& work);
   /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be
   /// called once for every unordered pair of corners, the diagonal ones included. Fixed corners are
   /// skipped.
@@ -55,7 +56,7 @@ class MeshMatrix {
   /// For every face calls `give(face, add)`, which adds blocks of that face by add(i, j, block), in
   /// parallel; the same bits at any number of threads. `faces` are those of the constructor.
   template <class Give>
-  void add_up(const std::vector<Triangle>& faces, int threads, const Give& give);
+  void add_up(const Work& work, const std::vector<Triangle>& faces, const Give& give);
 
   const SparseMatrix& matrix() const { return matrix_; }
   SparseMatrix& matrix() { return matrix_; }
@@ -116,13 +117,13 @@ void MeshMatrix::for_each_entry(Index face, const Triangle& corners, int i, int 
 }
 
 template <class Give>
-void MeshMatrix::add_up(const std::vector<Triangle>& faces, int threads, const Give& give) {
+void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, const Give& give) {
   struct Aside {
     double* entry;
     double term;
   };
   std::vector<std::vector<Aside>> aside(chunks_.count());
-  parallel_for(threads, static_cast<std::int64_t>(faces.size()), FaceChunks::kGrain,
+  parallel_for(work, static_cast<std::int64_t>(faces.size()), FaceChunks::kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  std::vector<Aside>& later = aside[FaceChunks::of(begin)];
                  const auto put = [&](Index vertex, double& entry, double term) {

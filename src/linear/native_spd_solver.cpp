@@ -3,8 +3,8 @@
 
 namespace beltrami {
 
-std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options) {
-  return make_native_solver(options);
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options, const Work& work) {
+  return make_native_solver(options, kLeastSingle, work);
 }
 
 const char* spd_solver_name() {

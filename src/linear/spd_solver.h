@@ -5,12 +5,11 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "base/interrupt.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -20,10 +19,6 @@ using DenseMatrix = Eigen::MatrixXd;
 
 /// Where the unknowns of a matrix are in space: only differences matter.
 using Place = std::array<float, 3>;
-
-/// Called now and then, always on the caller's thread, while a matrix is analyzed and factorized.
-/// May throw to cancel that; the solver can be given another matrix then.
-using Poll = std::function<void()>;
 
 enum class Precision {
   kDouble,
@@ -36,16 +31,15 @@ enum class Precision {
 /// How systems are solved. Back ends may ignore all of it.
 struct SolverOptions {
   Precision precision = Precision::kDouble;
-  int threads = 1;
   /// What solve() takes the residual to, relative to the right-hand side, with kSingle. The default
   /// is what a map needs that is not improved further: beyond 1e-8 the set of its flipped faces
   /// depends on it.
   double residual = 5e-9;
-  Poll poll = poll_interrupt;
 };
 
-/// A direct solver. The bits of a solution depend on the matrix, the places and the options other
-/// than `threads`.
+/// A direct solver. The bits of a solution depend on the matrix, the places and the options, not on
+/// its threads. Cancelling (base/interrupt.h) may end an analysis or a factorization; the solver
+/// can be given another matrix then.
 class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
@@ -68,8 +62,7 @@ class SpdSolver {
   /// skip the parts of the factor that neither the right-hand sides nor the rows reach;
   /// neighbouring columns should have their nonzeros close together. Same bits at any number of
   /// threads.
-  virtual DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
-                                 int threads) const = 0;
+  virtual DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const = 0;
 };
 
 /// What solve_rows gives, by whole solves for a few columns at a time.
@@ -87,7 +80,7 @@ inline DenseMatrix rows_of_whole_solves(const SpdSolver& solver, const SparseMat
   return result;
 }
 
-std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options = {});
+std::unique_ptr<SpdSolver> make_spd_solver(const SolverOptions& options, const Work& work);
 
 /// "native", "eigen", "cholmod" or "cholmod-simplicial".
 const char* spd_solver_name();

@@ -27,12 +27,12 @@ std::vector<double> boundary_lengths(const DiskMesh& mesh) {
   return lengths;
 }
 
-std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh) {
+std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh, const Work& work) {
   const std::vector<double> lengths = boundary_lengths(mesh);
   const double total = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   // A surface without area, as simplification may leave of one that is mostly collapsed, still
   // gets a circle.
-  const double area = surface_area(mesh);
+  const double area = surface_area(mesh, work);
   const double radius =
       area > 0 ? std::sqrt(area / std::numbers::pi) : total / (2 * std::numbers::pi);
   std::vector<Vec2> places;

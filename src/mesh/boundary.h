@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -14,7 +15,7 @@ namespace beltrami {
 std::vector<double> boundary_lengths(const DiskMesh& mesh);
 
 /// Places on a circle of the area of the mesh, by arc length; one per position of the loop.
-std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh);
+std::vector<Vec2> boundary_on_circle(const DiskMesh& mesh, const Work& work);
 
 /// The UVs along the boundary loop.
 std::vector<Vec2> boundary_polygon(const DiskMesh& mesh, const std::vector<Vec2>& uvs);

@@ -20,8 +20,8 @@ constexpr int kMostGrowth = 40;
 
 void require_one_component(const Surface& surface, const Work& work) {
   const std::vector<Index> least = connected_faces(surface, work);
-  const auto outside = parallel_find(work.threads(), size_of(least), kGrain,
-                                     [&](std::int64_t f) { return least[f] != 0; });
+  const auto outside =
+      parallel_find(work, size_of(least), kGrain, [&](std::int64_t f) { return least[f] != 0; });
   if (outside == size_of(least)) return;
   throw Error(BELTRAMI_E_COMPONENTS,
               "face " + std::to_string(outside) +
@@ -59,8 +59,8 @@ void trace_boundary(DiskMesh& mesh, const Work& work) {
 }
 
 double total_area(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
-                  int threads) {
-  return parallel_sum(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+                  const Work& work) {
+  return parallel_sum(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double area = 0;
     for (std::int64_t f = begin; f < end; ++f) {
       area += triangle_area(positions[faces[f][0]], positions[faces[f][1]], positions[faces[f][2]]);
@@ -72,9 +72,9 @@ double total_area(const std::vector<Vec3>& positions, const std::vector<Triangle
 }  // namespace
 
 std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces,
-                                     int threads) {
+                                     const Work& work) {
   std::vector<Index> renumbered(vertex_count, kNone);
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (const Index v : faces[f]) {
         std::atomic_ref<Index>(renumbered[v]).store(0, std::memory_order_relaxed);
@@ -91,7 +91,7 @@ std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& 
     original.push_back(v);
   }
   if (size_of(original) == vertex_count) return original;
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : faces[f]) v = renumbered[v];
     }
@@ -106,8 +106,7 @@ DiskMesh prove_disk(Surface surface, const Work& work) {
   return mesh;
 }
 
-DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, int threads) {
-  const Work work(threads);
+DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
   return prove_disk(build_surface(std::move(positions), std::move(faces), work), work);
 }
 
@@ -115,12 +114,12 @@ double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return 0.5 * (b - a).cross(c - a).norm();
 }
 
-double surface_area(const Surface& surface, int threads) {
-  return total_area(surface.positions, surface.faces, threads);
+double surface_area(const Surface& surface, const Work& work) {
+  return total_area(surface.positions, surface.faces, work);
 }
 
 Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
-                        int threads) {
+                        const Work& work) {
   Vec3 low = positions.front(), high = positions.front();
   PollSometimes poll;
   for (const Vec3& p : positions) {
@@ -136,7 +135,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
     throw Error(BELTRAMI_E_ZERO_AREA, "all vertices coincide: the surface has no area");
   }
   const auto for_each_position = [&](const auto& change) {
-    parallel_for(threads, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t v = begin; v < end; ++v) change(positions[v]);
     });
   };
@@ -149,7 +148,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
   };
   for_each_position([&](Vec3& p) { p -= frame.centre; });
   rescale(-std::ilogb(extent));
-  const double area = total_area(positions, faces, threads);
+  const double area = total_area(positions, faces, work);
   if (!(area > 0)) {
     throw Error(BELTRAMI_E_ZERO_AREA,
                 "the surface has no area: every face is degenerate (check the vertex positions)");

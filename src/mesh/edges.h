@@ -32,16 +32,17 @@ inline std::array<Index, 2> ends_of(const std::vector<Triangle>& faces, Index h)
 }
 
 /// Precondition: indices in [0, vertex_count), no face names a vertex twice.
-HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces, int threads);
+HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
+                               const Work& work);
 
 /// Calls visit(std::span<const Spoke>) with the half-edges of each edge, once, in either direction:
 /// no hash map, no sort over the whole. Several threads call it side by side.
 template <class Visit>
-void for_each_edge(const HalfedgeBuckets& buckets, const std::vector<Triangle>& faces, int threads,
-                   const Visit& visit) {
+void for_each_edge(const Work& work, const HalfedgeBuckets& buckets,
+                   const std::vector<Triangle>& faces, const Visit& visit) {
   constexpr std::int64_t kGrain = 16384;
   const std::int64_t vertex_count = size_of(buckets.start) - 1;
-  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Spoke> spokes;
     for (std::int64_t v = begin; v < end; ++v) {
       spokes.clear();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -16,7 +17,7 @@ class FaceChunks {
  public:
   static constexpr std::int64_t kGrain = 8192;
 
-  FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, int threads);
+  FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, const Work& work);
 
   std::size_t count() const { return count_; }
   static std::size_t of(std::int64_t face) { return static_cast<std::size_t>(face / kGrain); }

@@ -46,7 +46,7 @@ std::uint64_t hilbert_key(Cell x) {
 
 }  // namespace
 
-std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int threads) {
+std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, const Work& work) {
   if (points.empty()) return {};
   Vec3 low = points.front(), high = points.front();
   for (const Vec3& p : points) {
@@ -58,9 +58,9 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int thre
   constexpr double kCells = (1 << kBits) - 1;
   using Keyed = std::pair<std::uint64_t, Index>;
   std::vector<Keyed> keyed, sorted;
-  parallel_assign(threads, keyed, points.size());
-  parallel_assign(threads, sorted, points.size());
-  parallel_for(threads, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, keyed, points.size());
+  parallel_assign(work, sorted, points.size());
+  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       Cell cell{};
       for (int i = 0; i < 3 && side > 0; ++i) {
@@ -75,26 +75,26 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, int thre
     const auto digit = [&](std::int64_t i) {
       return keyed[i].first >> shift & ((1u << kDigit) - 1);
     };
-    BucketSort<Index> sort(threads, size_of(keyed), 1 << kDigit, start,
+    BucketSort<Index> sort(work, size_of(keyed), 1 << kDigit, start,
                            [&](std::int64_t i, const auto& count) { count(digit(i)); });
     sort.place([&](std::int64_t i, const auto& place) { sorted[place(digit(i))] = keyed[i]; });
     keyed.swap(sorted);
   }
   std::vector<Index> order;
-  parallel_assign(threads, order, points.size());
+  parallel_assign(work, order, points.size());
   std::transform(keyed.begin(), keyed.end(), order.begin(),
                  [](const Keyed& k) { return k.second; });
   return order;
 }
 
 std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces,
-                                   int threads) {
+                                   const Work& work) {
   const auto least = [&](std::int64_t f) {
     return std::min({faces[f][0], faces[f][1], faces[f][2]});
   };
   std::vector<Index> start, sorted;
-  parallel_assign(threads, sorted, faces.size());
-  BucketSort<Index> sort(threads, size_of(faces), vertex_count, start,
+  parallel_assign(work, sorted, faces.size());
+  BucketSort<Index> sort(work, size_of(faces), vertex_count, start,
                          [&](std::int64_t f, const auto& count) { count(least(f)); });
   sort.place(
       [&](std::int64_t f, const auto& place) { sorted[place(least(f))] = static_cast<Index>(f); });

@@ -42,15 +42,15 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 std::vector<Index> degenerate_faces(const std::vector<Vec3>& positions,
-                                    const std::vector<Triangle>& faces, int threads) {
-  return parallel_filter(threads, size_of(faces), kGrain, [&](Index f) {
+                                    const std::vector<Triangle>& faces, const Work& work) {
+  return parallel_filter(work, size_of(faces), kGrain, [&](Index f) {
     const auto [a, b, c] = faces[f];
     return is_degenerate(positions[a], positions[b], positions[c]);
   });
 }
 
 std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
-                                         const std::vector<Triangle>& faces, int threads) {
+                                         const std::vector<Triangle>& faces, const Work& work) {
   const auto edge_sum = [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (std::int64_t f = begin; f < end; ++f) {
@@ -61,11 +61,11 @@ std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
     return sum;
   };
   const double mean_edge =
-      parallel_sum(threads, size_of(faces), kGrain, edge_sum) / (3.0 * size_of(faces));
+      parallel_sum(work, size_of(faces), kGrain, edge_sum) / (3.0 * size_of(faces));
 
   std::vector<RestTriangle> rest;
-  parallel_assign(threads, rest, faces.size());
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, rest, faces.size());
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       const std::array<Vec3, 3> p = {positions[faces[f][0]], positions[faces[f][1]],
                                      positions[faces[f][2]]};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 
@@ -44,12 +45,12 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The faces for which is_degenerate holds, in order.
 std::vector<Index> degenerate_faces(const std::vector<Vec3>& positions,
-                                    const std::vector<Triangle>& faces, int threads);
+                                    const std::vector<Triangle>& faces, const Work& work);
 
 /// Lays every face flat. A degenerate face is valid topology without geometry: it is given a height
 /// of 1e-3 of its longest edge, or of the mean edge where it has no extent at all, so that every
 /// energy stays finite.
 std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
-                                         const std::vector<Triangle>& faces, int threads);
+                                         const std::vector<Triangle>& faces, const Work& work);
 
 }  // namespace beltrami

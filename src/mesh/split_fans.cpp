@@ -45,9 +45,9 @@ Fans walk_fans(const std::vector<Triangle>& faces, const std::vector<Index>& twi
 }
 
 /// Per fan its number in the order of the vertices.
-std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, int threads) {
+std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, const Work& work) {
   std::vector<Index> start, number(fans.vertex.size());
-  BucketSort<Index> sort(threads, size_of(fans.vertex), vertex_count, start,
+  BucketSort<Index> sort(work, size_of(fans.vertex), vertex_count, start,
                          [&](std::int64_t fan, const auto& count) { count(fans.vertex[fan]); });
   sort.place([&](std::int64_t fan, const auto& place) { number[fan] = place(fans.vertex[fan]); });
   return number;
@@ -57,20 +57,19 @@ std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, int threads) 
 
 SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         const std::vector<Index>& twin, const Work& work) {
-  const int threads = work.threads();
   const Fans fans = walk_fans(faces, twin);
-  const std::vector<Index> number = by_vertex(fans, size_of(positions), threads);
+  const std::vector<Index> number = by_vertex(fans, size_of(positions), work);
   SplitSurface split;
   split.vertex.resize(number.size());
   std::vector<Vec3> places(number.size());
-  parallel_for(threads, size_of(number), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(number), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t fan = begin; fan < end; ++fan) {
       split.vertex[number[fan]] = fans.vertex[fan];
       places[number[fan]] = positions[fans.vertex[fan]];
     }
   });
   std::vector<Triangle> renumbered(faces.size());
-  parallel_for(threads, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (int k = 0; k < 3; ++k) renumbered[f][k] = number[fans.of_corner[3 * f + k]];
     }

@@ -73,12 +73,12 @@ std::string quoted(Index index) {
 }
 
 std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
-                                  int threads) {
-  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, threads);
+                                  const Work& work) {
+  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
   std::vector<Index> twin;
-  parallel_assign(threads, twin, buckets.halfedge.size(), kNone);
+  parallel_assign(work, twin, buckets.halfedge.size(), kNone);
   std::atomic<bool> sound{true};
-  for_each_edge(buckets, faces, threads, [&](std::span<const Spoke> edge) {
+  for_each_edge(work, buckets, faces, [&](std::span<const Spoke> edge) {
     if (edge.size() == 1) return;
     if (edge.size() > 2 || edge[0].outwards == edge[1].outwards) {
       sound = false;
@@ -91,18 +91,18 @@ std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle
   return twin;
 }
 
-std::vector<Index> boundary_halfedges(const Surface& surface, int threads) {
-  return parallel_filter(threads, size_of(surface.twin), kGrain,
+std::vector<Index> boundary_halfedges(const Surface& surface, const Work& work) {
+  return parallel_filter(work, size_of(surface.twin), kGrain,
                          [&](Index h) { return surface.twin[h] == kNone; });
 }
 
 /// Fills `outgoing`, given the half-edges without a twin; throws NON_MANIFOLD_VERTEX where the
 /// faces of a vertex form several fans.
-void link_vertices(Surface& surface, const std::vector<Index>& boundary, int threads) {
+void link_vertices(Surface& surface, const std::vector<Index>& boundary, const Work& work) {
   const Index vertex_count = surface.vertex_count();
   surface.outgoing.assign(vertex_count, kNone);
   // The first one, whichever thread comes first.
-  parallel_for(threads, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto h = static_cast<Index>(begin); h < end; ++h) {
       const std::atomic_ref<Index> outgoing(surface.outgoing[surface.origin(h)]);
       Index known = outgoing.load(std::memory_order_relaxed);
@@ -124,7 +124,7 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, int thr
     return faces;
   };
   std::atomic<Index> in_fans{0};
-  parallel_for(threads, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     Index faces = 0;
     for (auto v = static_cast<Index>(begin); v < end; ++v) faces += fan(v);
     in_fans += faces;
@@ -143,15 +143,15 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, int thr
 }  // namespace
 
 HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
-                               int threads) {
+                               const Work& work) {
   HalfedgeBuckets buckets;
   const auto smaller_ends = [&](std::int64_t f, const auto& visit) {
     for (int k = 0; k < 3; ++k) visit(k, std::min(faces[f][k], faces[f][next_corner(k)]));
   };
   BucketSort<Index> sort(
-      threads, size_of(faces), vertex_count, buckets.start,
+      work, size_of(faces), vertex_count, buckets.start,
       [&](std::int64_t f, const auto& count) { smaller_ends(f, [&](int, Index v) { count(v); }); });
-  parallel_assign(threads, buckets.halfedge, 3 * faces.size());
+  parallel_assign(work, buckets.halfedge, 3 * faces.size());
   sort.place([&](std::int64_t f, const auto& place) {
     smaller_ends(
         f, [&](int k, Index v) { buckets.halfedge[place(v)] = static_cast<Index>(3 * f + k); });
@@ -159,13 +159,13 @@ HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& 
   return buckets;
 }
 
-void validate_indices(Index vertex_count, const std::vector<Triangle>& faces, int threads,
-                      RepeatedVertices repeated) {
+void validate_indices(Index vertex_count, const std::vector<Triangle>& faces,
+                      RepeatedVertices repeated, const Work& work) {
   if (vertex_count == 0 || faces.empty()) {
     throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");
   }
   const auto in_range = [&](Index v) { return v >= 0 && v < vertex_count; };
-  const auto defect = parallel_find(threads, size_of(faces), kGrain, [&](std::int64_t f) {
+  const auto defect = parallel_find(work, size_of(faces), kGrain, [&](std::int64_t f) {
     const auto [a, b, c] = faces[f];
     if (!in_range(a) || !in_range(b) || !in_range(c)) return true;
     return repeated == RepeatedVertices::kRefused && (a == b || b == c || c == a);
@@ -183,8 +183,8 @@ void validate_indices(Index vertex_count, const std::vector<Triangle>& faces, in
               "face " + quoted(f) + " names one vertex twice: remove the face", Element::face(f));
 }
 
-void validate_positions(const std::vector<Vec3>& positions, int threads) {
-  const auto defect = parallel_find(threads, size_of(positions), kGrain,
+void validate_positions(const std::vector<Vec3>& positions, const Work& work) {
+  const auto defect = parallel_find(work, size_of(positions), kGrain,
                                     [&](std::int64_t v) { return !positions[v].allFinite(); });
   if (defect == size_of(positions)) return;
   const auto v = static_cast<Index>(defect);
@@ -198,7 +198,7 @@ std::vector<Index> connected_faces(const Surface& surface, const Work& work) {
   const Index face_count = surface.face_count();
   DisjointSets sets(face_count);
   std::vector<std::vector<std::array<Index, 2>>> across((face_count + kGrain - 1) / kGrain);
-  parallel_for(work.threads(), face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
       sets.make(f);
       for (int k = 0; k < 3; ++k) {
@@ -224,7 +224,7 @@ std::vector<Index> connected_faces(const Surface& surface, const Work& work) {
 
 BoundaryLoops boundary_loops(const Surface& surface, const Work& work) {
   BoundaryLoops loops;
-  const std::vector<Index> halfedges = boundary_halfedges(surface, work.threads());
+  const std::vector<Index> halfedges = boundary_halfedges(surface, work);
   loops.halfedge.reserve(halfedges.size());
   std::vector<bool> visited(halfedges.empty() ? 0 : surface.vertex_count(), false);
   PollSometimes poll;
@@ -280,15 +280,14 @@ Topology topology_of(const Surface& surface, const Work& work) {
 }
 
 Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
-  const int threads = work.threads();
-  validate_indices(size_of(positions), faces, threads);
-  validate_positions(positions, threads);
+  validate_indices(size_of(positions), faces, RepeatedVertices::kRefused, work);
+  validate_positions(positions, work);
   Surface surface;
   surface.positions = std::move(positions);
   surface.faces = std::move(faces);
-  surface.twin = pair_halfedges(surface.vertex_count(), surface.faces, threads);
-  const std::vector<Index> boundary = boundary_halfedges(surface, threads);
-  link_vertices(surface, boundary, threads);
+  surface.twin = pair_halfedges(surface.vertex_count(), surface.faces, work);
+  const std::vector<Index> boundary = boundary_halfedges(surface, work);
+  link_vertices(surface, boundary, work);
   surface.on_boundary.assign(surface.vertex_count(), false);
   for (const Index h : boundary) surface.on_boundary[surface.origin(h)] = true;
   return surface;

@@ -96,10 +96,10 @@ Topology topology_of(const Surface& surface, const Work& work);
 enum class RepeatedVertices { kRefused, kAllowed };
 
 /// Throws Error INDEX_OUT_OF_RANGE, REPEATED_VERTEX (the first such face) or EMPTY.
-void validate_indices(Index vertex_count, const std::vector<Triangle>& faces, int threads = 1,
-                      RepeatedVertices repeated = RepeatedVertices::kRefused);
+void validate_indices(Index vertex_count, const std::vector<Triangle>& faces,
+                      RepeatedVertices repeated, const Work& work);
 
 /// Throws Error NON_FINITE with the first such vertex.
-void validate_positions(const std::vector<Vec3>& positions, int threads = 1);
+void validate_positions(const std::vector<Vec3>& positions, const Work& work);
 
 }  // namespace beltrami

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/face_chunks.h"
 
 namespace beltrami {
@@ -18,11 +19,11 @@ class VertexSums {
   /// What a face gives to its three corners.
   using Terms = std::array<Vec2, 3>;
 
-  VertexSums(Index vertex_count, const std::vector<Triangle>& faces, int threads)
+  VertexSums(Index vertex_count, const std::vector<Triangle>& faces, const Work& work)
       : faces_(faces),
-        threads_(threads),
+        work_(work),
         vertex_count_(vertex_count),
-        chunks_(vertex_count, faces, threads),
+        chunks_(vertex_count, faces, work),
         aside_(chunks_.count()) {}
 
   /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
@@ -38,7 +39,7 @@ class VertexSums {
   };
 
   const std::vector<Triangle>& faces_;
-  int threads_;
+  const Work work_;
   Index vertex_count_;
   FaceChunks chunks_;
   std::vector<std::vector<Aside>> aside_;
@@ -47,7 +48,7 @@ class VertexSums {
 template <class Give>
 double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
   sums.resize(vertex_count_);
-  parallel_for(threads_, static_cast<std::int64_t>(sums.size()), kGrain,
+  parallel_for(work_, static_cast<std::int64_t>(sums.size()), kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
                });
@@ -69,7 +70,7 @@ double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
     }
     return total;
   };
-  const double total = parallel_sum(threads_, size_of(faces_), kGrain, chunk);
+  const double total = parallel_sum(work_, size_of(faces_), kGrain, chunk);
   for (const std::vector<Aside>& aside : aside_) {
     for (const Aside& a : aside) sums[a.vertex] += a.term;
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kGrain = 4096;
 constexpr Index kHub = 40;                    // faces at a vertex, beyond what a walk crosses
 constexpr std::int64_t kPollPeriod = 64;      // faces, of which one at a hub takes long
-constexpr std::int64_t kBatch = 64 * kGrain;  // between two checkpoints
+constexpr std::int64_t kBatch = 64 * kGrain;  // between two reports
 
 /// The metric at each corner of a face, in the frame of the face.
 using CornerMetrics = std::array<FaceMetric, 3>;
@@ -118,8 +118,7 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
                                        const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
-                                       const std::vector<Index>& nearby, int threads,
-                                       const Checkpoint& checkpoint) {
+                                       const std::vector<Index>& nearby, const Work& work) {
   std::vector<FrameOfFace> coarse_frames(coarse.face_count());
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
@@ -144,11 +143,11 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
   };
 
   std::vector<FaceMetric> result;
-  parallel_assign(threads, result, fine.faces.size());
+  parallel_assign(work, result, fine.faces.size());
   for (std::int64_t first = 0; first < fine.face_count(); first += kBatch) {
-    checkpoint(static_cast<double>(first) / fine.face_count());
+    work.report(static_cast<double>(first) / fine.face_count());
     const std::int64_t count = std::min(kBatch, fine.face_count() - first);
-    parallel_for(threads, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Index seed = kNone;  // neighbours in the file are often neighbours on the surface
       for (std::int64_t i = begin; i < end; ++i) {
         if (i % kPollPeriod == 0) poll_interrupt();

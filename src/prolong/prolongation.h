@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
@@ -37,7 +37,6 @@ std::vector<FaceMetric> face_metrics(const std::vector<Triangle>& faces,
 /// side of a seam; or empty.
 std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
                                        const std::vector<FaceMetric>& metrics, const DiskMesh& fine,
-                                       const std::vector<Index>& nearby, int threads,
-                                       const Checkpoint& checkpoint = no_checkpoint);
+                                       const std::vector<Index>& nearby, const Work& work);
 
 }  // namespace beltrami

@@ -61,10 +61,10 @@ struct Glued {
   double extent = 0;
 };
 
-Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Work& work) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   const bool simple = is_simple(mesh.boundary, uvs) && is_counter_clockwise(polygon);
-  const std::vector<Vec2> inner = simple ? polygon : boundary_on_circle(mesh);
+  const std::vector<Vec2> inner = simple ? polygon : boundary_on_circle(mesh, work);
 
   Glued glued{mesh.faces, uvs, 0};
   const auto circle = scaffold_circle(has_extent(uvs) ? uvs : inner);
@@ -133,15 +133,16 @@ class Preconditioner {
 };
 
 /// Improves `solution` in two rounds: the second takes what the first leaves, rounding included, as
-/// a right-hand side of its own. False where the iteration does not converge.
+/// a right-hand side of its own. False where the iteration does not converge. What is there when
+/// the time is up will do.
 bool iterate(const SparseMatrix& matrix, const SpdSolver& symmetric, const DenseMatrix& rhs,
-             DenseMatrix& solution) {
+             DenseMatrix& solution, const Work& work) {
   Eigen::BiCGSTAB<SparseMatrix, Preconditioner> solver;
   solver.preconditioner().set(symmetric);
   solver.compute(matrix);
   solver.setTolerance(kShareLeft);
   solver.setMaxIterations(kMostIterations);
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 2 && !work.out_of_time(); ++round) {
     const DenseMatrix residual = rhs - matrix * solution;
     if (!residual.allFinite()) return false;
     for (int k = 0; k < 2; ++k) {
@@ -154,8 +155,8 @@ bool iterate(const SparseMatrix& matrix, const SpdSolver& symmetric, const Dense
 
 }  // namespace
 
-bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
-  const Glued glued = glue(mesh, uvs);
+bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs, const Work& work) {
+  const Glued glued = glue(mesh, uvs, work);
   const Index free = mesh.vertex_count();
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> total(free, 0.0);
@@ -193,13 +194,13 @@ bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
   matrix.setFromTriplets(scaled.begin(), scaled.end());
 
   SparseMatrix symmetric = symmetrised(matrix);
-  const std::unique_ptr<SpdSolver> solver = make_spd_solver();
+  const std::unique_ptr<SpdSolver> solver = make_spd_solver({}, work);
   solver->analyze(symmetric, places_of(mesh));
   if (factorize_shifted(*solver, symmetric) < 0) return false;
   const DenseMatrix start = solver->solve(rhs);
   DenseMatrix solution = start;
   // Any positive weights give an embedding: where the iteration fails, those of the start do.
-  if (!iterate(matrix, *solver, rhs, solution)) solution = start;
+  if (!iterate(matrix, *solver, rhs, solution, work)) solution = start;
   if (!solution.allFinite()) return false;
   for (Index v = 0; v < free; ++v) uvs[v] = solution.row(v).transpose();
   return true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -20,6 +21,6 @@ namespace beltrami {
 /// where it does not converge, that one's solution, an embedding as well, is taken. Returns false,
 /// with `uvs` as they were, if the factorization fails in floating point; the caller checks what
 /// rounding made of the rest.
-bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs);
+bool embed_with_scaffold(const DiskMesh& mesh, std::vector<Vec2>& uvs, const Work& work);
 
 }  // namespace beltrami

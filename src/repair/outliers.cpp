@@ -43,10 +43,10 @@ class FaceEnergies {
   }
 
   /// Sets the limit by the mean over all positive faces. Returns the faces above it.
-  std::vector<Index> find_all(int threads) {
+  std::vector<Index> find_all(const Work& work) {
     std::vector<double> energies(mesh_.faces.size());
     std::vector<double> sums(energies.size() / kGrain + 1, 0), areas(sums);
-    parallel_for(threads, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       double sum = 0, area = 0;
       for (std::int64_t f = begin; f < end; ++f) {
         energies[f] = of(f);
@@ -95,12 +95,11 @@ class FaceEnergies {
 
 template <class Density>
 std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                   std::vector<Vec2>& uvs, int threads, const std::vector<Index>& also,
-                   const Checkpoint& checkpoint) {
+                   std::vector<Vec2>& uvs, const std::vector<Index>& also, const Work& work) {
   FaceEnergies<Density> energies(mesh, rest, uvs);
-  PatchWork work(mesh, uvs);
+  PatchWork taken(mesh, uvs);
   std::int64_t patches = 0;
-  std::vector<Index> outliers = energies.find_all(threads);
+  std::vector<Index> outliers = energies.find_all(work);
   energies.keep_outliers(outliers);
   outliers.insert(outliers.end(), also.begin(), also.end());
   std::unordered_set<Index> treated;
@@ -108,14 +107,16 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
     treated.clear();
     std::size_t done = 0;
     for (const Index face : outliers) {
-      checkpoint((round + static_cast<double>(done++) / outliers.size()) / kRounds);
+      if (work.out_of_time()) return patches;
+      work.report((round + static_cast<double>(done++) / outliers.size()) / kRounds);
       if (treated.contains(face)) continue;
       Patch patch = cut_patch(mesh, rest, uvs, face, kRings);
       NewtonOptions options;
       options.energy = energy;
       options.max_iterations = kNewtonSteps;
-      minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options);
-      if (!non_positive_faces(patch.faces, patch.uvs, 1).empty() || !work.take(patch)) continue;
+      minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, work.aside());
+      if (!non_positive_faces(patch.faces, patch.uvs, work.aside()).empty()) continue;
+      if (!taken.take(patch)) continue;
       ++patches;
       treated.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
     }
@@ -130,10 +131,9 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
 
 std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                            int threads, const std::vector<Index>& also,
-                            const Checkpoint& checkpoint) {
+                            const std::vector<Index>& also, const Work& work) {
   return with_density(energy, [&]<class Density>(Density) {
-    return clean<Density>(energy, mesh, rest, uvs, threads, also, checkpoint);
+    return clean<Density>(energy, mesh, rest, uvs, also, work);
   });
 }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -15,10 +15,9 @@ namespace beltrami {
 /// Minimises the energy in patches of 3 rings around every face whose energy is above
 /// max(20, 4 x mean), and around the faces `also`, in place, in up to three rounds. A patch that
 /// moves boundary vertices is taken back if it adds boundary crossings. Faces that are not positive
-/// are left alone. Returns the number of patches.
+/// are left alone. Ends where the time is up. Returns the number of patches.
 std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                            int threads, const std::vector<Index>& also = {},
-                            const Checkpoint& checkpoint = no_checkpoint);
+                            const std::vector<Index>& also, const Work& work);
 
 }  // namespace beltrami

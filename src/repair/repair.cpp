@@ -33,8 +33,8 @@ double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
 class Repair {
  public:
   Repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-         const RepairOptions& options, const Checkpoint& checkpoint)
-      : mesh_(mesh), rest_(rest), uvs_(uvs), options_(options), checkpoint_(checkpoint) {}
+         const RepairOptions& options, const Work& work)
+      : mesh_(mesh), rest_(rest), uvs_(uvs), options_(options), work_(work) {}
 
   RepairResult run() {
     std::vector<Index> bad = find_bad();
@@ -42,7 +42,7 @@ class Repair {
     const bool all_local = mend_locally(bad, 0, kLocalShare);
     if (options_.global_fix &&
         (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
-      checkpoint_(kLocalShare);
+      work_.report(kLocalShare);
       mend_globally();
     }
     result_.flips_after = size_of(find_bad());
@@ -50,9 +50,7 @@ class Repair {
   }
 
  private:
-  std::vector<Index> find_bad() const {
-    return non_positive_faces(mesh_.faces, uvs_, options_.threads);
-  }
+  std::vector<Index> find_bad() const { return non_positive_faces(mesh_.faces, uvs_, work_); }
 
   std::int64_t crossings() const { return count_crossings(mesh_.boundary, uvs_).count; }
 
@@ -74,15 +72,15 @@ class Repair {
       if (bad.empty()) return true;
     }
     if (bad.size() > kMostPatches) return false;
-    PatchWork work(mesh_, uvs_);
+    PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       std::size_t done = 0;
       for (const Index face : bad) {
         const double share = (static_cast<double>(level) +
                               static_cast<double>(done++) / static_cast<double>(bad.size())) /
                              kPatchRings.size();
-        checkpoint_(from + (until - from) * share);
-        if (!positive(face) && fix_patch(face, kPatchRings[level], work)) ++result_.patch_fixes;
+        work_.report(from + (until - from) * share);
+        if (!positive(face) && fix_patch(face, kPatchRings[level], patches)) ++result_.patch_fixes;
       }
       bad = find_bad();
     }
@@ -93,7 +91,7 @@ class Repair {
     const std::vector<Vec2> before = uvs_;
     const std::size_t bad_before = find_bad().size();
     const std::int64_t crossings_before = crossings();
-    if (!embed_with_scaffold(mesh_, uvs_)) return;
+    if (!embed_with_scaffold(mesh_, uvs_, work_)) return;
     result_.global_fixes = 1;
     const std::vector<Index> folded = find_bad();
     // More than it came from: rounding has eaten it, and there is nothing to build on.
@@ -142,26 +140,25 @@ class Repair {
     return true;
   }
 
-  bool fix_patch(Index face, int rings, PatchWork& work) {
+  bool fix_patch(Index face, int rings, PatchWork& patches) {
     Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
-    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return false;
-    return work.take(patch);
+    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work_.aside())) return false;
+    return patches.take(patch);
   }
 
   const DiskMesh& mesh_;
   const std::vector<RestTriangle>& rest_;
   std::vector<Vec2>& uvs_;
   const RepairOptions options_;
-  const Checkpoint& checkpoint_;
+  const Work work_;
   RepairResult result_;
 };
 
 }  // namespace
 
 RepairResult repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    std::vector<Vec2>& uvs, const RepairOptions& options,
-                    const Checkpoint& checkpoint) {
-  return Repair(mesh, rest, uvs, options, checkpoint).run();
+                    std::vector<Vec2>& uvs, const RepairOptions& options, const Work& work) {
+  return Repair(mesh, rest, uvs, options, work).run();
 }
 
 }  // namespace beltrami

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
@@ -14,7 +14,6 @@ namespace beltrami {
 struct RepairOptions {
   /// Whether a boundary that crosses itself is to be mended too.
   bool simple_boundary = false;
-  int threads = 1;
   bool global_fix = true;  ///< rung 3; it takes more memory than the others
 };
 
@@ -41,7 +40,6 @@ struct RepairResult {
 ///
 /// Never adds a flip, and a crossing only in 3 if no simple boundary was asked for.
 RepairResult repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    std::vector<Vec2>& uvs, const RepairOptions& options,
-                    const Checkpoint& checkpoint = no_checkpoint);
+                    std::vector<Vec2>& uvs, const RepairOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -34,11 +34,11 @@ constexpr int kCrossingRounds = 4;
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
  public:
-  Rounding(const DiskMesh& mesh, const Numbers& numbers, std::vector<Vec2>& uvs, int threads)
-      : mesh_(mesh), numbers_(numbers), uvs_(uvs), threads_(threads) {}
+  Rounding(const DiskMesh& mesh, const Numbers& numbers, std::vector<Vec2>& uvs, const Work& work)
+      : mesh_(mesh), numbers_(numbers), uvs_(uvs), work_(work) {}
 
   /// Tries to make `faces` positive, and never makes another face worse.
-  void mend(std::vector<Index> faces, const Checkpoint& checkpoint) {
+  void mend(std::vector<Index> faces) {
     for (const int spacing : kSpacings) {
       HubTurns turns(mesh_);
       for (const Index face : faces) {
@@ -49,13 +49,13 @@ class Rounding {
       }
       keep_bad(faces);
       if (faces.empty()) return;
-      checkpoint(0);
+      work_.report(0);
     }
     if (faces.size() > kMostPatches) return;
     for (const int rings : kPatchRings) {
       std::vector<bool> tried(mesh_.faces.size(), false);
       for (const Index face : faces) {
-        checkpoint(0);
+        work_.report(0);
         if (!positive(face) && !tried[face]) mend_patch(face, rings, tried);
       }
       keep_bad(faces);
@@ -140,9 +140,9 @@ class Rounding {
     const double side = std::sqrt(area / static_cast<double>(patch.faces.size()) / kEquilateral);
     if (!(side > 0)) return;
     patch.rest.assign(patch.faces.size(), {side, 0.5 * side, 2 * kEquilateral * side});
-    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs)) return;
+    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work_.aside())) return;
     for (Vec2& w : patch.uvs) w = numbers_.nearest(w);
-    if (non_positive_faces(patch.faces, patch.uvs, threads_).empty()) patch.exchange(uvs_);
+    if (non_positive_faces(patch.faces, patch.uvs, work_.aside()).empty()) patch.exchange(uvs_);
   }
 
   static constexpr double kEquilateral = 0.43301270189221932;  // area for a side of 1
@@ -150,12 +150,13 @@ class Rounding {
   const DiskMesh& mesh_;
   const Numbers numbers_;
   std::vector<Vec2>& uvs_;
-  const int threads_;
+  const Work work_;
 };
 
 /// The mesh and the ring around its boundary as one disk; the circle's points come last. Nothing
 /// where the boundary is not simple to begin with, or too small for a circle around it.
-std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                                 const Work& work) {
   const std::vector<Vec2> polygon = boundary_polygon(mesh, uvs);
   std::vector<Triangle> faces = mesh.faces;
   std::size_t vertices = uvs.size();
@@ -167,7 +168,7 @@ std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& 
     if (error.status() != BELTRAMI_E_INTERNAL) throw;
     return std::nullopt;
   }
-  return build_disk(std::vector<Vec3>(vertices, Vec3::Zero()), std::move(faces));
+  return build_disk(std::vector<Vec3>(vertices, Vec3::Zero()), std::move(faces), work);
 }
 
 void sort_unique(std::vector<Index>& items) {
@@ -203,21 +204,21 @@ std::int64_t faults(const Certificate& certificate) {
 
 /// Mends boundary crossings, and flips that need the boundary to move. `uvs`: before rounding.
 void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Numbers& numbers,
-                    int threads, const Checkpoint& checkpoint, Rounded& result) {
-  const auto surrounded = surround(mesh, uvs);
+                    const Work& work, Rounded& result) {
+  const auto surrounded = surround(mesh, uvs, work);
   if (!surrounded) return;
   std::vector<Vec2> places = result.uvs;
   for (const Vec2& w : scaffold_circle(result.uvs)) {
     places.push_back(numbers.nearest(w));
   }
   for (int round = 0; round < kCrossingRounds && !result.certificate.injective(); ++round) {
-    auto faces = non_positive_faces(mesh.faces, places, threads);
+    auto faces = non_positive_faces(mesh.faces, places, work);
     const auto beside = faces_at_crossings(mesh, *surrounded, places);
     faces.insert(faces.end(), beside.begin(), beside.end());
-    Rounding(*surrounded, numbers, places, threads).mend(std::move(faces), checkpoint);
+    Rounding(*surrounded, numbers, places, work).mend(std::move(faces));
     const std::vector<Vec2> mended(places.begin(),
                                    places.begin() + static_cast<std::ptrdiff_t>(uvs.size()));
-    const Certificate after = certify(mesh.faces, mesh.boundary, mended, threads);
+    const Certificate after = certify(mesh.faces, mesh.boundary, mended, work);
     if (faults(after) >= faults(result.certificate)) return;
     result.uvs = mended;
     result.certificate = after;
@@ -270,25 +271,24 @@ bool Numbers::hold(const std::vector<Vec2>& places) const {
 }
 
 Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                  const std::vector<Vec2>& placed, const Numbers& numbers, int threads,
-                  const Checkpoint& checkpoint) {
+                  const std::vector<Vec2>& placed, const Numbers& numbers, const Work& work) {
   Rounded result;
   result.uvs.reserve(placed.size());
   for (const Vec2& w : placed) result.uvs.push_back(numbers.nearest(w));
   const auto judge = [&] {
-    result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, threads);
+    result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, work);
     return result.certificate.injective();
   };
   if (judge() || !numbers.hold(placed)) return result;
-  const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, threads);
+  const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, work);
   const std::vector<Vec2> nearest = result.uvs;
-  auto bad = non_positive_faces(mesh.faces, result.uvs, threads);
+  auto bad = non_positive_faces(mesh.faces, result.uvs, work);
   if (!bad.empty() && exact.orientations.first_bad_face == kNone) {
-    Rounding(mesh, numbers, result.uvs, threads).mend(std::move(bad), checkpoint);
+    Rounding(mesh, numbers, result.uvs, work).mend(std::move(bad));
     judge();
   }
   if (exact.injective() && !result.certificate.injective()) {
-    mend_with_ring(mesh, uvs, numbers, threads, checkpoint, result);
+    mend_with_ring(mesh, uvs, numbers, work, result);
   }
   for (std::size_t v = 0; v < placed.size(); ++v) result.moved += result.uvs[v] != nearest[v];
   return result;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 
@@ -44,7 +44,6 @@ struct Rounded {
 /// `placed` is `uvs` moved and scaled, in floating point: it may have folds that `uvs` has not.
 /// Precondition: finite.
 Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                  const std::vector<Vec2>& placed, const Numbers& numbers, int threads,
-                  const Checkpoint& checkpoint = no_checkpoint);
+                  const std::vector<Vec2>& placed, const Numbers& numbers, const Work& work);
 
 }  // namespace beltrami

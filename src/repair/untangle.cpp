@@ -82,9 +82,9 @@ double smallest_determinant(const std::vector<Triangle>& faces,
 }  // namespace
 
 bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-              const std::vector<bool>& fixed, std::vector<Vec2>& uvs) {
+              const std::vector<bool>& fixed, std::vector<Vec2>& uvs, const Work& work) {
   std::vector<Vec2> trial = uvs;
-  NewtonStepper<RegularisedDirichlet> stepper(faces, rest, fixed, 1);
+  NewtonStepper<RegularisedDirichlet> stepper(faces, rest, fixed, work);
   if (stepper.free_count() == 0) return false;
   double least = smallest_determinant(faces, rest, trial);
   for (int i = 0; i < kUntangleSteps && !(least > 0); ++i) {
@@ -99,8 +99,8 @@ bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle
   if (!(least > 0)) return false;
   NewtonOptions polish;
   polish.max_iterations = kPolishSteps;
-  minimise_energy(faces, rest, fixed, trial, polish);
-  if (!non_positive_faces(faces, trial, 1).empty()) return false;
+  minimise_energy(faces, rest, fixed, trial, polish, work);
+  if (!non_positive_faces(faces, trial, work).empty()) return false;
   uvs.swap(trial);
   return true;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -14,6 +15,6 @@ namespace beltrami {
 /// regularisation is tightened; then some steps on the energy itself. Returns whether all faces
 /// came out exactly positive; `uvs` is changed only then.
 bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
-              const std::vector<bool>& fixed, std::vector<Vec2>& uvs);
+              const std::vector<bool>& fixed, std::vector<Vec2>& uvs, const Work& work);
 
 }  // namespace beltrami

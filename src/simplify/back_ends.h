@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/simplify.h"
 
@@ -12,11 +12,9 @@ namespace beltrami {
 
 /// Both keep the contract of simplify(), whichever of them it calls.
 /// In passes over flat arrays, on several threads; always compiled.
-CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, int threads,
-                              const Checkpoint& checkpoint);
+CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, const Work& work);
 /// By OpenMesh's decimater, one collapse after the other; compiled where OpenMesh is at hand.
-CoarseDisk simplify_by_openmesh(const DiskMesh& fine, Index target_faces,
-                                const Checkpoint& checkpoint);
+CoarseDisk simplify_by_openmesh(const DiskMesh& fine, Index target_faces, const Work& work);
 
 /// The mesh itself: nothing collapsed.
 CoarseDisk whole_disk(const DiskMesh& fine);
@@ -25,6 +23,7 @@ CoarseDisk whole_disk(const DiskMesh& fine);
 /// coarse vertices). `collapsed_into`: per fine vertex the next one on the way, or itself.
 /// Throws Error INTERNAL if it is not a disk.
 CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
-                       std::vector<Triangle> faces, std::vector<Index> collapsed_into);
+                       std::vector<Triangle> faces, std::vector<Index> collapsed_into,
+                       const Work& work);
 
 }  // namespace beltrami

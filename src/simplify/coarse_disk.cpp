@@ -38,7 +38,8 @@ CoarseDisk whole_disk(const DiskMesh& fine) {
 }
 
 CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
-                       std::vector<Triangle> faces, std::vector<Index> collapsed_into) {
+                       std::vector<Triangle> faces, std::vector<Index> collapsed_into,
+                       const Work& work) {
   CoarseDisk coarse;
   std::vector<Vec3> positions;
   positions.reserve(fine_vertex.size());
@@ -46,7 +47,7 @@ CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
   coarse.nearby = follow_collapses(std::move(collapsed_into), fine_vertex);
   coarse.fine_vertex = std::move(fine_vertex);
   try {
-    coarse.mesh = build_disk(std::move(positions), std::move(faces));
+    coarse.mesh = build_disk(std::move(positions), std::move(faces), work);
   } catch (const Error& error) {
     throw Error(
         BELTRAMI_E_INTERNAL,

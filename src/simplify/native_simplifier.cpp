@@ -1,4 +1,3 @@
-#include "base/checkpoint.h"
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
@@ -6,9 +5,8 @@
 
 namespace beltrami {
 
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads,
-                    const Checkpoint& checkpoint) {
-  return simplify_in_passes(fine, target_faces, threads, checkpoint);
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work) {
+  return simplify_in_passes(fine, target_faces, work);
 }
 
 const char* simplifier_name() {

@@ -11,7 +11,6 @@
 #include <numeric>
 #include <utility>
 
-#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
@@ -47,7 +46,7 @@ class Decimated : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
   using Base = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
   /// Keeps a reference to the mesh. Throws Error INTERNAL if OpenMesh refuses a face.
-  explicit Decimated(const DiskMesh& fine);
+  Decimated(const DiskMesh& fine, const Work& work);
 
   /// Replaces that of OpenMesh's mesh in the decimater, which asks when it lists a collapse and
   /// again when it is due: by then the boundary may have shrunk to its least, and faces be gone
@@ -58,6 +57,7 @@ class Decimated : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
   void note_collapse(VertexHandle from, VertexHandle to, VertexHandle left, VertexHandle right);
 
   const DiskMesh& fine() const { return fine_; }
+  const Work& work() const { return work_; }
   Index live_faces() const { return live_faces_; }
   Index live_vertices() const { return live_vertices_; }
   /// Per fine vertex: the next one on the way, or itself.
@@ -80,13 +80,15 @@ class Decimated : public OpenMesh::TriMesh_ArrayKernelT<Traits> {
   bool makes_bridge(HalfedgeHandle edge) const;
 
   const DiskMesh& fine_;
+  const Work work_;
   Index live_faces_, live_vertices_, boundary_count_, min_boundary_;
   std::vector<Index> collapsed_into_;
   std::vector<Index> valence_;  // live faces per vertex
 };
 
-Decimated::Decimated(const DiskMesh& fine)
+Decimated::Decimated(const DiskMesh& fine, const Work& work)
     : fine_(fine),
+      work_(work),
       live_faces_(fine.face_count()),
       live_vertices_(fine.vertex_count()),
       boundary_count_(size_of(fine.boundary)),
@@ -187,7 +189,7 @@ void Quadrics::initialize() {
   const DiskMesh& fine = mesh().fine();
   further_.clear();
   further_.reserve(fine.positions.size());
-  for (const Quadric& q : vertex_quadrics(fine, FacePlanes::kLeftOut)) {
+  for (const Quadric& q : vertex_quadrics(fine, FacePlanes::kLeftOut, mesh().work())) {
     // From d'Ad of the offset d = x - p to a function of x.
     const Vec3& p = fine.positions[further_.size()];
     const double x = -(q.xx * p.x() + q.xy * p.y() + q.xz * p.z());
@@ -215,35 +217,35 @@ void Quadrics::postprocess_collapse(const CollapseInfo& edge) {
 
 // --- The run ------------------------------------------------------------------------------------
 
-/// Tells the checkpoint of the progress, and the decimater when to stop.
+/// Reports the progress, and the decimater when to stop.
 class Watch : public OpenMesh::Decimater::Observer {
  public:
-  Watch(const Decimated& surface, Index target_faces, const Checkpoint& checkpoint)
-      : Observer(1), surface_(surface), target_(target_faces), checkpoint_(checkpoint) {}
+  Watch(const Decimated& surface, Index target_faces, const Work& work)
+      : Observer(1), surface_(surface), target_(target_faces), work_(work) {}
 
   void notify(std::size_t step) override {
-    if (step % kCheckpointInterval == 0) report();
+    if (step % kReportInterval == 0) report();
   }
   bool abort() const override { return surface_.live_faces() <= target_; }
   void report() const {
     const double start = surface_.fine().face_count();
-    checkpoint_((start - surface_.live_faces()) / (start - target_));
+    work_.report((start - surface_.live_faces()) / (start - target_));
   }
 
  private:
-  static constexpr std::size_t kCheckpointInterval = 100;  // collapses: some milliseconds
+  static constexpr std::size_t kReportInterval = 100;  // collapses: some milliseconds
 
   const Decimated& surface_;
   Index target_;
-  const Checkpoint& checkpoint_;
+  const Work& work_;
 };
 
-void decimate(Decimated& surface, Index target_faces, const Checkpoint& checkpoint) {
+void decimate(Decimated& surface, Index target_faces, const Work& work) {
   OpenMesh::Decimater::DecimaterT<Decimated> decimater(surface);
   Quadrics::Handle quadrics;
   decimater.add(quadrics);
   decimater.initialize();
-  Watch watch(surface, target_faces, checkpoint);
+  Watch watch(surface, target_faces, work);
   decimater.set_observer(&watch);
   for (const ShapeLimits& limits : kShapeLimits) {
     decimater.module(quadrics).set_limits(limits);
@@ -259,7 +261,7 @@ void decimate(Decimated& surface, Index target_faces, const Checkpoint& checkpoi
 }
 
 /// What is left, renumbered in order.
-CoarseDisk collect(const DiskMesh& fine, const Decimated& surface) {
+CoarseDisk collect(const DiskMesh& fine, const Decimated& surface, const Work& work) {
   std::vector<Index> fine_vertex, coarse_vertex(fine.positions.size(), kNone);
   for (const auto v : surface.vertices()) {
     coarse_vertex[v.idx()] = size_of(fine_vertex);
@@ -271,7 +273,8 @@ CoarseDisk collect(const DiskMesh& fine, const Decimated& surface) {
     auto corner = surface.cfv_iter(f);
     for (Index& v : face) v = coarse_vertex[(corner++)->idx()];
   }
-  return coarse_disk(fine, std::move(fine_vertex), std::move(faces), surface.collapsed_into());
+  return coarse_disk(fine, std::move(fine_vertex), std::move(faces), surface.collapsed_into(),
+                     work);
 }
 
 /// The same around the origin, in a box of size 1: OpenMesh has quadrics about the origin, and
@@ -289,13 +292,12 @@ DiskMesh around_origin(DiskMesh mesh) {
 
 }  // namespace
 
-CoarseDisk simplify_by_openmesh(const DiskMesh& fine, Index target_faces,
-                                const Checkpoint& checkpoint) {
+CoarseDisk simplify_by_openmesh(const DiskMesh& fine, Index target_faces, const Work& work) {
   if (target_faces >= fine.face_count()) return whole_disk(fine);
   const DiskMesh centred = around_origin(fine);
-  Decimated surface(centred);
-  decimate(surface, target_faces, checkpoint);
-  return collect(fine, surface);
+  Decimated surface(centred, work);
+  decimate(surface, target_faces, work);
+  return collect(fine, surface, work);
 }
 
 }  // namespace beltrami

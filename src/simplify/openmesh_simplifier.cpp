@@ -2,9 +2,8 @@
 
 namespace beltrami {
 
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int /*threads*/,
-                    const Checkpoint& checkpoint) {
-  return simplify_by_openmesh(fine, target_faces, checkpoint);
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work) {
+  return simplify_by_openmesh(fine, target_faces, work);
 }
 
 const char* simplifier_name() {

@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/checkpoint.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/types.h"
@@ -87,11 +86,11 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
 }
 
 /// In the order of the vertices.
-std::vector<Candidate> find_candidates(const ShrinkingSurface& surface, int threads) {
+std::vector<Candidate> find_candidates(const ShrinkingSurface& surface, const Work& work) {
   const Candidate no_floor{-1, kNone, kNone};
   std::vector<Candidate> candidates;
-  parallel_assign(threads, candidates, surface.site.size());
-  parallel_for(threads, surface.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, candidates, surface.site.size());
+  parallel_for(work, surface.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
       candidates[v] = cheapest_collapse(surface, static_cast<Index>(v), no_floor);
     }
@@ -243,7 +242,7 @@ Collapses collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate>& c
 /// many took place.
 Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& candidates,
                        double min_cost, double max_cost, Index target_faces,
-                       const ShapeLimits& limits, int threads) {
+                       const ShapeLimits& limits, const Work& work) {
   poll_interrupt();
   const Index count = surface.vertex_count(), blocks = (count + kBlock - 1) / kBlock;
   std::vector<std::vector<Candidate>> of_block(blocks);
@@ -259,7 +258,7 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
   // two faces.
   if (blocks > 1 && surface.live_faces - 2 * std::int64_t{most} > target_faces) {
     std::vector<Collapses> done(blocks);
-    parallel_for(threads, blocks, 1, [&](std::int64_t block, std::int64_t) {
+    parallel_for(work, blocks, 1, [&](std::int64_t block, std::int64_t) {
       const auto begin = static_cast<Index>(block) * kBlock;
       const Range range{begin, std::min(begin + kBlock, count)};
       done[block] =
@@ -282,9 +281,9 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
 /// One pass over the cheaper half of the candidates, or all of them if the half barely helps.
 /// Returns whether another one like it is worth its time.
 bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& limits,
-              int threads) {
-  begin_pass(surface, threads);
-  const std::vector<Candidate> candidates = find_candidates(surface, threads);
+              const Work& work) {
+  begin_pass(surface, work);
+  const std::vector<Candidate> candidates = find_candidates(surface, work);
   if (candidates.empty()) return false;
   const Index count = size_of(candidates);
   const Index worthwhile = 1 + static_cast<Index>(limits.min_progress * count);
@@ -295,7 +294,7 @@ bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& 
   const auto middle = costs.begin() + (size_of(costs) - 1) / 2;
   std::nth_element(costs.begin(), middle, costs.end());
   const auto run = [&](double min_cost, double max_cost) {
-    return collapse_between(surface, candidates, min_cost, max_cost, target_faces, limits, threads);
+    return collapse_between(surface, candidates, min_cost, max_cost, target_faces, limits, work);
   };
   constexpr double kAny = std::numeric_limits<double>::infinity();
   Index collapsed = run(-1, *middle);
@@ -303,27 +302,25 @@ bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& 
   return collapsed >= worthwhile;
 }
 
-void run_passes(ShrinkingSurface& surface, Index target_faces, int threads,
-                const Checkpoint& checkpoint) {
+void run_passes(ShrinkingSurface& surface, Index target_faces, const Work& work) {
   const Index start = surface.live_faces;
   for (const ShapeLimits& limits : kShapeLimits) {
     while (surface.live_faces > target_faces) {
-      checkpoint(double(start - surface.live_faces) / double(start - target_faces));
-      if (!run_pass(surface, target_faces, limits, threads)) break;
+      work.report(double(start - surface.live_faces) / double(start - target_faces));
+      if (!run_pass(surface, target_faces, limits, work)) break;
     }
   }
-  compact(surface, threads);
+  compact(surface, work);
 }
 
 }  // namespace
 
-CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, int threads,
-                              const Checkpoint& checkpoint) {
+CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, const Work& work) {
   if (target_faces >= fine.face_count()) return whole_disk(fine);
-  ShrinkingSurface surface = make_surface(fine, threads);
-  run_passes(surface, target_faces, threads, checkpoint);
+  ShrinkingSurface surface = make_surface(fine, work);
+  run_passes(surface, target_faces, work);
   return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
-                     std::move(surface.collapsed_into));
+                     std::move(surface.collapsed_into), work);
 }
 
 }  // namespace beltrami

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -21,8 +21,7 @@ struct CoarseDisk {
 /// (proved by build_disk). Kept whatever the target: at least 8 boundary vertices (or all), the
 /// tips of ears, both ends of every bridge and one boundary vertex between successive bridge ends,
 /// since what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
-CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads = 1,
-                    const Checkpoint& checkpoint = no_checkpoint);
+CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work);
 
 /// "native" or "openmesh": the back end is chosen when the library is built
 /// (-DBELTRAMI_SIMPLIFIER=native|openmesh).

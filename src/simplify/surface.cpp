@@ -135,12 +135,12 @@ Index least_boundary(const DiskMesh& mesh) {
   return std::min(size_of(mesh.boundary), kMinBoundary);
 }
 
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, int threads) {
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, const Work& work) {
   std::vector<Quadric> quadrics;
-  parallel_assign(threads, quadrics, mesh.positions.size());
-  const FaceChunks chunks(mesh.vertex_count(), mesh.faces, threads);
+  parallel_assign(work, quadrics, mesh.positions.size());
+  const FaceChunks chunks(mesh.vertex_count(), mesh.faces, work);
   std::vector<std::vector<Index>> faces_of_shared(chunks.count());
-  parallel_for(threads, mesh.face_count(), FaceChunks::kGrain,
+  parallel_for(work, mesh.face_count(), FaceChunks::kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  for (auto f = static_cast<Index>(begin); f < end; ++f) {
                    bool all = true;
@@ -161,10 +161,10 @@ std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, in
   return quadrics;
 }
 
-ShrinkingSurface make_surface(const DiskMesh& mesh, int threads) {
+ShrinkingSurface make_surface(const DiskMesh& mesh, const Work& work) {
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
-  parallel_assign(threads, surface.site, mesh.positions.size());
+  parallel_assign(work, surface.site, mesh.positions.size());
   for (Index v = 0; v < vertex_count; ++v) surface.site[v] = {mesh.positions[v], 0};
   surface.loop_next.assign(vertex_count, kNone);
   surface.loop_previous.assign(vertex_count, kNone);
@@ -183,17 +183,17 @@ ShrinkingSurface make_surface(const DiskMesh& mesh, int threads) {
   }
   surface.role = vertex_roles(mesh);
   poll_interrupt();
-  surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded, threads);
+  surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded, work);
   return surface;
 }
 
-void compact(ShrinkingSurface& surface, int threads) {
+void compact(ShrinkingSurface& surface, const Work& work) {
   const std::vector<Index> kept_vertices =
-      parallel_filter(threads, surface.vertex_count(), kGrain,
+      parallel_filter(work, surface.vertex_count(), kGrain,
                       [&](Index v) { return surface.role[v] != Role::kRemoved; });
   const Index kept = size_of(kept_vertices);
   std::vector<Index> renumbered(surface.vertex_count());
-  parallel_for(threads, kept, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, kept, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) renumbered[kept_vertices[v]] = static_cast<Index>(v);
   });
   const auto move_down = [&](auto& items) {
@@ -215,21 +215,20 @@ void compact(ShrinkingSurface& surface, int threads) {
         }
       },
   };
-  parallel_for(threads, std::ssize(tasks), 1,
-               [&](std::int64_t task, std::int64_t) { tasks[task](); });
-  parallel_for(threads, size_of(surface.faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, std::ssize(tasks), 1, [&](std::int64_t task, std::int64_t) { tasks[task](); });
+  parallel_for(work, size_of(surface.faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : surface.faces[f]) v = renumbered[v];
     }
   });
 }
 
-void begin_pass(ShrinkingSurface& surface, int threads) {
-  compact(surface, threads);
+void begin_pass(ShrinkingSurface& surface, const Work& work) {
+  compact(surface, work);
   poll_interrupt();
   // The half-edges by origin.
   const Index vertex_count = surface.vertex_count();
-  BucketSort<Index> sort(threads, size_of(surface.faces), vertex_count, surface.fan_start,
+  BucketSort<Index> sort(work, size_of(surface.faces), vertex_count, surface.fan_start,
                          [&](std::int64_t f, const auto& count) {
                            for (const Index v : surface.faces[f]) count(v);
                          });

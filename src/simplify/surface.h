@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/quadric.h"
 
@@ -76,15 +77,15 @@ enum class FacePlanes { kIncluded, kLeftOut };
 
 /// The quadric of each vertex at the start: the planes of its faces, weighted by area, and what
 /// holds the boundary and faces without area in place.
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, int threads = 1);
+std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, const Work& work);
 
 /// The surface at the start: no pass begun yet.
-ShrinkingSurface make_surface(const DiskMesh& mesh, int threads);
+ShrinkingSurface make_surface(const DiskMesh& mesh, const Work& work);
 
 /// Drops removed faces and vertices, keeping the order of the others.
-void compact(ShrinkingSurface& surface, int threads);
+void compact(ShrinkingSurface& surface, const Work& work);
 
 /// Compacts, lists the half-edges of each vertex and clears the state of the last pass.
-void begin_pass(ShrinkingSurface& surface, int threads);
+void begin_pass(ShrinkingSurface& surface, const Work& work);
 
 }  // namespace beltrami

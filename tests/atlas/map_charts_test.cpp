@@ -29,7 +29,7 @@ Chart hopeless() {
 
 void expect_injective(const Chart& chart, const MappedChart& map) {
   EXPECT_EQ(map.outcome, Outcome::kOk);
-  EXPECT_TRUE(certify(chart.mesh.faces, chart.mesh.boundary, map.uvs, 1).injective());
+  EXPECT_TRUE(certify(chart.mesh.faces, chart.mesh.boundary, map.uvs, Work()).injective());
 }
 
 TEST(MapCharts, KeepsAFailureToItsChart) {

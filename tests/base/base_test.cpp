@@ -5,6 +5,8 @@
 #include <cfenv>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -27,7 +29,7 @@ TEST(ParallelFor, CoversEveryIndexOnceAtAnyThreadCount) {
   for (const int threads : {1, 2, 3, 8}) {
     for (const int count : {0, 1, 9, 10, 11, 1000}) {
       std::vector<int> visits(static_cast<std::size_t>(count), 0);
-      parallel_for(threads, count, 10, [&](std::int64_t begin, std::int64_t end) {
+      parallel_for(Work(threads), count, 10, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
       });
       EXPECT_EQ(visits, std::vector<int>(visits.size(), 1)) << threads << ' ' << count;
@@ -38,7 +40,7 @@ TEST(ParallelFor, CoversEveryIndexOnceAtAnyThreadCount) {
 TEST(ParallelFor, CutsTheSameChunksAtAnyThreadCount) {
   for (const int threads : {1, 2, 3}) {
     std::atomic<int> odd_chunks{0};
-    parallel_for(threads, 105, 10, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(Work(threads), 105, 10, [&](std::int64_t begin, std::int64_t end) {
       if (begin % 10 != 0 || end - begin != (begin == 100 ? 5 : 10)) ++odd_chunks;
     });
     EXPECT_EQ(odd_chunks, 0) << threads;
@@ -47,7 +49,7 @@ TEST(ParallelFor, CutsTheSameChunksAtAnyThreadCount) {
 
 TEST(ParallelFor, UsesNoMoreThreadsThanAsked) {
   std::atomic<int> inside{0}, most{0};
-  parallel_for(2, 64, 1, [&](std::int64_t, std::int64_t) {
+  parallel_for(Work(2), 64, 1, [&](std::int64_t, std::int64_t) {
     const int now = ++inside;
     for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
     }
@@ -60,7 +62,7 @@ TEST(ParallelFor, UsesNoMoreThreadsThanAsked) {
 TEST(ParallelFor, RethrowsAnExceptionOfAnyThread) {
   for (const int threads : {1, 2, 3}) {
     const auto loop = [&] {
-      parallel_for(threads, 100, 1, [](std::int64_t begin, std::int64_t) {
+      parallel_for(Work(threads), 100, 1, [](std::int64_t begin, std::int64_t) {
         if (begin == 50) throw std::out_of_range("fifty");
       });
     };
@@ -79,14 +81,14 @@ TEST(ParallelFor, StopsAfterAnException) {
     }
     while (!thrown) std::this_thread::yield();
   };
-  EXPECT_THROW(parallel_for(2, std::int64_t{1} << 60, 1, body), std::runtime_error);
+  EXPECT_THROW(parallel_for(Work(2), std::int64_t{1} << 60, 1, body), std::runtime_error);
 }
 
 TEST(ParallelFor, EndsWhereTheRunOfItsThreadIsCancelled) {
   std::atomic<bool> cancelled{false};
   const auto count_chunks = [&](int threads, std::int64_t most) {
     std::atomic<int> chunks{0};
-    parallel_for(threads, most, 1, [&](std::int64_t, std::int64_t) {
+    parallel_for(Work(threads), most, 1, [&](std::int64_t, std::int64_t) {
       if (++chunks == 10) cancelled = true;
       std::this_thread::yield();
     });
@@ -108,38 +110,88 @@ TEST(ParallelFor, EndsWhereTheRunOfItsThreadIsCancelled) {
   EXPECT_NO_THROW(poll_interrupt());
 }
 
+TEST(ParallelFor, StartsNoMoreThreadsForASecondLoop) {
+  const Work work(3);
+  std::mutex guard;
+  std::set<std::thread::id> seen;
+  for (int loop = 0; loop < 50; ++loop) {
+    std::atomic<int> inside{0};
+    parallel_for(work, 3, 1, [&](std::int64_t, std::int64_t) {
+      ++inside;
+      while (inside < 3) std::this_thread::yield();  // until each thread has its chunk
+      const std::lock_guard lock(guard);
+      seen.insert(std::this_thread::get_id());
+    });
+  }
+  EXPECT_EQ(seen.size(), 3u);
+  EXPECT_EQ(seen.count(std::this_thread::get_id()), 1u);
+}
+
+TEST(ParallelFor, RunsALoopInItsBodyOnTheThreadOfTheBody) {
+  const Work work(3);
+  std::atomic<int> inner{0}, elsewhere{0};
+  parallel_for(work, 20, 1, [&](std::int64_t, std::int64_t) {
+    const std::thread::id thread = std::this_thread::get_id();
+    parallel_for(work, 20, 1, [&](std::int64_t, std::int64_t) {
+      ++inner;
+      elsewhere += std::this_thread::get_id() != thread;
+    });
+  });
+  EXPECT_EQ(inner, 400);
+  EXPECT_EQ(elsewhere, 0);
+}
+
+TEST(ParallelFor, GoesOnAfterAnExceptionAndACancelledLoop) {
+  const Work work(2);
+  const auto sum = [&] {
+    return parallel_sum(work, 100, 1, [](std::int64_t i, std::int64_t) { return double(i); });
+  };
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_THROW(parallel_for(work, 100, 1,
+                              [](std::int64_t, std::int64_t) { throw std::out_of_range("all"); }),
+                 std::out_of_range);
+    EXPECT_EQ(sum(), 4950);
+    const std::atomic<bool> cancelled{true};
+    {
+      const InterruptScope scope(&cancelled);
+      EXPECT_THROW(sum(), Cancelled);
+    }
+    EXPECT_EQ(sum(), 4950);
+  }
+}
+
 TEST(ParallelSum, HasTheSameBitsAtOneTwoAndThreeThreads) {
   const auto term = [](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (std::int64_t i = begin; i < end; ++i) sum += std::sin(static_cast<double>(i)) * 1e3;
     return sum;
   };
-  const double one = parallel_sum(1, 10007, 64, term);
-  EXPECT_EQ(one, parallel_sum(2, 10007, 64, term));
-  EXPECT_EQ(one, parallel_sum(3, 10007, 64, term));
+  const double one = parallel_sum(Work(1), 10007, 64, term);
+  EXPECT_EQ(one, parallel_sum(Work(2), 10007, 64, term));
+  EXPECT_EQ(one, parallel_sum(Work(3), 10007, 64, term));
 }
 
 TEST(ParallelSum, OfNothingIsZero) {
-  EXPECT_EQ(parallel_sum(2, 0, 64, [](std::int64_t, std::int64_t) { return 1.0; }), 0);
+  EXPECT_EQ(parallel_sum(Work(2), 0, 64, [](std::int64_t, std::int64_t) { return 1.0; }), 0);
 }
 
 TEST(ParallelFind, FindsTheFirstAtAnyThreadCount) {
   for (const int threads : {1, 2, 5}) {
     const auto from = [&](std::int64_t first) {
-      return parallel_find(threads, 1000, 7,
+      return parallel_find(Work(threads), 1000, 7,
                            [=](std::int64_t i) { return i >= first && i % 3 == 0; });
     };
     EXPECT_EQ(from(0), 0);
     EXPECT_EQ(from(500), 501);
     EXPECT_EQ(from(1000), 1000);  // none
   }
-  EXPECT_EQ(parallel_find(2, 0, 7, [](std::int64_t) { return true; }), 0);
+  EXPECT_EQ(parallel_find(Work(2), 0, 7, [](std::int64_t) { return true; }), 0);
 }
 
 TEST(ParallelFilter, KeepsTheOrderAtAnyThreadCount) {
   for (const int threads : {1, 2, 5}) {
     const std::vector<Index> found =
-        parallel_filter(threads, 100, 7, [](Index i) { return i % 40 == 39 || i == 40; });
+        parallel_filter(Work(threads), 100, 7, [](Index i) { return i % 40 == 39 || i == 40; });
     EXPECT_EQ(found, (std::vector<Index>{39, 40, 79}));
   }
 }
@@ -147,10 +199,10 @@ TEST(ParallelFilter, KeepsTheOrderAtAnyThreadCount) {
 TEST(ParallelAssign, GivesWhatAssignGives) {
   std::vector<std::int64_t> items;
   for (const std::size_t count : {std::size_t{3}, std::size_t{700'000}, std::size_t{500'000}}) {
-    parallel_assign(2, items, count, std::int64_t{7});
+    parallel_assign(Work(2), items, count, std::int64_t{7});
     EXPECT_EQ(items, std::vector<std::int64_t>(count, 7));
   }
-  parallel_assign(2, items, 0);
+  parallel_assign(Work(2), items, 0);
   EXPECT_TRUE(items.empty());
 }
 
@@ -166,7 +218,7 @@ TEST(BucketSort, IsStableAtAnyThreadCount) {
   }
   for (const int threads : {1, 2, 3, 64}) {
     std::vector<Index> start;
-    BucketSort<Index> sort(threads, kItems, kBuckets, start, for_each_bucket);
+    BucketSort<Index> sort(Work(threads), kItems, kBuckets, start, for_each_bucket);
     std::vector<std::int64_t> sorted(start.back());
     sort.place([&](std::int64_t item, const auto& place) {
       for_each_bucket(item, [&](std::int64_t bucket) { sorted[place(bucket)] = item; });
@@ -182,7 +234,7 @@ TEST(BucketSort, IsStableAtAnyThreadCount) {
 
 TEST(BucketSort, OfNothingHasEmptyBuckets) {
   std::vector<Index> start = {1};
-  const BucketSort<Index> sort(2, 0, 3, start, [](std::int64_t, const auto&) {});
+  const BucketSort<Index> sort(Work(2), 0, 3, start, [](std::int64_t, const auto&) {});
   EXPECT_EQ(start, (std::vector<Index>{0, 0, 0, 0}));
 }
 
@@ -232,7 +284,8 @@ TEST(StandardFloatingPoint, HoldsOnTheThreadsOfAParallelLoop) {
   const unsigned before = _mm_getcsr();
   _mm_setcsr(before | kFlushToZero | kDenormalsAreZero);
   std::atomic<int> flushed{0};
-  parallel_for(2, 100, 1, [&](std::int64_t, std::int64_t) { flushed += !keeps_subnormals(); });
+  parallel_for(Work(2), 100, 1,
+               [&](std::int64_t, std::int64_t) { flushed += !keeps_subnormals(); });
   _mm_setcsr(before);
   EXPECT_EQ(flushed, 0);
 }

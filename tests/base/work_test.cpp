@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,19 @@ TEST(Work, EndsWhereProgressSaysSo) {
   const Work work({}, [](double fraction, const char*) { return fraction > 0.5; });
   work.report(0.5);
   EXPECT_THROW(work.report(0.75), beltrami::Cancelled);
+}
+
+TEST(Work, AsideKeepsToItsThreadAndSaysNothing) {
+  int calls = 0;
+  const Work work({.threads = 4}, [&](double, const char*) { return ++calls > 0; });
+  const Work aside = work.part(0, 0.5).aside();
+  EXPECT_EQ(work.threads(), 4);
+  EXPECT_EQ(aside.threads(), 1);
+  EXPECT_NO_THROW(aside.report(1));
+  EXPECT_EQ(calls, 0);
+  const std::atomic<bool> cancelled{true};
+  const beltrami::InterruptScope scope(&cancelled);
+  EXPECT_THROW(aside.report(1), beltrami::Cancelled);
 }
 
 TEST(Work, TimeRunsOutForAllSharesAlike) {

@@ -91,7 +91,7 @@ TEST(SolveUntilSimple, EndsWhereItIsNotWorthGoingOn) {
 TEST(VerticesInContact, AreThoseOfTheCoarseMeshThatAreNearOtherParts) {
   // Laid out flat, the sides of the slit are a rounding error apart; the outer sides are not.
   const DiskMesh mesh = disks::disk(disks::refined(disks::slit_saddle(8, 0), 2));
-  const CoarseDisk coarse = simplify(mesh, mesh.face_count() / 4);
+  const CoarseDisk coarse = simplify(mesh, mesh.face_count() / 4, Work(1));
   std::vector<Vec2> uvs;
   for (const Vec3& p : coarse.mesh.positions) uvs.emplace_back(p.x(), p.y());
   const std::vector<bool> found = vertices_in_contact(coarse, uvs, mesh.vertex_count());

@@ -19,7 +19,7 @@ struct Input {
 
 Input flat_grid() {
   meshes::TriangleList mesh = meshes::grid(3, 3);
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
+  const Normalisation frame = normalise(mesh.positions, mesh.faces, Work(1));
   return {disks::disk(std::move(mesh)), frame};
 }
 

@@ -29,7 +29,7 @@ Flattening run(TriangleList mesh, const ChartOptions& options) {
   Flattening result = disks::run(mesh, options);
   const DiskMesh disk = disks::disk(std::move(mesh));
   const auto& faces = result.faces.empty() ? disk.faces : result.faces;
-  const Certificate again = certify(faces, disk.boundary, result.uvs, 1);
+  const Certificate again = certify(faces, disk.boundary, result.uvs, Work(1));
   EXPECT_EQ(again.injective(), result.certificate.injective());
   EXPECT_EQ(again.orientations.positive, result.certificate.orientations.positive);
   EXPECT_EQ(again.crossings.count, result.certificate.crossings.count);
@@ -145,7 +145,8 @@ TEST(HardDisks, HaveACircleWhereTheyHaveNoArea) {
   TriangleList mesh = meshes::grid(3, 3);
   for (Vec3& p : mesh.positions) p.setZero();
   const DiskMesh disk = disks::disk(mesh);
-  EXPECT_TRUE(certify(disk.faces, disk.boundary, tutte_embedding(disk), 1).injective());
+  EXPECT_TRUE(
+      certify(disk.faces, disk.boundary, tutte_embedding(disk, Work(1)), Work(1)).injective());
 }
 
 TEST(HardDisks, EndWhereNoSystemIsDefinite) {
@@ -157,7 +158,7 @@ TEST(HardDisks, EndWhereNoSystemIsDefinite) {
   NewtonOptions options;
   options.proxy_steps = 0;
   const NewtonResult done =
-      minimise_energy(disk.faces, rest, disks::only_fixed(disk, 0), after, options);
+      minimise_energy(disk.faces, rest, disks::only_fixed(disk, 0), after, options, Work(1));
   EXPECT_FALSE(done.converged);
   EXPECT_EQ(after, before);
 }

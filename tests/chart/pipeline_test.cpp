@@ -200,7 +200,7 @@ TEST(Pipeline, IsCancelledAtEveryCallbackOfEveryStage) {
 
 TEST(Pipeline, IsCancelledByTheFlagWithoutAProgressFunction) {
   TriangleList mesh = meshes::bumps(10, 10);
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
+  const Normalisation frame = normalise(mesh.positions, mesh.faces, Work(1));
   const DiskMesh disk = disks::disk(mesh);
   const std::atomic<bool> cancelled{true};
   const InterruptScope interruptible(&cancelled);
@@ -362,7 +362,7 @@ TEST(Pipeline, StartsFromCoarserMeshesWhereTutteIsLostInRounding) {
   for (const Index sectors : {4, 7}) {
     const TriangleList mesh = disks::tube(400, sectors, 0.5);
     const DiskMesh disk = disks::disk(mesh);
-    ASSERT_GT(non_positive_faces(disk.faces, tutte_embedding(disk), 1).size(), 0u);
+    ASSERT_GT(non_positive_faces(disk.faces, tutte_embedding(disk, Work(1)), Work(1)).size(), 0u);
     expect_injective(run(mesh), "tube of " + std::to_string(sectors));
     // So far from a good map the polish may end before it is done, and says so.
     const Flattening coarse = run(mesh, coarse_to_fine(800));

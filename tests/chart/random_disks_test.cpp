@@ -27,7 +27,7 @@ TEST_P(RandomDisks, EndInjective) {
   for (int seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     TriangleList mesh = disks::random_disk(seed);
-    const Normalisation frame = normalise(mesh.positions, mesh.faces);
+    const Normalisation frame = normalise(mesh.positions, mesh.faces, Work(1));
     const DiskMesh disk = disks::disk(std::move(mesh));
     const Flattening result = flatten(disk, frame, disks::random_options(seed), Work());
     EXPECT_TRUE(result.certificate.injective())
@@ -116,7 +116,7 @@ TEST_P(ExtremeDisks, EndWithAMapAndATruthfulStatus) {
     const ChartOptions options = extreme_options(random);
     Normalisation frame;
     try {
-      frame = normalise(mesh.positions, mesh.faces);
+      frame = normalise(mesh.positions, mesh.faces, Work(1));
     } catch (const Error&) {
       continue;  // no area is left
     }
@@ -124,7 +124,7 @@ TEST_P(ExtremeDisks, EndWithAMapAndATruthfulStatus) {
     const Flattening result = flatten(disk, frame, options, Work());
     for (const Vec2& w : result.uvs) ASSERT_TRUE(w.allFinite());
     const auto& faces = result.faces.empty() ? disk.faces : result.faces;
-    const bool injective = certify(faces, disk.boundary, result.uvs, 1).injective();
+    const bool injective = certify(faces, disk.boundary, result.uvs, Work(1)).injective();
     EXPECT_EQ(injective, result.certificate.injective());
     // Beyond the range of the type a map is not what was asked for even where it is injective.
     EXPECT_TRUE(injective || result.status >= Outcome::kNotInjective);

@@ -60,7 +60,7 @@ void expect_disks(const Opened& result) {
   for (const Chart& chart : result.cut.charts) {
     faces += chart.input_face.size();
     // The disk is what would be built of its faces alone.
-    const DiskMesh disk = build_disk(chart.mesh.positions, chart.mesh.faces);
+    const DiskMesh disk = build_disk(chart.mesh.positions, chart.mesh.faces, Work(1));
     EXPECT_EQ(disk.twin, chart.mesh.twin);
     EXPECT_EQ(disk.outgoing, chart.mesh.outgoing);
     EXPECT_EQ(disk.boundary, chart.mesh.boundary);

@@ -33,7 +33,7 @@ TEST(GridDrawing, IsInjectiveForEveryDisk) {
   for (const meshes::TriangleList& list : all_disks()) {
     const DiskMesh mesh = disks::disk(list);
     const std::vector<Vec2> uvs = grid_drawing(mesh);
-    EXPECT_TRUE(certify(mesh.faces, mesh.boundary, uvs, 1).injective()) << mesh.face_count();
+    EXPECT_TRUE(certify(mesh.faces, mesh.boundary, uvs, Work(1)).injective()) << mesh.face_count();
   }
 }
 

@@ -35,7 +35,7 @@ std::vector<meshes::TriangleList> small_disks() {
 }
 
 bool all_positive(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
-  return non_positive_faces(mesh.faces, uvs, 1).empty();
+  return non_positive_faces(mesh.faces, uvs, Work(1)).empty();
 }
 
 double signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -69,7 +69,7 @@ double scale_of(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
 
 /// Tutte's embedding at its best scale.
 std::vector<Vec2> start_of(const DiskMesh& mesh, Energy energy = Energy::kSymmetricDirichlet) {
-  const std::vector<Vec2> uvs = tutte_embedding(mesh);
+  const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
   return scaled(uvs, scale_of(mesh, uvs, energy));
 }
 
@@ -78,11 +78,12 @@ struct Minimum {
   std::vector<Vec2> uvs;
 };
 
-Minimum minimise(const DiskMesh& mesh, std::vector<Vec2> uvs, const NewtonOptions& options = {}) {
+Minimum minimise(const DiskMesh& mesh, std::vector<Vec2> uvs, const NewtonOptions& options = {},
+                 int threads = 1) {
   Minimum minimum{{}, std::move(uvs)};
-  minimum.result =
-      minimise_energy(mesh.faces, disks::rest_of(mesh),
-                      disks::only_fixed(mesh, mesh.boundary.front()), minimum.uvs, options);
+  minimum.result = minimise_energy(mesh.faces, disks::rest_of(mesh),
+                                   disks::only_fixed(mesh, mesh.boundary.front()), minimum.uvs,
+                                   options, Work(threads));
   return minimum;
 }
 
@@ -91,16 +92,16 @@ Minimum minimise(const DiskMesh& mesh, std::vector<Vec2> uvs, const NewtonOption
 TEST(Tutte, IsExactlyInjectiveOnEveryKindOfDisk) {
   for (const auto& list : small_disks()) {
     const DiskMesh mesh = disks::disk(list);
-    const std::vector<Vec2> uvs = tutte_embedding(mesh);
-    EXPECT_TRUE(certify(mesh.faces, mesh.boundary, uvs, 1).injective())
+    const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
+    EXPECT_TRUE(certify(mesh.faces, mesh.boundary, uvs, Work(1)).injective())
         << mesh.face_count() << " faces";
   }
 }
 
 TEST(Tutte, PutsTheBoundaryOnACircleInItsOrderByArcLength) {
   const DiskMesh mesh = disks::disk(disks::slivers(4, 4));
-  const std::vector<Vec2> uvs = tutte_embedding(mesh);
-  const double radius = std::sqrt(surface_area(mesh) / std::numbers::pi);
+  const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
+  const double radius = std::sqrt(surface_area(mesh, Work(1)) / std::numbers::pi);
   double perimeter = 0, angle_sum = 0;
   const std::size_t count = mesh.boundary.size();
   std::vector<double> lengths, angles;
@@ -123,14 +124,14 @@ TEST(Tutte, SeparatesBoundaryVerticesThatCoincide) {
   meshes::TriangleList list = meshes::grid(3, 3);
   list.positions[1] = list.positions[0];
   const DiskMesh mesh = disks::disk(list);
-  const std::vector<Vec2> uvs = tutte_embedding(mesh);
+  const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
   EXPECT_GT((uvs[1] - uvs[0]).norm(), 0);
   EXPECT_TRUE(all_positive(mesh, uvs));
 }
 
 TEST(Tutte, PutsEveryInteriorVertexAtTheMeanOfItsNeighbours) {
   const DiskMesh mesh = disks::disk(meshes::cap(4, 9, 2.0));
-  const std::vector<Vec2> uvs = tutte_embedding(mesh);
+  const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (mesh.on_boundary[v]) continue;
     Vec2 sum = Vec2::Zero();
@@ -145,10 +146,11 @@ TEST(Tutte, PutsEveryInteriorVertexAtTheMeanOfItsNeighbours) {
 
 TEST(Tutte, FillsADiskOfTheAreaOfTheMesh) {
   const DiskMesh mesh = disks::disk(meshes::cap(20, 200, 1.2));
-  const std::vector<Vec2> uvs = tutte_embedding(mesh);
+  const std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
   double area = 0;
   for (const Triangle& t : mesh.faces) area += signed_area(uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-  EXPECT_NEAR(area, surface_area(mesh), 1e-3 * area);  // a polygon of 200 corners, not the disk
+  EXPECT_NEAR(area, surface_area(mesh, Work(1)),
+              1e-3 * area);  // a polygon of 200 corners, not the disk
 }
 
 TEST(BestScale, HasTheLeastEnergyOfAllScales) {
@@ -216,7 +218,7 @@ TEST(FirstSingularStep, IsWhereBisectionFindsItAtAnyScale) {
     const double expected = first_sign_change(uvs, direction, 4);
     for (const double scale : {1.0, 1e-8, 1e8}) {
       const double step =
-          first_singular_step({{0, 1, 2}}, scaled(uvs, scale), scaled(direction, scale), 1);
+          first_singular_step({{0, 1, 2}}, scaled(uvs, scale), scaled(direction, scale), Work(1));
       if (std::isfinite(expected)) {
         EXPECT_NEAR(step, expected, 1e-9 * expected) << i << ' ' << scale;
       } else {
@@ -233,9 +235,9 @@ TEST(FirstSingularStep, IsWhereBisectionFindsItAtAnyScale) {
 TEST(FirstSingularStep, IsInfiniteWhereNothingMovesOrEverythingGrows) {
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}};
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, {{0, 0}, {0, 0}, {0, 0}}, 1), kNever);
-  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, {{5, 3}, {5, 3}, {5, 3}}, 1), kNever);
-  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, uvs, 1), kNever);
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, {{0, 0}, {0, 0}, {0, 0}}, Work(1)), kNever);
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, {{5, 3}, {5, 3}, {5, 3}}, Work(1)), kNever);
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, uvs, Work(1)), kNever);
 }
 
 TEST(FirstSingularStep, IsTheLeastOfAllFaces) {
@@ -243,22 +245,23 @@ TEST(FirstSingularStep, IsTheLeastOfAllFaces) {
   const std::vector<Vec2> direction = {{0, 0}, {0, 0}, {0, -4}, {0, -2}};
   // Vertex 2 reaches the height of the bottom at 1/4, vertex 3 that of face (0, 2, 3) later or
   // never.
-  EXPECT_NEAR(first_singular_step({{0, 1, 2}, {0, 2, 3}}, uvs, direction, 1), 0.25, 1e-15);
-  EXPECT_NEAR(first_singular_step({{0, 2, 3}, {0, 1, 2}}, uvs, direction, 2), 0.25, 1e-15);
+  EXPECT_NEAR(first_singular_step({{0, 1, 2}, {0, 2, 3}}, uvs, direction, Work(1)), 0.25, 1e-15);
+  EXPECT_NEAR(first_singular_step({{0, 2, 3}, {0, 1, 2}}, uvs, direction, Work(2)), 0.25, 1e-15);
 }
 
 TEST(FirstSingularStep, FindsADoubleRoot) {
   // Collapses to a point at 1 and unfolds on the other side with the same orientation.
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}};
-  EXPECT_NEAR(first_singular_step({{0, 1, 2}}, uvs, scaled(uvs, -1), 1), 1, 1e-7);
+  EXPECT_NEAR(first_singular_step({{0, 1, 2}}, uvs, scaled(uvs, -1), Work(1)), 1, 1e-7);
 }
 
 TEST(FirstSingularStep, IsNeverNegative) {
   // Roundoff turns thin faces over that are positive by their singular values.
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0.5, -1e-20}};
   const std::vector<Vec2> up = {{0, 0}, {0, 0}, {0, 1}};
-  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, up, 1), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, scaled(up, -1), 1), 0);
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, up, Work(1)),
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(first_singular_step({{0, 1, 2}}, uvs, scaled(up, -1), Work(1)), 0);
 }
 
 // ---- Newton ---------------------------------------------------------------------------------
@@ -434,7 +437,7 @@ TEST(MinimiseEnergy, DoesNotMoveFixedVertices) {
   for (std::size_t v = 0; v < fixed.size(); ++v) fixed[v] = random.below(4) == 0;
   const std::vector<Vec2> before = start_of(mesh);
   std::vector<Vec2> after = before;
-  minimise_energy(mesh.faces, disks::rest_of(mesh), fixed, after, {});
+  minimise_energy(mesh.faces, disks::rest_of(mesh), fixed, after, {}, Work(1));
   int moved = 0;
   for (std::size_t v = 0; v < fixed.size(); ++v) {
     if (fixed[v]) {
@@ -448,8 +451,8 @@ TEST(MinimiseEnergy, DoesNotMoveFixedVertices) {
 TEST(MinimiseEnergy, HasNothingToDoWhereAllVerticesAreFixed) {
   const DiskMesh mesh = disks::disk(meshes::quad());
   std::vector<Vec2> uvs = scaled(disks::flat_uvs(mesh), 2);
-  const auto result =
-      minimise_energy(mesh.faces, disks::rest_of(mesh), std::vector<bool>(4, true), uvs, {});
+  const auto result = minimise_energy(mesh.faces, disks::rest_of(mesh), std::vector<bool>(4, true),
+                                      uvs, {}, Work(1));
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.iterations(), 0);
   EXPECT_EQ(uvs, scaled(disks::flat_uvs(mesh), 2));
@@ -466,24 +469,36 @@ TEST(MinimiseEnergy, KeepsToItsLimitOfSteps) {
 
 TEST(MinimiseEnergy, HasTheSameBitsOnTwoThreads) {
   const DiskMesh mesh = disks::disk(meshes::bumps(70, 70));
-  NewtonOptions one, two;
-  one.max_iterations = two.max_iterations = 8;
-  two.threads = 2;
-  const Minimum a = minimise(mesh, start_of(mesh), one), b = minimise(mesh, start_of(mesh), two);
+  NewtonOptions options;
+  options.max_iterations = 8;
+  const Minimum a = minimise(mesh, start_of(mesh), options, 1);
+  const Minimum b = minimise(mesh, start_of(mesh), options, 2);
   EXPECT_EQ(a.uvs, b.uvs);
   EXPECT_EQ(a.result.energies, b.result.energies);
 }
 
-TEST(MinimiseEnergy, IsCancelledByACheckpointThatThrows) {
+TEST(MinimiseEnergy, EndsWithAMapWhereTheTimeIsUp) {
+  const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 2.5));
+  std::vector<Vec2> uvs = start_of(mesh);
+  const NewtonResult result =
+      minimise_energy(mesh.faces, disks::rest_of(mesh), disks::only_fixed(mesh, 0), uvs, {},
+                      Work({.seconds = 1e-9}, nullptr));
+  EXPECT_EQ(result.iterations(), 0);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(uvs, start_of(mesh));
+}
+
+TEST(MinimiseEnergy, IsCancelledByProgressThatThrows) {
   const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 2.5));
   std::vector<Vec2> uvs = start_of(mesh);
   int calls = 0;
-  const auto stop_at_third = [&](double) {
+  const Work work({}, [&](double, const char*) {
     if (++calls == 3) throw std::runtime_error("stop");
-  };
-  EXPECT_THROW(minimise_energy(mesh.faces, disks::rest_of(mesh), disks::only_fixed(mesh, 0), uvs,
-                               {}, stop_at_third),
-               std::runtime_error);
+    return false;
+  });
+  EXPECT_THROW(
+      minimise_energy(mesh.faces, disks::rest_of(mesh), disks::only_fixed(mesh, 0), uvs, {}, work),
+      std::runtime_error);
   EXPECT_EQ(calls, 3);
   EXPECT_TRUE(all_positive(mesh, uvs));
 }
@@ -493,7 +508,10 @@ TEST(MinimiseEnergy, ReportsProgressThatNeverFalls) {
   std::vector<Vec2> uvs = start_of(mesh);
   std::vector<double> fractions;
   minimise_energy(mesh.faces, disks::rest_of(mesh), disks::only_fixed(mesh, 0), uvs, {},
-                  [&](double fraction) { fractions.push_back(fraction); });
+                  Work({}, [&](double fraction, const char*) {
+                    fractions.push_back(fraction);
+                    return false;
+                  }));
   ASSERT_FALSE(fractions.empty());
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_GE(fractions.front(), 0);

@@ -246,7 +246,7 @@ TEST(SymmetricArap, IsLeastAtAnIsometry) {
 // ---- The measure ----------------------------------------------------------------------------
 
 Distortion measure(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
-  return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr);
+  return measure_distortion(mesh.positions, mesh.faces, uvs, nullptr, Work(1));
 }
 
 TEST(MeasureDistortion, OfTheIdentityIsLeast) {
@@ -286,7 +286,7 @@ TEST(MeasureDistortion, WeighsFacesByTheirAreaInSpace) {
   const std::vector<Triangle> faces = {{0, 1, 2}, {1, 3, 2}};
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}, {7, 0}};
   std::array<double, 2> energies{};
-  const Distortion d = measure_distortion(positions, faces, uvs, 1, energies.data());
+  const Distortion d = measure_distortion(positions, faces, uvs, energies.data(), Work(1));
   EXPECT_NEAR(energies[0], 2, 1e-13);
   EXPECT_NEAR(d.symmetric_dirichlet, (0.5 * energies[0] + 1.5 * energies[1]) / 2, 1e-12);
   EXPECT_EQ(d.worst_face, 1);
@@ -299,7 +299,7 @@ TEST(MeasureDistortion, LeavesOutAndCountsFacesWithoutAnEnergy) {
   const std::vector<Triangle> faces = {{0, 2, 1}, {0, 1, 2}, {0, 1, 3}, {1, 3, 2}};
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}};
   std::array<double, 4> energies{};
-  const Distortion d = measure_distortion(positions, faces, uvs, 1, energies.data());
+  const Distortion d = measure_distortion(positions, faces, uvs, energies.data(), Work(1));
   EXPECT_EQ(d.left_out, 3);
   EXPECT_EQ(d.worst_face, 1);
   EXPECT_NEAR(d.symmetric_dirichlet, 2, 1e-13);
@@ -308,7 +308,7 @@ TEST(MeasureDistortion, LeavesOutAndCountsFacesWithoutAnEnergy) {
 
 TEST(MeasureDistortion, OfNothingButBadFacesHasNoWorstFace) {
   const Distortion d = measure_distortion({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 2, 1}},
-                                          {{0, 0}, {1, 0}, {0, 1}}, 1, nullptr);
+                                          {{0, 0}, {1, 0}, {0, 1}}, nullptr, Work(1));
   EXPECT_EQ(d.left_out, 1);
   EXPECT_EQ(d.worst_face, kNone);
   EXPECT_TRUE(std::isnan(d.symmetric_dirichlet) && std::isnan(d.symmetric_arap));
@@ -337,8 +337,8 @@ TEST(MeasureDistortion, FindsTheWorstFace) {
   Random random(3);
   const DiskMesh mesh = disks::disk(meshes::bumps(8, 8));
   std::vector<double> energies(mesh.faces.size());
-  const Distortion d =
-      measure_distortion(mesh.positions, mesh.faces, jittered(mesh, random), 1, energies.data());
+  const Distortion d = measure_distortion(mesh.positions, mesh.faces, jittered(mesh, random),
+                                          energies.data(), Work(1));
   const auto worst = std::max_element(energies.begin(), energies.end());
   EXPECT_EQ(d.worst_face, worst - energies.begin());
   EXPECT_EQ(d.max, *worst);
@@ -348,8 +348,8 @@ TEST(MeasureDistortion, HasTheSameBitsOnTwoThreads) {
   Random random(4);
   const DiskMesh mesh = disks::disk(meshes::bumps(100, 100));
   const std::vector<Vec2> uvs = jittered(mesh, random);
-  const Distortion one = measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr);
-  const Distortion two = measure_distortion(mesh.positions, mesh.faces, uvs, 2, nullptr);
+  const Distortion one = measure_distortion(mesh.positions, mesh.faces, uvs, nullptr, Work(1));
+  const Distortion two = measure_distortion(mesh.positions, mesh.faces, uvs, nullptr, Work(2));
   EXPECT_EQ(one.symmetric_dirichlet, two.symmetric_dirichlet);
   EXPECT_EQ(one.symmetric_arap, two.symmetric_arap);
   EXPECT_EQ(one.worst_face, two.worst_face);
@@ -383,8 +383,9 @@ TEST(MeasureFace, MeasuresTheSameAtTheEndsOfTheRangeOfNumbers) {
     EXPECT_EQ(d.s1, plain.s1) << exponent;
     EXPECT_EQ(d.s2, plain.s2) << exponent;
     EXPECT_EQ(d.symmetric_dirichlet, plain.symmetric_dirichlet) << exponent;
-    const Distortion mean = measure_distortion({unit * p[0], unit * p[1], unit * p[2]}, {{0, 1, 2}},
-                                               {unit * w[0], unit * w[1], unit * w[2]}, 1, nullptr);
+    const Distortion mean =
+        measure_distortion({unit * p[0], unit * p[1], unit * p[2]}, {{0, 1, 2}},
+                           {unit * w[0], unit * w[1], unit * w[2]}, nullptr, Work(1));
     EXPECT_EQ(mean.symmetric_dirichlet, plain.symmetric_dirichlet) << exponent;
     EXPECT_EQ(mean.left_out, 0) << exponent;
   }
@@ -396,7 +397,7 @@ TEST(MeasureFace, MeasuresTheSameAtTheEndsOfTheRangeOfNumbers) {
 TEST(MeasureDistortion, StaysAccurateOnSlivers) {
   // A needle of height 1e-7, mapped by the identity.
   const Distortion d = measure_distortion({{0, 0, 0}, {1, 0, 0}, {0.3, 1e-7, 0}}, {{2, 0, 1}},
-                                          {{0, 0}, {1, 0}, {0.3, 1e-7}}, 1, nullptr);
+                                          {{0, 0}, {1, 0}, {0.3, 1e-7}}, nullptr, Work(1));
   EXPECT_NEAR(d.symmetric_dirichlet, 2, 1e-8);
 }
 

@@ -48,7 +48,7 @@ TEST(NewEnergy, TakesOneTypeToBeMinimised) {
   fixed[mesh.boundary.front()] = true;
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   for (Vec2& w : uvs) w = {1.7 * w.x() + 0.2 * w.x() * w.y(), 0.6 * w.y() - 0.1 * w.x() * w.x()};
-  NewtonStepper<Hencky> stepper(mesh.faces, rest, fixed, 1);
+  NewtonStepper<Hencky> stepper(mesh.faces, rest, fixed, Work(1));
   double energy = stepper.mean_energy(uvs);
   for (int i = 0; i < 30; ++i) {
     const NewtonStep step = stepper.step(uvs, energy);

@@ -125,17 +125,17 @@ TEST(Orientation, IsAntisymmetricAndCyclic) {
 TEST(CountOrientations, CountsEachSignAndFindsTheFirstBadFace) {
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}, {2, 0}};
   const std::vector<Triangle> faces = {{0, 1, 2}, {0, 1, 3}, {0, 2, 1}, {1, 2, 0}};
-  const Orientations counts = count_orientations(faces, uvs, 1);
+  const Orientations counts = count_orientations(faces, uvs, Work(1));
   EXPECT_EQ(counts.positive, 2);
   EXPECT_EQ(counts.degenerate, 1);
   EXPECT_EQ(counts.negative, 1);
   EXPECT_EQ(counts.first_bad_face, 1);
-  EXPECT_EQ(non_positive_faces(faces, uvs, 1), (std::vector<Index>{1, 2}));
+  EXPECT_EQ(non_positive_faces(faces, uvs, Work(1)), (std::vector<Index>{1, 2}));
 }
 
 TEST(CountOrientations, HasNoBadFaceWhereAllArePositive) {
   const DiskMesh mesh = disks::disk(meshes::grid(3, 3));
-  const Orientations counts = count_orientations(mesh.faces, disks::flat_uvs(mesh), 1);
+  const Orientations counts = count_orientations(mesh.faces, disks::flat_uvs(mesh), Work(1));
   EXPECT_EQ(counts.positive, 18);
   EXPECT_EQ(counts.first_bad_face, kNone);
 }
@@ -146,14 +146,14 @@ TEST(CountOrientations, IsTheSameOnTwoThreads) {
   for (Vec2& w : uvs) w = random.vec2();
   std::vector<Triangle> faces(20000);
   for (Triangle& t : faces) t = {random.below(1000), random.below(1000), random.below(1000)};
-  const Orientations one = count_orientations(faces, uvs, 1);
-  const Orientations two = count_orientations(faces, uvs, 2);
+  const Orientations one = count_orientations(faces, uvs, Work(1));
+  const Orientations two = count_orientations(faces, uvs, Work(2));
   EXPECT_EQ(one.positive, two.positive);
   EXPECT_EQ(one.negative, two.negative);
   EXPECT_EQ(one.degenerate, two.degenerate);
   EXPECT_EQ(one.first_bad_face, two.first_bad_face);
   EXPECT_EQ(one.positive + one.negative + one.degenerate, 20000);
-  EXPECT_EQ(non_positive_faces(faces, uvs, 1), non_positive_faces(faces, uvs, 2));
+  EXPECT_EQ(non_positive_faces(faces, uvs, Work(1)), non_positive_faces(faces, uvs, Work(2)));
 }
 
 // ---- Crossings ------------------------------------------------------------------------------
@@ -405,14 +405,14 @@ TEST(Crossings, AreCancelledAtEveryPoll) {
 
 TEST(Certificate, ProvesAFlatGridInjective) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 3));
-  EXPECT_TRUE(certify(mesh.faces, mesh.boundary, disks::flat_uvs(mesh), 1).injective());
+  EXPECT_TRUE(certify(mesh.faces, mesh.boundary, disks::flat_uvs(mesh), Work(1)).injective());
 }
 
 TEST(Certificate, SeesAFoldWhoseBoundaryIsSimple) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   uvs[12] = {0.9, 0.5};
-  const Certificate found = certify(mesh.faces, mesh.boundary, uvs, 1);
+  const Certificate found = certify(mesh.faces, mesh.boundary, uvs, Work(1));
   EXPECT_FALSE(found.injective());
   EXPECT_GT(found.orientations.negative + found.orientations.degenerate, 0);
   EXPECT_EQ(found.crossings.count, 0);
@@ -426,7 +426,7 @@ TEST(Certificate, SeesAnOverlapWhoseFacesAreAllPositive) {
     const double angle = -2.5 * std::numbers::pi * p.x(), radius = 1 + p.y();
     uvs.push_back({radius * portable::cos(angle), radius * portable::sin(angle)});
   }
-  const Certificate found = certify(mesh.faces, mesh.boundary, uvs, 1);
+  const Certificate found = certify(mesh.faces, mesh.boundary, uvs, Work(1));
   EXPECT_EQ(found.orientations.positive, 60);
   EXPECT_GT(found.crossings.count, 0);
   EXPECT_FALSE(found.injective());

@@ -254,7 +254,7 @@ TEST(FlatStart, IsAnIsometryOfWhatIsFlat) {
     const DiskMesh mesh = disks::disk(list);
     for (const auto& uvs : {projection(mesh), unfolding(mesh, disks::rest_of(mesh))}) {
       EXPECT_LE(worst_stretch(mesh, uvs), 1e-9) << mesh.face_count();
-      EXPECT_TRUE(non_positive_faces(mesh.faces, uvs, 1).empty()) << mesh.face_count();
+      EXPECT_TRUE(non_positive_faces(mesh.faces, uvs, Work(1)).empty()) << mesh.face_count();
     }
   }
 }
@@ -265,7 +265,7 @@ TEST(FlatStart, UnfoldsWhatHasNoInnerVertex) {
     const DiskMesh mesh = disks::disk(list);
     const auto uvs = unfolding(mesh, disks::rest_of(mesh));
     EXPECT_LE(worst_stretch(mesh, uvs), 1e-9) << mesh.face_count();
-    EXPECT_TRUE(non_positive_faces(mesh.faces, uvs, 1).empty()) << mesh.face_count();
+    EXPECT_TRUE(non_positive_faces(mesh.faces, uvs, Work(1)).empty()) << mesh.face_count();
   }
 }
 

@@ -1,6 +1,7 @@
 // Boundary first flattening: exact where the metric is flat, conformal where it is not, closed
 // always.
 #include "flatten/boundary_first.h"
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +21,14 @@ using meshes::TriangleList;
 
 struct Problem {
   explicit Problem(const TriangleList& list, Complex mu = 0)
-      : mesh(build_disk(list.positions, list.faces)),
-        rest(rest_triangles(mesh.positions, mesh.faces, 1)),
+      : mesh(build_disk(list.positions, list.faces, Work(1))),
+        rest(rest_triangles(mesh.positions, mesh.faces, Work(1))),
         metric(mesh.faces.size()) {
     for (FaceMetric& m : metric) m.mu = mu;
   }
 
   BoundaryFirstResult flatten(const std::vector<double>& lengths) const {
-    return flatten_boundary_first(mesh, rest, metric, lengths);
+    return flatten_boundary_first(mesh, rest, metric, lengths, Work(1));
   }
   BoundaryFirstResult flatten() const {
     return flatten(metric_boundary_lengths(mesh, rest, metric));
@@ -265,26 +266,26 @@ TEST(BoundaryFirst, ConvergesFromTheConformalClassAlone) {
   EXPECT_LT(fine, 0.4 * coarse);
 }
 
-TEST(BoundaryFirst, StopsAtEveryCheckpoint) {
+TEST(BoundaryFirst, StopsAtEveryReport) {
   const Problem problem(meshes::bumps(4, 4));
   const auto lengths = metric_boundary_lengths(problem.mesh, problem.rest, problem.metric);
   int calls = 0;
   double last = -1;
-  flatten_boundary_first(problem.mesh, problem.rest, problem.metric, lengths, [&](double fraction) {
-    EXPECT_GT(fraction, last);
-    EXPECT_LE(fraction, 1);
-    last = fraction;
-    ++calls;
-  });
+  flatten_boundary_first(problem.mesh, problem.rest, problem.metric, lengths,
+                         Work({}, [&](double fraction, const char*) {
+                           EXPECT_GT(fraction, last);
+                           EXPECT_LE(fraction, 1);
+                           last = fraction;
+                           ++calls;
+                           return false;
+                         }));
   EXPECT_GE(calls, 4);
-  struct Cancelled {};
   for (int stop = 1; stop <= calls; ++stop) {
     int call = 0;
-    EXPECT_THROW(flatten_boundary_first(problem.mesh, problem.rest, problem.metric, lengths,
-                                        [&](double) {
-                                          if (++call == stop) throw Cancelled();
-                                        }),
-                 Cancelled);
+    EXPECT_THROW(
+        flatten_boundary_first(problem.mesh, problem.rest, problem.metric, lengths,
+                               Work({}, [&](double, const char*) { return ++call == stop; })),
+        Cancelled);
   }
 }
 

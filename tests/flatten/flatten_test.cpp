@@ -39,7 +39,7 @@ double greatest_distance(const std::vector<Vec2>& a, const std::vector<Vec2>& b)
 struct Square {
   DiskMesh fine = disks::disk(meshes::grid(2, 2));
   CoarseDisk coarse{
-      build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 3}, {0, 3, 2}}),
+      build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 3}, {0, 3, 2}}, Work(1)),
       {0, 2, 6, 8},
       {0, 0, 1, 0, 0, 1, 2, 2, 3}};
 };
@@ -74,9 +74,9 @@ TEST(CarryBoundary, SpreadsVerticesEvenlyWhereTheBoundaryHasNoLength) {
 
 TEST(CarryBoundary, KeepsTheOrderAndASimplePolygon) {
   const DiskMesh fine = disks::disk(meshes::cap(12, 60, 1.3));
-  const CoarseDisk coarse = simplify(fine, 200);
+  const CoarseDisk coarse = simplify(fine, 200, Work(1));
   ASSERT_LT(coarse.mesh.boundary.size(), fine.boundary.size());
-  const std::vector<Vec2> coarse_uvs = tutte_embedding(coarse.mesh);
+  const std::vector<Vec2> coarse_uvs = tutte_embedding(coarse.mesh, Work(1));
   const auto uvs = carry_boundary(fine, coarse, coarse_uvs);
   EXPECT_EQ(count_crossings(fine.boundary, uvs).count, 0);
   double turned = 0;
@@ -142,7 +142,8 @@ std::vector<Vec2> boundary_only(const DiskMesh& mesh, std::vector<Vec2> uvs) {
 }
 
 std::vector<Cotangents> plain_cotangents(const DiskMesh& mesh) {
-  return modified_cotangents(disks::rest_of(mesh), std::vector<FaceMetric>(mesh.faces.size()), 1);
+  return modified_cotangents(disks::rest_of(mesh), std::vector<FaceMetric>(mesh.faces.size()),
+                             Work(1));
 }
 
 TEST(SolveHarmonic, ReproducesLinearMapsWithoutACoefficient) {
@@ -150,7 +151,7 @@ TEST(SolveHarmonic, ReproducesLinearMapsWithoutACoefficient) {
   std::vector<Vec2> expected = disks::flat_uvs(mesh);
   for (Vec2& w : expected) w = {2 * w.x() - w.y() + 3, 0.5 * w.x() + 4 * w.y()};
   std::vector<Vec2> uvs = boundary_only(mesh, expected);
-  solve_harmonic(mesh, plain_cotangents(mesh), uvs);
+  solve_harmonic(mesh, plain_cotangents(mesh), uvs, Work(1));
   EXPECT_LE(greatest_distance(uvs, expected), 1e-10);
 }
 
@@ -160,8 +161,9 @@ TEST(SolveHarmonic, ReproducesTheAffineMapOfItsCoefficient) {
   for (const Complex k : {Complex(0.5, 0), Complex(-0.3, 0.6), Complex(0, -0.9)}) {
     const std::vector<Vec2> expected = disks::affine_uvs(mesh, k);
     std::vector<Vec2> uvs = boundary_only(mesh, expected);
-    solve_harmonic(mesh, modified_cotangents(rest, face_metrics(mesh.faces, rest, expected), 1),
-                   uvs);
+    solve_harmonic(mesh,
+                   modified_cotangents(rest, face_metrics(mesh.faces, rest, expected), Work(1)),
+                   uvs, Work(1));
     EXPECT_LE(greatest_distance(uvs, expected), 1e-10);
   }
 }
@@ -171,12 +173,13 @@ TEST(SolveHarmonic, ReproducesTheAffineMapOfItsCoefficient) {
 TEST(SolveHarmonic, ReproducesAnyMapFromItsOwnCoefficients) {
   const DiskMesh mesh = disks::disk(meshes::cap(8, 20, 2.2));
   const auto rest = disks::rest_of(mesh);
-  const std::vector<Vec2> expected = tutte_embedding(mesh);
+  const std::vector<Vec2> expected = tutte_embedding(mesh, Work(1));
   std::vector<Vec2> uvs = boundary_only(mesh, expected);
-  solve_harmonic(mesh, modified_cotangents(rest, face_metrics(mesh.faces, rest, expected), 1), uvs);
+  solve_harmonic(mesh, modified_cotangents(rest, face_metrics(mesh.faces, rest, expected), Work(1)),
+                 uvs, Work(1));
   EXPECT_LE(greatest_distance(uvs, expected), 1e-9);
   std::vector<Vec2> plain = boundary_only(mesh, expected);
-  solve_harmonic(mesh, plain_cotangents(mesh), plain);
+  solve_harmonic(mesh, plain_cotangents(mesh), plain, Work(1));
   EXPECT_GT(greatest_distance(plain, expected), 1e-3);
 }
 
@@ -184,7 +187,7 @@ TEST(SolveHarmonic, LeavesADiskWithoutInteriorVerticesAsItIs) {
   const DiskMesh mesh = disks::disk(meshes::strip(5));
   const std::vector<Vec2> expected = disks::affine_uvs(mesh, 0.4);
   std::vector<Vec2> uvs = expected;
-  solve_harmonic(mesh, plain_cotangents(mesh), uvs);
+  solve_harmonic(mesh, plain_cotangents(mesh), uvs, Work(1));
   EXPECT_EQ(uvs, expected);
 }
 
@@ -192,7 +195,7 @@ TEST(SolveHarmonic, LeavesADiskWithoutInteriorVerticesAsItIs) {
 
 std::vector<EdgeWeights> stiffness_of(const std::vector<RestTriangle>& rest,
                                       const std::vector<FaceMetric>& metric) {
-  return energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 1);
+  return energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, Work(1));
 }
 
 std::vector<Vec2> solve_from_own_metric(const DiskMesh& mesh, const std::vector<Vec2>& map,
@@ -200,12 +203,12 @@ std::vector<Vec2> solve_from_own_metric(const DiskMesh& mesh, const std::vector<
   const auto rest = disks::rest_of(mesh);
   const auto metric = face_metrics(mesh.faces, rest, map);
   const auto stiffness = stiffness_of(rest, metric);
-  const MetricLaplacian laplacian(mesh, stiffness, held);
+  const MetricLaplacian laplacian(mesh, stiffness, held, {Precision::kSingle}, {}, Work(1));
   std::vector<Vec2> uvs(map.size(), Vec2::Zero());
   for (std::size_t v = 0; v < map.size(); ++v) {
     if (held[v]) uvs[v] = map[v];
   }
-  solve_metric(mesh, rest, metric, stiffness, laplacian, {}, false, 1, uvs);
+  solve_metric(mesh, rest, metric, stiffness, laplacian, {}, false, uvs, Work(1));
   return uvs;
 }
 
@@ -213,9 +216,9 @@ TEST(SolveMetric, ReproducesAnyMapFromItsOwnMetric) {
   for (const auto& list : {meshes::cap(8, 20, 2.2), meshes::strip(8), meshes::triangle(),
                            disks::slivers(6, 6), disks::degenerate_faces(8)}) {
     const DiskMesh mesh = disks::disk(list);
-    const std::vector<Vec2> map = tutte_embedding(mesh);
+    const std::vector<Vec2> map = tutte_embedding(mesh, Work(1));
     const auto uvs = solve_from_own_metric(mesh, map, disks::only_fixed(mesh, 0));
-    EXPECT_LE(greatest_distance(uvs, map), 1e-6 * std::sqrt(surface_area(mesh)));
+    EXPECT_LE(greatest_distance(uvs, map), 1e-6 * std::sqrt(surface_area(mesh, Work(1))));
   }
 }
 
@@ -227,13 +230,16 @@ TEST(SolveMetric, RecoversTheMapFromPhasesThatAreOff) {
   auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
   for (FaceMetric& m : metric) m.phase *= std::polar(1.0, random.between(-0.5, 0.5));
   const auto stiffness = stiffness_of(rest, metric);
-  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
+  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0), {Precision::kSingle},
+                                  {}, Work(1));
   const auto energy_after = [&](int rotations) {
     std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
     for (int round = 0; round <= rotations; ++round) {
-      solve_metric(mesh, rest, metric, stiffness, laplacian, {}, round > 0, 1, uvs);
+      solve_metric(mesh, rest, metric, stiffness, laplacian, {}, round > 0, uvs, Work(1));
     }
-    return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet - 2;
+    return measure_distortion(mesh.positions, mesh.faces, uvs, nullptr, Work(1))
+               .symmetric_dirichlet -
+           2;
   };
   const double none = energy_after(0);
   EXPECT_GT(none, 1e-3);
@@ -260,12 +266,13 @@ TEST(SolveMetric, HasTheSameBitsOnTwoThreads) {
   const auto rest = disks::rest_of(mesh);
   const auto metric = face_metrics(mesh.faces, rest, disks::flat_uvs(mesh));
   const auto stiffness = stiffness_of(rest, metric);
-  EXPECT_EQ(stiffness, energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 2));
-  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0));
+  EXPECT_EQ(stiffness, energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, Work(2)));
+  const MetricLaplacian laplacian(mesh, stiffness, disks::only_fixed(mesh, 0), {Precision::kSingle},
+                                  {}, Work(1));
   std::vector<Vec2> one(mesh.positions.size(), Vec2::Zero()), two = one;
   for (const bool rotate : {false, true}) {
-    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, 1, one);
-    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, 2, two);
+    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, one, Work(1));
+    solve_metric(mesh, rest, metric, stiffness, laplacian, {}, rotate, two, Work(2));
     EXPECT_EQ(one, two);
   }
 }
@@ -278,11 +285,12 @@ struct Polished {
 };
 
 Polished polish_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
-                     const PolishOptions& options) {
+                     const PolishOptions& options, int threads = 1) {
   const auto rest = disks::rest_of(mesh);
   const MetricLaplacian laplacian(mesh, stiffness_of(rest, face_metrics(mesh.faces, rest, start)),
-                                  disks::only_fixed(mesh, mesh.boundary.front()));
-  const double area = surface_area(mesh);
+                                  disks::only_fixed(mesh, mesh.boundary.front()),
+                                  {Precision::kSingle}, {}, Work(threads));
+  const double area = surface_area(mesh, Work(1));
   Polished polished{{}, start};
   polished.result = polish(
       mesh.faces, rest,
@@ -290,7 +298,7 @@ Polished polish_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
         laplacian.solve(in, out);
         for (Vec2& w : out) w *= area;
       },
-      polished.uvs, options);
+      polished.uvs, options, Work(threads));
   return polished;
 }
 
@@ -309,9 +317,9 @@ TEST(EnergyStiffness, OfAnIsometryIsTheCurvatureTimesTheLaplacian) {
 TEST(EnergyStiffness, OfAMapIsThatOfItsMetric) {
   const DiskMesh mesh = disks::disk(meshes::cap(6, 16, 1.5));
   const auto rest = disks::rest_of(mesh);
-  const auto uvs = tutte_embedding(mesh);
+  const auto uvs = tutte_embedding(mesh, Work(1));
   const auto of_metric = stiffness_of(rest, face_metrics(mesh.faces, rest, uvs));
-  const auto of_map = energy_stiffness(Energy::kSymmetricDirichlet, mesh.faces, rest, uvs, 2);
+  const auto of_map = energy_stiffness(Energy::kSymmetricDirichlet, mesh.faces, rest, uvs, Work(2));
   for (std::size_t f = 0; f < rest.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const double size = std::abs(of_metric[f][0]) + std::abs(of_metric[f][1]);
@@ -328,9 +336,9 @@ TEST(MetricLaplacian, RefittedSolvesForTheOtherStiffness) {
   const auto plain = stiffness_of(rest, metric);
   for (FaceMetric& m : metric) m.mu = Complex(0.3, 0.2);
   const auto other = stiffness_of(rest, metric);
-  MetricLaplacian refitted(mesh, plain, held);
+  MetricLaplacian refitted(mesh, plain, held, {Precision::kSingle}, {}, Work(1));
   refitted.refit(mesh, other);
-  const MetricLaplacian fresh(mesh, other, held);
+  const MetricLaplacian fresh(mesh, other, held, {Precision::kSingle}, {}, Work(1));
   const DenseMatrix rhs = DenseMatrix::Random(mesh.vertex_count(), 2);
   EXPECT_EQ(refitted.solve(rhs), fresh.solve(rhs));
 }
@@ -339,14 +347,14 @@ TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
   for (const auto& list : {meshes::bumps(10, 10), meshes::cap(8, 24, 1.8), meshes::strip(10),
                            disks::slivers(6, 6), disks::spike(8)}) {
     const DiskMesh mesh = disks::disk(list);
-    const Polished polished = polish_from(mesh, tutte_embedding(mesh), {});
+    const Polished polished = polish_from(mesh, tutte_embedding(mesh, Work(1)), {});
     const auto& energies = polished.result.energies;
     ASSERT_GT(energies.size(), 1u);
     EXPECT_TRUE(std::is_sorted(energies.rbegin(), energies.rend()));
     EXPECT_LT(energies.back(), energies.front());
-    EXPECT_TRUE(non_positive_faces(mesh.faces, polished.uvs, 1).empty());
+    EXPECT_TRUE(non_positive_faces(mesh.faces, polished.uvs, Work(1)).empty());
     const Distortion measured =
-        measure_distortion(mesh.positions, mesh.faces, polished.uvs, 1, nullptr);
+        measure_distortion(mesh.positions, mesh.faces, polished.uvs, nullptr, Work(1));
     EXPECT_NEAR(energies.back(), measured.symmetric_dirichlet, 1e-9 * energies.back());
   }
 }
@@ -368,16 +376,15 @@ TEST(Polish, KeepsToItsLimitOfSteps) {
   const DiskMesh mesh = disks::disk(meshes::bumps(10, 10));
   PolishOptions options;
   options.max_iterations = 3;
-  EXPECT_LE(polish_from(mesh, tutte_embedding(mesh), options).result.iterations(), 3);
+  EXPECT_LE(polish_from(mesh, tutte_embedding(mesh, Work(1)), options).result.iterations(), 3);
 }
 
 TEST(Polish, HasTheSameBitsOnTwoThreads) {
   const DiskMesh mesh = disks::disk(meshes::bumps(70, 70));
-  PolishOptions one, two;
-  one.max_iterations = two.max_iterations = 5;
-  two.threads = 2;
-  EXPECT_EQ(polish_from(mesh, disks::flat_uvs(mesh), one).uvs,
-            polish_from(mesh, disks::flat_uvs(mesh), two).uvs);
+  PolishOptions options;
+  options.max_iterations = 5;
+  EXPECT_EQ(polish_from(mesh, disks::flat_uvs(mesh), options, 1).uvs,
+            polish_from(mesh, disks::flat_uvs(mesh), options, 2).uvs);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using disks::Random;
 std::vector<Cotangents> cotangents_of(const DiskMesh& mesh, Complex mu = 0) {
   std::vector<FaceMetric> metric(mesh.faces.size());
   for (FaceMetric& m : metric) m.mu = mu;
-  return modified_cotangents(disks::rest_of(mesh), metric, 1);
+  return modified_cotangents(disks::rest_of(mesh), metric, Work(1));
 }
 
 /// A flat grid, its inner vertices shaken hard, but without flips.
@@ -48,11 +48,11 @@ double opposite_sum(const DiskMesh& mesh, const std::vector<Cotangents>& cotange
 TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAQuad) {
   // Vertices 0 and 2 far apart: the diagonal 0-2 must go.
   const std::vector<Vec3> positions = {{-3, 0, 0}, {0, -1, 0}, {2, 0.5, 0}, {0.25, 1, 0}};
-  const DiskMesh mesh = build_disk(positions, {{0, 1, 2}, {0, 2, 3}});
-  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh));
+  const DiskMesh mesh = build_disk(positions, {{0, 1, 2}, {0, 2, 3}}, Work(1));
+  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh), Work(1));
   EXPECT_EQ(result.flips, 1);
   EXPECT_EQ(result.refused, 0);
-  const DiskMesh flipped = build_disk(positions, result.faces);
+  const DiskMesh flipped = build_disk(positions, result.faces, Work(1));
   const auto expected = cotangents_of(flipped);
   for (Index f = 0; f < 2; ++f) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(result.cotangents[f][k], expected[f][k], 1e-12);
@@ -62,12 +62,13 @@ TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAQuad) {
 TEST(IntrinsicDelaunay, IsDelaunayInThePlaneWithTheCotangentsOfItsFaces) {
   for (int seed = 0; seed < 10; ++seed) {
     const DiskMesh mesh = shaken(12, seed);
-    const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh));
+    const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh), Work(1));
     EXPECT_GT(result.flips, 0);
     EXPECT_EQ(result.refused, 0);
-    const DiskMesh flipped = build_disk(mesh.positions, result.faces);
+    const DiskMesh flipped = build_disk(mesh.positions, result.faces, Work(1));
     EXPECT_EQ(flipped.boundary.size(), mesh.boundary.size());
-    EXPECT_TRUE(certify(flipped.faces, flipped.boundary, disks::flat_uvs(flipped), 1).injective());
+    EXPECT_TRUE(
+        certify(flipped.faces, flipped.boundary, disks::flat_uvs(flipped), Work(1)).injective());
     const auto expected = cotangents_of(flipped);
     for (Index f = 0; f < flipped.face_count(); ++f) {
       for (int k = 0; k < 3; ++k) {
@@ -96,41 +97,42 @@ TEST(IntrinsicDelaunay, SeesTheConformalClassAlone) {
   const auto sheared_uvs = disks::affine_uvs(mesh, mu);
   std::vector<Vec3> sheared;
   for (const Vec2& w : sheared_uvs) sheared.emplace_back(w.x(), w.y(), 0);
-  const DiskMesh plane = build_disk(sheared, mesh.faces);
+  const DiskMesh plane = build_disk(sheared, mesh.faces, Work(1));
   const auto sorted = [](std::vector<Triangle> faces) {
     for (Triangle& t : faces) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(faces.begin(), faces.end());
     return faces;
   };
-  EXPECT_EQ(sorted(intrinsic_delaunay(mesh, cotangents).faces),
-            sorted(intrinsic_delaunay(plane, cotangents_of(plane)).faces));
+  EXPECT_EQ(sorted(intrinsic_delaunay(mesh, cotangents, Work(1)).faces),
+            sorted(intrinsic_delaunay(plane, cotangents_of(plane), Work(1)).faces));
 }
 
 TEST(IntrinsicDelaunay, RefusesToRepeatAnEdgeAndSaysSo) {
   // An inner vertex with three neighbours and flat angles: flipping 1-2 would join 0 and 3 again.
   const std::vector<Vec3> positions = {
       {0, 0.02, 0}, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -0.05, 0}};
-  const DiskMesh mesh = build_disk(positions, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {2, 1, 4}});
-  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh));
+  const DiskMesh mesh =
+      build_disk(positions, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {2, 1, 4}}, Work(1));
+  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh), Work(1));
   std::set<std::pair<Index, Index>> directed;
   for (const Triangle& t : result.faces) {
     for (int k = 0; k < 3; ++k) EXPECT_TRUE(directed.insert({t[k], t[next_corner(k)]}).second);
   }
-  EXPECT_NO_THROW(build_disk(positions, result.faces));
+  EXPECT_NO_THROW(build_disk(positions, result.faces, Work(1)));
 }
 
 TEST(IntrinsicDelaunay, MakesHarmonicMapsIntoConvexPolygonsInjective) {
   const DiskMesh mesh = disks::disk(disks::slivers(20, 20));
-  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh));
+  const DelaunayTriangulation result = intrinsic_delaunay(mesh, cotangents_of(mesh), Work(1));
   ASSERT_EQ(result.refused, 0);
-  const DiskMesh flipped = build_disk(mesh.positions, result.faces);
+  const DiskMesh flipped = build_disk(mesh.positions, result.faces, Work(1));
   std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
   for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
     const double angle = 6.283185307179586 * static_cast<double>(i) / mesh.boundary.size();
     uvs[flipped.boundary[i]] = {portable::cos(angle), portable::sin(angle)};
   }
-  solve_harmonic(flipped, result.cotangents, uvs);
-  EXPECT_TRUE(non_positive_faces(flipped.faces, uvs, 1).empty());
+  solve_harmonic(flipped, result.cotangents, uvs, Work(1));
+  EXPECT_TRUE(non_positive_faces(flipped.faces, uvs, Work(1)).empty());
 }
 
 /// A hub with flat ears on every edge of its rim: each of these edges must go.
@@ -149,7 +151,7 @@ TEST(IntrinsicDelaunay, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
   const auto polls = [](Index n) {
     const DiskMesh mesh = eared_fan(n);
     const auto cotangents = cotangents_of(mesh);
-    return count_polls([&] { EXPECT_GE(intrinsic_delaunay(mesh, cotangents).flips, n); });
+    return count_polls([&] { EXPECT_GE(intrinsic_delaunay(mesh, cotangents, Work(1)).flips, n); });
   };
   EXPECT_LE(polls(16000), 3 * polls(8000) + 10);
 }

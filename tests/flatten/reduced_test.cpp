@@ -1,5 +1,6 @@
 // The reduced harmonic subspace: meta vertices, samples, rows of the basis, GIF and FLIM.
 #include "flatten/reduced/reduced.h"
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 
 #include <gtest/gtest.h>
@@ -31,9 +32,9 @@ struct Problem {
 
 Problem problem_of(meshes::TriangleList list) {
   Problem problem;
-  normalise(list.positions, list.faces);
-  problem.mesh = build_disk(std::move(list.positions), std::move(list.faces));
-  problem.rest = rest_triangles(problem.mesh.positions, problem.mesh.faces, 1);
+  normalise(list.positions, list.faces, Work(1));
+  problem.mesh = build_disk(std::move(list.positions), std::move(list.faces), Work(1));
+  problem.rest = rest_triangles(problem.mesh.positions, problem.mesh.faces, Work(1));
   problem.metric.resize(problem.mesh.faces.size());
   return problem;
 }
@@ -48,11 +49,12 @@ Problem with_smooth_metric(Problem problem) {
 }
 
 std::vector<Cotangents> cotangents_of(const Problem& problem) {
-  return modified_cotangents(problem.rest, problem.metric, 1);
+  return modified_cotangents(problem.rest, problem.metric, Work(1));
 }
 
-ReducedResult flatten(const Problem& problem, const ReducedOptions& options = {}) {
-  return flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), options);
+ReducedResult flatten(const Problem& problem, const ReducedOptions& options = {}, int threads = 1) {
+  return flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), options,
+                         Work(threads));
 }
 
 /// n cells in a row, joined to a square by one edge, which is a bridge, and ears at the corners.
@@ -81,14 +83,14 @@ void expect_never_rising(const std::vector<double>& energies) {
 }
 
 std::int64_t flips_after_repair(const Problem& problem, std::vector<Vec2> uvs) {
-  repair(problem.mesh, problem.rest, uvs, {});
-  const auto counted = count_orientations(problem.mesh.faces, uvs, 1);
+  repair(problem.mesh, problem.rest, uvs, {}, Work(1));
+  const auto counted = count_orientations(problem.mesh.faces, uvs, Work(1));
   return counted.negative + counted.degenerate;
 }
 
 TEST(SolveRows, EqualTheRowsOfTheFullSolve) {
   const DiskMesh mesh = problem_of(meshes::bumps(40, 30)).mesh;
-  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1);
+  MeshMatrix laplacian(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1, Work(1));
   for (Index f = 0; f < mesh.face_count(); ++f) {
     for (int k = 0; k < 3; ++k) {
       laplacian.add(f, mesh.faces[f], k, k, [](int, int) { return 1.0; });
@@ -102,11 +104,11 @@ TEST(SolveRows, EqualTheRowsOfTheFullSolve) {
     if (c % 5 != 0) rhs.insert((11 * c + 500) % n, c) = -0.25;
   }
   const std::vector<Index> rows = {3, n - 1, 0, 200, 3};
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   solver->analyze(laplacian.matrix());
   ASSERT_TRUE(solver->factorize(laplacian.matrix()));
   const DenseMatrix whole = solver->solve(DenseMatrix(rhs));
-  const DenseMatrix some = solver->solve_rows(rhs, rows, 2);
+  const DenseMatrix some = solver->solve_rows(rhs, rows);
   ASSERT_EQ(some.rows(), size_of(rows));
   ASSERT_EQ(some.cols(), columns);
   for (Index i = 0; i < size_of(rows); ++i) {
@@ -117,18 +119,18 @@ TEST(SolveRows, EqualTheRowsOfTheFullSolve) {
       EXPECT_TRUE(some.row(i).isApprox(whole.row(rows[i]), 1e-13));
     }
   }
-  EXPECT_EQ(solver->solve_rows(rhs, rows, 1), some);
-  EXPECT_EQ(solver->solve_rows(rhs, {}, 1).rows(), 0);
+  EXPECT_EQ(solver->solve_rows(rhs, rows), some);
+  EXPECT_EQ(solver->solve_rows(rhs, {}).rows(), 0);
 }
 
 TEST(MetaVertices, TakeEveryVertexOfAShortBoundary) {
   const Problem problem = problem_of(meshes::grid(10, 10));
-  EXPECT_EQ(choose_meta_vertices(problem.mesh).count(), 40);
+  EXPECT_EQ(choose_meta_vertices(problem.mesh, Work(1)).count(), 40);
 }
 
 TEST(MetaVertices, AreFewOnALongBoundary) {
   const Problem problem = problem_of(meshes::grid(400, 400));
-  const MetaVertices metas = choose_meta_vertices(problem.mesh);
+  const MetaVertices metas = choose_meta_vertices(problem.mesh, Work(1));
   EXPECT_GT(metas.count(), 70);
   EXPECT_LE(metas.count(), 260);
   EXPECT_TRUE(std::is_sorted(metas.loop.begin(), metas.loop.end()));
@@ -136,7 +138,7 @@ TEST(MetaVertices, AreFewOnALongBoundary) {
 
 TEST(MetaVertices, TakeBridgeEndsAndAVertexBetween) {
   const Problem problem = problem_of(grid_with_flag(100));
-  const MetaVertices metas = choose_meta_vertices(problem.mesh);
+  const MetaVertices metas = choose_meta_vertices(problem.mesh, Work(1));
   std::vector<bool> is_meta(problem.mesh.vertex_count(), false);
   for (const Index at : metas.loop) is_meta[problem.mesh.boundary[at]] = true;
   EXPECT_TRUE(is_meta[50]);
@@ -146,14 +148,14 @@ TEST(MetaVertices, TakeBridgeEndsAndAVertexBetween) {
 
 TEST(MetaVertices, SpaceTheOthersByArcLength) {
   const Problem problem = problem_of(meshes::grid(60, 60));
-  const MetaVertices metas = choose_meta_vertices(problem.mesh);
+  const MetaVertices metas = choose_meta_vertices(problem.mesh, Work(1));
   const Index count = size_of(problem.mesh.boundary);
   double length = 0;
   for (const double arc : metas.arc) {
     EXPECT_GT(arc, 0);
     length += arc;
   }
-  EXPECT_NEAR(length, 4 * std::sqrt(surface_area(problem.mesh)), 1e-9);
+  EXPECT_NEAR(length, 4 * std::sqrt(surface_area(problem.mesh, Work(1))), 1e-9);
   for (Index i = 0; i < count; ++i) {
     EXPECT_GE(metas.share[i], 0);
     EXPECT_LT(metas.share[i], 1);
@@ -163,7 +165,7 @@ TEST(MetaVertices, SpaceTheOthersByArcLength) {
 
 TEST(Samples, StandForTheWholeArea) {
   const Problem problem = problem_of(meshes::bumps(120, 90));
-  const MetaVertices metas = choose_meta_vertices(problem.mesh);
+  const MetaVertices metas = choose_meta_vertices(problem.mesh, Work(1));
   const SampledFaces samples = sample_faces(problem.mesh, problem.rest, metas, 500);
   double sampled = 0, area = 0;
   for (const double w : samples.weights) {
@@ -181,7 +183,7 @@ TEST(Samples, StandForTheWholeArea) {
 
 TEST(Samples, AreAllFacesOfASmallMesh) {
   const Problem problem = problem_of(meshes::bumps(12, 9));
-  const MetaVertices metas = choose_meta_vertices(problem.mesh);
+  const MetaVertices metas = choose_meta_vertices(problem.mesh, Work(1));
   EXPECT_EQ(size_of(sample_faces(problem.mesh, problem.rest, metas, 2000).faces),
             problem.mesh.face_count());
 }
@@ -189,7 +191,7 @@ TEST(Samples, AreAllFacesOfASmallMesh) {
 TEST(ReducedBasis, RowsExpandToTheWholeMap) {
   const Problem problem = with_smooth_metric(problem_of(meshes::bumps(30, 40)));
   const ReducedBasis basis(problem.mesh, cotangents_of(problem),
-                           choose_meta_vertices(problem.mesh));
+                           choose_meta_vertices(problem.mesh, Work(1)), Work(1));
   std::vector<Vec2> x;
   DenseMatrix places(basis.metas().count(), 2);
   for (Index m = 0; m < basis.metas().count(); ++m) {
@@ -198,7 +200,7 @@ TEST(ReducedBasis, RowsExpandToTheWholeMap) {
   }
   const std::vector<Vec2> uvs = basis.expand(x);
   const std::vector<Index> vertices = {0, 5, problem.mesh.vertex_count() / 2, 300, 301};
-  const DenseMatrix rows = basis.rows(vertices, 1);
+  const DenseMatrix rows = basis.rows(vertices);
   for (Index i = 0; i < size_of(vertices); ++i) {
     EXPECT_NEAR(rows.row(i).sum(), 1, 1e-10) << "not invariant to translations";
     EXPECT_LT((rows.row(i) * places - uvs[vertices[i]].transpose()).norm(), 1e-10);
@@ -211,7 +213,7 @@ TEST(FlattenReduced, FindsThePlaneMapOfAPlaneMesh) {
   EXPECT_TRUE(result.converged);
   expect_never_rising(result.energies);
   EXPECT_LT(result.energies.back(), 2.02);
-  EXPECT_TRUE(certify(problem.mesh.faces, problem.mesh.boundary, result.uvs, 1).injective());
+  EXPECT_TRUE(certify(problem.mesh.faces, problem.mesh.boundary, result.uvs, Work(1)).injective());
 }
 
 TEST(FlattenReduced, FlattensACap) {
@@ -223,7 +225,8 @@ TEST(FlattenReduced, FlattensACap) {
     EXPECT_TRUE(result.converged);
     expect_never_rising(result.energies);
     EXPECT_LT(result.energies.back(), 2.2);
-    EXPECT_TRUE(certify(problem.mesh.faces, problem.mesh.boundary, result.uvs, 1).injective());
+    EXPECT_TRUE(
+        certify(problem.mesh.faces, problem.mesh.boundary, result.uvs, Work(1)).injective());
   }
 }
 
@@ -291,31 +294,29 @@ TEST(FlattenReduced, GivesTheSameBitsAtOneAndTwoThreads) {
   const Problem problem = with_smooth_metric(problem_of(meshes::bumps(60, 50)));
   ReducedOptions options;
   options.max_iterations = 8;
-  const ReducedResult one = flatten(problem, options);
-  options.threads = 2;
-  const ReducedResult two = flatten(problem, options);
+  const ReducedResult one = flatten(problem, options, 1);
+  const ReducedResult two = flatten(problem, options, 2);
   EXPECT_EQ(one.energies, two.energies);
   EXPECT_EQ(one.uvs, two.uvs);
 }
 
-TEST(FlattenReduced, CanBeCancelledAtEveryCheckpoint) {
-  struct Cancelled {};
+TEST(FlattenReduced, CanBeCancelledAtEveryReport) {
   const Problem problem = problem_of(meshes::bumps(16, 16));
-  int checkpoints = 0;
+  int reports = 0;
   double last = 0;
-  flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), {}, [&](double fraction) {
-    ++checkpoints;
-    EXPECT_GE(fraction, last);
-    EXPECT_LE(fraction, 1);
-    last = fraction;
-  });
-  EXPECT_GT(checkpoints, 4);
-  for (int stop = 1; stop <= checkpoints; ++stop) {
+  flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), {},
+                  Work({}, [&](double fraction, const char*) {
+                    ++reports;
+                    EXPECT_GE(fraction, last);
+                    EXPECT_LE(fraction, 1);
+                    last = fraction;
+                    return false;
+                  }));
+  EXPECT_GT(reports, 4);
+  for (int stop = 1; stop <= reports; ++stop) {
     int seen = 0;
     EXPECT_THROW(flatten_reduced(problem.mesh, problem.rest, cotangents_of(problem), {},
-                                 [&](double) {
-                                   if (++seen == stop) throw Cancelled();
-                                 }),
+                                 Work({}, [&](double, const char*) { return ++seen == stop; })),
                  Cancelled);
   }
 }

@@ -66,17 +66,17 @@ bool is_permutation_of_all(std::vector<int> order, int n) {
 
 TEST(Ordering, DissectsSurfacesAtLessWorkThanMinimumDegree) {
   const PlacedGraph mesh = surface(210, 200);
-  const auto order = nested_dissection_order(mesh.graph, mesh.places, 1, [] {});
+  const auto order = nested_dissection_order(mesh.graph, mesh.places, Work(1));
   ASSERT_TRUE(is_permutation_of_all(order, mesh.graph.count()));
-  EXPECT_LT(factor_work(mesh.graph, order),
-            factor_work(mesh.graph, minimum_degree_order(mesh.graph)));
+  EXPECT_LT(factor_work(mesh.graph, order, Work(1)),
+            factor_work(mesh.graph, minimum_degree_order(mesh.graph), Work(1)));
 }
 
 TEST(Ordering, DissectsInTheSameOrderAtAnyNumberOfThreads) {
   const PlacedGraph mesh = surface(150, 140);
-  const auto order = nested_dissection_order(mesh.graph, mesh.places, 1, [] {});
+  const auto order = nested_dissection_order(mesh.graph, mesh.places, Work(1));
   for (const int threads : {2, 3, 8}) {
-    EXPECT_EQ(order, nested_dissection_order(mesh.graph, mesh.places, threads, [] {}));
+    EXPECT_EQ(order, nested_dissection_order(mesh.graph, mesh.places, Work(threads)));
   }
 }
 
@@ -109,7 +109,7 @@ TEST(Ordering, DissectsAnyGraphWithAnyPlaces) {
       line[v] = {1e30F * static_cast<float>(v), 0, 0};
     }
     for (const auto& places : {same, noise, line}) {
-      const auto order = nested_dissection_order(graph, places, 2, [] {});
+      const auto order = nested_dissection_order(graph, places, Work(2));
       EXPECT_TRUE(is_permutation_of_all(order, graph.count()));
     }
   }
@@ -122,7 +122,7 @@ TEST(Ordering, DissectsAHubWithNeighboursInManyChunks) {
   const Graph graph = from_edges(kCount, star);
   std::vector<Place> line(kCount, Place{});
   for (int v = 0; v < kCount; ++v) line[v][0] = static_cast<float>(v);
-  const auto order = nested_dissection_order(graph, line, 2, [] {});
+  const auto order = nested_dissection_order(graph, line, Work(2));
   EXPECT_TRUE(is_permutation_of_all(order, kCount));
 }
 
@@ -133,8 +133,8 @@ TEST(Ordering, SeesBlocksOfTwoOnlyWhereAllIsInBlocks) {
   }
   lower.makeCompressed();
   EXPECT_EQ(block_size_of(lower), 2);
-  EXPECT_EQ(graph_of(lower, 2, 1).count(), 2);
-  EXPECT_EQ(graph_of(lower, 2, 1).neighbour.size(), 2U);
+  EXPECT_EQ(graph_of(lower, 2, Work(1)).count(), 2);
+  EXPECT_EQ(graph_of(lower, 2, Work(1)).neighbour.size(), 2U);
   lower.prune([](int r, int c, double) { return r != 3 || c != 0; });
   EXPECT_EQ(block_size_of(lower), 1);
 }
@@ -179,15 +179,15 @@ TEST(Symbolic, CountsTheEntriesOfTheFactor) {
     std::vector<int> order(n);
     std::iota(order.begin(), order.end(), 0);
     for (int i = n; i-- > 1;) std::swap(order[i], order[random.below(i + 1)]);
-    EXPECT_EQ(factor_work(graph, order), work_by_hand(graph, order));
+    EXPECT_EQ(factor_work(graph, order, Work(1)), work_by_hand(graph, order));
   }
 }
 
 TEST(Symbolic, HasSupernodesWhoseRowsAreColumnsOfTheirAncestors) {
   const PlacedGraph mesh = surface(90, 80);
-  for (const auto& order : {nested_dissection_order(mesh.graph, mesh.places, 1, [] {}),
+  for (const auto& order : {nested_dissection_order(mesh.graph, mesh.places, Work(1)),
                             minimum_degree_order(mesh.graph)}) {
-    const Symbolic symbolic = analyze_pattern(mesh.graph, order, 1, 1, [] {});
+    const Symbolic symbolic = analyze_pattern(mesh.graph, order, 1, Work(1));
     EXPECT_TRUE(is_permutation_of_all(symbolic.place, mesh.graph.count()));
     EXPECT_EQ(symbolic.first_column.back(), mesh.graph.count());
     EXPECT_FALSE(symbolic.tasks.empty());

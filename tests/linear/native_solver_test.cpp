@@ -17,6 +17,7 @@
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/meshes.h"
+#include "support/polls.h"
 
 namespace beltrami {
 namespace {
@@ -164,7 +165,7 @@ TEST(NativeSolver, SolvesMatricesOfManyShapesInBothPrecisions) {
   for (const System& system : systems()) {
     const int n = static_cast<int>(system.lower.cols());
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_native_solver({precision}, 0);
+      const auto solver = make_native_solver({precision}, 0, Work(1));
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower)) << system.name;
       for (const int columns : {0, 1, 2, 3, 5}) {
@@ -187,7 +188,7 @@ TEST(NativeSolver, AgreesWithASimplicialFactor) {
     const DenseMatrix rhs = random_matrix(random, static_cast<int>(system.lower.cols()), 2);
     const Eigen::SimplicialLLT<SparseMatrix> reference(system.lower);
     const DenseMatrix expected = reference.solve(rhs);
-    const auto solver = make_native_solver();
+    const auto solver = make_native_solver({}, kLeastSingle, Work(1));
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     EXPECT_LE((solver->solve(rhs) - expected).norm(), 1e-9 * expected.norm()) << system.name;
@@ -211,11 +212,11 @@ TEST(NativeSolver, GivesTheSameBitsAtAnyNumberOfThreads) {
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
       DenseMatrix x, p, h;
       for (const int threads : {1, 2, 3, 8}) {
-        const auto solver = make_native_solver({precision, threads}, 0);
+        const auto solver = make_native_solver({precision}, 0, Work(threads));
         solver->analyze(system.lower, system.places);
         ASSERT_TRUE(solver->factorize(system.lower));
         const DenseMatrix x_now = solver->solve(rhs), p_now = solver->precondition(rhs),
-                          h_now = solver->solve_rows(unit, rows, threads);
+                          h_now = solver->solve_rows(unit, rows);
         if (threads == 1) {
           x = x_now;
           p = p_now;
@@ -243,17 +244,16 @@ TEST(NativeSolver, GivesSingleRowsOfTheSolution) {
     std::vector<int> rows;
     for (int i = 0; i < 25; ++i) rows.push_back(random.below(n));  // repeats are allowed
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-      const auto solver = make_native_solver({precision}, 0);
+      const auto solver = make_native_solver({precision}, 0, Work(1));
       solver->analyze(system.lower, system.places);
       ASSERT_TRUE(solver->factorize(system.lower));
-      const DenseMatrix all = solver->solve(DenseMatrix(rhs)),
-                        some = solver->solve_rows(rhs, rows, 2);
+      const DenseMatrix all = solver->solve(DenseMatrix(rhs)), some = solver->solve_rows(rhs, rows);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto expected = all.row(rows[i]);
         EXPECT_LE((some.row(static_cast<Eigen::Index>(i)) - expected).norm(), 1e-6 * all.norm())
             << system.name;
       }
-      EXPECT_EQ(solver->solve_rows(rhs, {}, 2).rows(), 0);
+      EXPECT_EQ(solver->solve_rows(rhs, {}).rows(), 0);
     }
   }
 }
@@ -262,7 +262,7 @@ TEST(NativeSolver, PreconditionsByAFixedSymmetricDefiniteOperator) {
   Random random(16);
   const System system = grid(30, 31, 1, random);
   const int n = static_cast<int>(system.lower.cols());
-  const auto solver = make_native_solver({Precision::kSingle}, 0);
+  const auto solver = make_native_solver({Precision::kSingle}, 0, Work(1));
   solver->analyze(system.lower, system.places);
   ASSERT_TRUE(solver->factorize(system.lower));
   const DenseMatrix rhs = random_matrix(random, n, 2);
@@ -287,11 +287,11 @@ TEST(NativeSolver, ReachesTheResidualWhereSinglePrecisionIsNotEnough) {
   }
   for (const double excess : {1e-3, 1e-7, 1e-9}) {
     system.lower = dominant(900, entries, excess);
-    const auto solver = make_native_solver({Precision::kSingle}, 0);
+    const auto solver = make_native_solver({Precision::kSingle}, 0, Work(1));
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, 900, 2);
-    const auto exact = make_native_solver();
+    const auto exact = make_native_solver({}, kLeastSingle, Work(1));
     exact->analyze(system.lower, system.places);
     ASSERT_TRUE(exact->factorize(system.lower));
     const double attainable = residual(system.lower, exact->solve(rhs), rhs);
@@ -311,7 +311,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
         for (const int threads : {1, 2}) {
           SparseMatrix lower = system.lower;
           lower.coeffRef(at, at) = bad;
-          const auto solver = make_native_solver({precision, threads}, 0);
+          const auto solver = make_native_solver({precision}, 0, Work(threads));
           solver->analyze(system.lower, system.places);
           EXPECT_FALSE(solver->factorize(lower)) << bad;
           ASSERT_TRUE(solver->factorize(system.lower));  // and recovers
@@ -324,7 +324,7 @@ TEST(NativeSolver, RefusesMatricesThatAreNotDefinite) {
     for (const double bad : {-100.0, std::numeric_limits<double>::quiet_NaN()}) {
       SparseMatrix lower = system.lower;
       lower.valuePtr()[lower.outerIndexPtr()[500] + 1] = bad;
-      const auto solver = make_native_solver({precision}, 0);
+      const auto solver = make_native_solver({precision}, 0, Work(1));
       solver->analyze(system.lower, system.places);
       EXPECT_FALSE(solver->factorize(lower)) << bad;
     }
@@ -338,7 +338,7 @@ TEST(NativeSolver, RefusesAMatrixWithoutADiagonalEntry) {
   lower.insert(2, 2) = 1;
   lower.makeCompressed();
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-    const auto solver = make_native_solver({precision}, 0);
+    const auto solver = make_native_solver({precision}, 0, Work(1));
     solver->analyze(lower);
     EXPECT_FALSE(solver->factorize(lower));
   }
@@ -350,7 +350,7 @@ TEST(NativeSolver, TakesPlacesThatSayNothing) {
   for (const Place& place : {Place{0, 0, 0}, Place{infinity, 0, 0}, Place{1e30F, -1e30F, 1e-30F}}) {
     System system = grid(510, 495, 1, random);  // enough for nested dissection
     std::fill(system.places.begin(), system.places.end(), place);
-    const auto solver = make_native_solver({Precision::kSingle, 2}, 0);
+    const auto solver = make_native_solver({Precision::kSingle}, 0, Work(2));
     solver->analyze(system.lower, system.places);
     ASSERT_TRUE(solver->factorize(system.lower));
     const DenseMatrix rhs = random_matrix(random, static_cast<int>(system.lower.cols()), 1);
@@ -359,31 +359,17 @@ TEST(NativeSolver, TakesPlacesThatSayNothing) {
 }
 
 TEST(NativeSolver, CanBeCancelledWhileAnalyzingAndFactorizing) {
-  struct Cancelled {};
   Random random(20);
   const System system = grid(520, 490, 1, random);  // enough for nested dissection
-  int calls = 0, allowed = std::numeric_limits<int>::max();
-  SolverOptions options;
-  options.threads = 2;
-  options.poll = [&] {
-    if (++calls > allowed) throw Cancelled();
+  const auto run = [&] {
+    const auto solver = make_native_solver({}, 0, Work(1));
+    solver->analyze(system.lower, system.places);
+    EXPECT_TRUE(solver->factorize(system.lower));
   };
-  const auto solver = make_native_solver(options, 0);
-  solver->analyze(system.lower, system.places);
-  ASSERT_TRUE(solver->factorize(system.lower));
-  const int all = calls;
+  const std::int64_t all = count_polls(run);
   EXPECT_GE(all, 6);
-  for (const int i : {0, 3, all / 2, all - 1}) {
-    calls = 0;
-    allowed = i;
-    const auto cancelled = make_native_solver(options, 0);
-    EXPECT_THROW(
-        {
-          cancelled->analyze(system.lower, system.places);
-          (void)cancelled->factorize(system.lower);
-        },
-        Cancelled)
-        << i;
+  for (const std::int64_t last : {std::int64_t{1}, std::int64_t{4}, all / 2, all}) {
+    EXPECT_THROW(count_polls(run, last), Cancelled) << last;
   }
 }
 
@@ -392,7 +378,7 @@ TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
   for (const auto& list : {meshes::grid(60, 45), meshes::fan(50), meshes::cap(20, 60, 1.0)}) {
     const DiskMesh mesh = disks::disk(list);
     for (const int size : {1, 2}) {
-      MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size);
+      MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size, Work(1));
       if (matrix.free_count() == 0) continue;
       for (Index f = 0; f < mesh.face_count(); ++f) {
         for (int i = 0; i < 3; ++i) {
@@ -402,7 +388,7 @@ TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
           matrix.add(f, mesh.faces[f], i, next_corner(i), other);
         }
       }
-      const auto solver = make_native_solver();
+      const auto solver = make_native_solver({}, kLeastSingle, Work(1));
       solver->analyze(matrix.matrix(), matrix.places(mesh.positions));
       ASSERT_TRUE(solver->factorize(matrix.matrix()));
       const DenseMatrix rhs = random_matrix(random, size * matrix.free_count(), 2);

@@ -50,7 +50,7 @@ TEST(SpdSolver, AgreesWithADenseFactorForSeveralRightHandSides) {
   Random random(1);
   for (const int n : {1, 2, 10, 80}) {
     const DenseMatrix a = random_spd(random, n), rhs = random_matrix(random, n, 3);
-    const auto solver = make_spd_solver();
+    const auto solver = make_spd_solver({}, Work(1));
     const SparseMatrix lower = lower_of(a);
     solver->analyze(lower);
     ASSERT_TRUE(solver->factorize(lower));
@@ -62,7 +62,7 @@ TEST(SpdSolver, AgreesWithADenseFactorForSeveralRightHandSides) {
 TEST(SpdSolver, FactorizesNewValuesOfThePatternItAnalyzed) {
   Random random(2);
   const DenseMatrix a = random_spd(random, 40), rhs = random_matrix(random, 40, 1);
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   solver->analyze(lower_of(a));
   for (const double factor : {1.0, 3.0, 0.25}) {
     ASSERT_TRUE(solver->factorize(lower_of(factor * a)));
@@ -75,7 +75,7 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixAndRecovers) {
   const DenseMatrix good = random_spd(random, 20), rhs = random_matrix(random, 20, 1);
   DenseMatrix bad = good;
   bad(7, 7) = -bad(7, 7);
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   solver->analyze(lower_of(good));
   EXPECT_FALSE(solver->factorize(lower_of(bad)));
   ASSERT_TRUE(solver->factorize(lower_of(good)));
@@ -84,7 +84,7 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixAndRecovers) {
 
 TEST(SpdSolver, RefusesAMatrixOfZeros) {
   SparseMatrix lower = lower_of(DenseMatrix::Identity(3, 3));
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   solver->analyze(lower);
   for (int i = 0; i < 3; ++i) lower.valuePtr()[i] = 0;
   EXPECT_FALSE(solver->factorize(lower));
@@ -94,7 +94,7 @@ TEST(FactorizeShifted, ShiftsWhatRoundingMadeIndefiniteAndNothingElse) {
   Random random(7);
   DenseMatrix a = random_spd(random, 30);
   SparseMatrix lower = lower_of(a);
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   solver->analyze(lower);
   EXPECT_EQ(factorize_shifted(*solver, lower), 0);
 
@@ -123,7 +123,7 @@ TEST(FactorizeShifted, ShiftsWhatRoundingMadeIndefiniteAndNothingElse) {
 
 TEST(SpdSolver, AnalyzesAnotherPatternAfterTheFirst) {
   Random random(4);
-  const auto solver = make_spd_solver();
+  const auto solver = make_spd_solver({}, Work(1));
   for (const int n : {30, 12, 50}) {
     const DenseMatrix a = random_spd(random, n), rhs = random_matrix(random, n, 2);
     solver->analyze(lower_of(a));
@@ -142,11 +142,11 @@ TEST(SpdSolver, NamesItsBackEnd) {
 /// Adds random blocks to a MeshMatrix and to a dense matrix, which must agree.
 void expect_sum_of_blocks(const DiskMesh& mesh, const std::vector<bool>& fixed, int size,
                           Random& random) {
-  MeshMatrix assembled(mesh.vertex_count(), mesh.faces, fixed, size);
+  MeshMatrix assembled(mesh.vertex_count(), mesh.faces, fixed, size, Work(1));
   const int n = size * assembled.free_count();
   for (int pass = 0; pass < 2; ++pass) {  // the second starts from zero again
     DenseMatrix expected = DenseMatrix::Zero(n, n);
-    assembled.set_zero(1);
+    assembled.set_zero(Work(1));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) {
@@ -189,7 +189,7 @@ TEST(MeshMatrix, AddsUpManyChunksToTheSameBitsAtAnyNumberOfThreads) {
     const auto block = [](Index f, int i, int j) {
       return [=](int r, int c) { return std::sin(1.0 + f + 7 * i * j + 3 * (r + c)); };
     };
-    MeshMatrix one_by_one(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size);
+    MeshMatrix one_by_one(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size, Work(1));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) one_by_one.add(f, mesh.faces[f], i, j, block(f, i, j));
@@ -197,8 +197,8 @@ TEST(MeshMatrix, AddsUpManyChunksToTheSameBitsAtAnyNumberOfThreads) {
     }
     SparseMatrix first;
     for (const int threads : {1, 2, 5}) {
-      MeshMatrix assembled(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size, threads);
-      assembled.add_up(mesh.faces, threads, [&](Index f, const auto& add) {
+      MeshMatrix assembled(mesh.vertex_count(), mesh.faces, mesh.on_boundary, size, Work(threads));
+      assembled.add_up(Work(threads), mesh.faces, [&](Index f, const auto& add) {
         for (int i = 0; i < 3; ++i) {
           for (int j = i; j < 3; ++j) add(i, j, block(f, i, j));
         }
@@ -213,7 +213,7 @@ TEST(MeshMatrix, AddsUpManyChunksToTheSameBitsAtAnyNumberOfThreads) {
 TEST(MeshMatrix, StoresSortedColumnsOfTheLowerTriangleThatStartOnTheDiagonal) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   const MeshMatrix assembled(mesh.vertex_count(), mesh.faces,
-                             std::vector<bool>(mesh.positions.size(), false), 2);
+                             std::vector<bool>(mesh.positions.size(), false), 2, Work(1));
   const SparseMatrix& matrix = assembled.matrix();
   ASSERT_EQ(matrix.cols(), 2 * mesh.vertex_count());
   for (int c = 0; c < matrix.cols(); ++c) {
@@ -228,7 +228,7 @@ TEST(MeshMatrix, StoresSortedColumnsOfTheLowerTriangleThatStartOnTheDiagonal) {
 
 TEST(MeshMatrix, IsEmptyWhereAllVerticesAreFixed) {
   const DiskMesh mesh = disks::disk(meshes::quad());
-  const MeshMatrix assembled(4, mesh.faces, {true, true, true, true}, 2);
+  const MeshMatrix assembled(4, mesh.faces, {true, true, true, true}, 2, Work(1));
   EXPECT_EQ(assembled.free_count(), 0);
   EXPECT_EQ(assembled.matrix().nonZeros(), 0);
 }

@@ -35,7 +35,7 @@ TEST(HilbertCurve, VisitsEveryPointAndStaysNear) {
   for (std::size_t i = points.size(); i-- > 1;) {
     std::swap(points[i], points[random.below(static_cast<int>(i + 1))]);
   }
-  const std::vector<Index> order = along_hilbert_curve(points);
+  const std::vector<Index> order = along_hilbert_curve(points, Work(1));
   ASSERT_TRUE(is_permutation_of_indices(order));
   double way = 0;
   for (std::size_t i = 1; i < order.size(); ++i) {
@@ -48,23 +48,25 @@ TEST(HilbertCurve, VisitsEveryPointAndStaysNear) {
 TEST(HilbertCurve, DoesNotDependOnTheOrderOfThePoints) {
   const std::vector<Vec3> points = disks::disk(meshes::bumps(20, 20)).positions;
   std::vector<Vec3> reversed(points.rbegin(), points.rend());
-  const auto order = along_hilbert_curve(points), other = along_hilbert_curve(reversed);
+  const auto order = along_hilbert_curve(points, Work(1));
+  const auto other = along_hilbert_curve(reversed, Work(1));
   for (std::size_t i = 0; i < order.size(); ++i) {
     EXPECT_EQ(points[order[i]], reversed[other[i]]);
   }
 }
 
 TEST(HilbertCurve, TakesPointsThatCoincideAndTheEndsOfTheRange) {
-  EXPECT_TRUE(along_hilbert_curve({}).empty());
-  EXPECT_EQ(along_hilbert_curve({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}), (std::vector<Index>{0, 1, 2}));
+  EXPECT_TRUE(along_hilbert_curve({}, Work(1)).empty());
+  EXPECT_EQ(along_hilbert_curve({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, Work(1)),
+            (std::vector<Index>{0, 1, 2}));
   constexpr double kMost = std::numeric_limits<double>::max();
-  EXPECT_TRUE(is_permutation_of_indices(
-      along_hilbert_curve({{-kMost, 0, 0}, {kMost, 0, 0}, {0, kMost, -kMost}, {0, 0, 5e-324}})));
+  EXPECT_TRUE(is_permutation_of_indices(along_hilbert_curve(
+      {{-kMost, 0, 0}, {kMost, 0, 0}, {0, kMost, -kMost}, {0, 0, 5e-324}}, Work(1))));
 }
 
 TEST(ByLeastVertex, SortsAndKeepsTheOrderOfTies) {
   const std::vector<Triangle> faces = {{5, 3, 4}, {2, 0, 1}, {3, 1, 2}, {0, 4, 1}};
-  EXPECT_EQ(by_least_vertex(6, faces), (std::vector<Index>{1, 3, 2, 0}));
+  EXPECT_EQ(by_least_vertex(6, faces, Work(1)), (std::vector<Index>{1, 3, 2, 0}));
 }
 
 TEST(VertexSums, AreThoseOfALoopWhateverTheOrderAndTheThreads) {
@@ -83,9 +85,9 @@ TEST(VertexSums, AreThoseOfALoopWhateverTheOrderAndTheThreads) {
       return 0.5;
     };
     std::vector<Vec2> one, two(3, Vec2(7, 7));
-    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, 1).add_up(give, one),
+    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, Work(1)).add_up(give, one),
               0.5 * mesh.face_count());
-    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, 2).add_up(give, two),
+    EXPECT_EQ(VertexSums(mesh.vertex_count(), mesh.faces, Work(2)).add_up(give, two),
               0.5 * mesh.face_count());
     EXPECT_EQ(one, two);
     for (std::size_t v = 0; v < one.size(); ++v) EXPECT_LT((one[v] - expected[v]).norm(), 1e-12);
@@ -101,10 +103,10 @@ TEST(SingularSteps, AreThoseThatTheFirstOneComesFrom) {
   const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   std::vector<Vec2> direction(uvs.size());
   for (Vec2& d : direction) d = 0.4 * random.vec2();
-  const double first = first_singular_step(mesh.faces, uvs, direction, 1);
+  const double first = first_singular_step(mesh.faces, uvs, direction, Work(1));
   ASSERT_TRUE(std::isfinite(first));
-  EXPECT_TRUE(singular_steps(mesh.faces, uvs, direction, first, 1).empty());
-  const auto steps = singular_steps(mesh.faces, uvs, direction, 3 * first, 2);
+  EXPECT_TRUE(singular_steps(mesh.faces, uvs, direction, first, nullptr, Work(1)).empty());
+  const auto steps = singular_steps(mesh.faces, uvs, direction, 3 * first, nullptr, Work(2));
   ASSERT_FALSE(steps.empty());
   double least = steps.front().length;
   for (const SingularStep& s : steps) {
@@ -123,7 +125,7 @@ TEST(SingularSteps, AreThoseThatTheFirstOneComesFrom) {
     const Triangle& t = mesh.faces[s.face];
     return !among[t[0]] && !among[t[1]] && !among[t[2]];
   });
-  const auto found = singular_steps(mesh.faces, uvs, direction, 3 * first, 2, &among);
+  const auto found = singular_steps(mesh.faces, uvs, direction, 3 * first, &among, Work(2));
   ASSERT_LT(found.size(), steps.size());
   EXPECT_TRUE(std::equal(
       found.begin(), found.end(), expected.begin(), expected.end(),

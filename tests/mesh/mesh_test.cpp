@@ -18,14 +18,14 @@ namespace {
 using meshes::TriangleList;
 
 DiskMesh built(const TriangleList& mesh) {
-  return build_disk(mesh.positions, mesh.faces);
+  return build_disk(mesh.positions, mesh.faces, Work(1));
 }
 
 /// Builds the mesh and expects this status and element.
 void expect_refused(const TriangleList& mesh, beltrami_status status, Element element,
                     int threads = 1) {
   try {
-    build_disk(mesh.positions, mesh.faces, threads);
+    build_disk(mesh.positions, mesh.faces, Work(threads));
     FAIL() << "was accepted, expected status " << status;
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), status) << error.what();
@@ -137,9 +137,9 @@ TEST(BuildDisk, IsTheSameAtAnyThreadCount) {
   for (std::size_t f = mesh.faces.size(); f-- > 1;) {
     std::swap(mesh.faces[f], mesh.faces[f * 7919 % (f + 1)]);
   }
-  const DiskMesh one = build_disk(mesh.positions, mesh.faces, 1);
+  const DiskMesh one = build_disk(mesh.positions, mesh.faces, Work(1));
   for (const int threads : {2, 5}) {
-    const DiskMesh other = build_disk(mesh.positions, mesh.faces, threads);
+    const DiskMesh other = build_disk(mesh.positions, mesh.faces, Work(threads));
     EXPECT_EQ(one.twin, other.twin);
     EXPECT_EQ(one.outgoing, other.outgoing);
     EXPECT_EQ(one.boundary, other.boundary);
@@ -231,7 +231,7 @@ TEST(BuildDisk, VisitsTheFacesOfAVertexCounterClockwise) {
 
 TEST(DropUnreferenced, KeepsTheOrderOfTheRest) {
   std::vector<Triangle> faces = {{5, 2, 7}, {7, 2, 3}};
-  EXPECT_EQ(drop_unreferenced(9, faces), (std::vector<Index>{2, 3, 5, 7}));
+  EXPECT_EQ(drop_unreferenced(9, faces, Work(1)), (std::vector<Index>{2, 3, 5, 7}));
   EXPECT_EQ(faces, (std::vector<Triangle>{{2, 0, 3}, {3, 0, 1}}));
 }
 
@@ -247,11 +247,11 @@ double area_of(const TriangleList& mesh) {
 TEST(Normalise, GivesTheSameBitsAtEveryPowerOfTwo) {
   TriangleList unit = meshes::bumps(6, 5);
   const TriangleList original = unit;
-  const Normalisation frame = normalise(unit.positions, unit.faces);
+  const Normalisation frame = normalise(unit.positions, unit.faces, Work(1));
   for (const int exponent : {-1000, -900, -500, -60, -1, 1, 60, 500, 900, 1020}) {
     TriangleList scaled = original;
     for (Vec3& p : scaled.positions) p *= std::ldexp(1.0, exponent);
-    const Normalisation scaled_frame = normalise(scaled.positions, scaled.faces);
+    const Normalisation scaled_frame = normalise(scaled.positions, scaled.faces, Work(1));
     EXPECT_EQ(scaled.positions, unit.positions) << "scaled by 2^" << exponent;
     EXPECT_EQ(scaled_frame.exponent, frame.exponent - exponent);
   }
@@ -261,7 +261,7 @@ TEST(Normalise, BringsTheAreaNearOne) {
   for (const double size : {1e-310, 1e-200, 3e-7, 1.0, 1.9, 77.0, 1e150, 1e300}) {
     TriangleList mesh = meshes::bumps(6, 5);
     for (Vec3& p : mesh.positions) p *= size;
-    normalise(mesh.positions, mesh.faces);
+    normalise(mesh.positions, mesh.faces, Work(1));
     const double area = area_of(mesh);
     EXPECT_GE(area, 0.5) << size;
     EXPECT_LE(area, 2.0) << size;
@@ -273,15 +273,15 @@ TEST(Normalise, KeepsWhatAnOffsetLeavesOfTheShape) {
   TriangleList near = meshes::grid(8, 4);
   TriangleList far = near;
   for (Vec3& p : far.positions) p += Vec3(1 << 30, -(1 << 29), 1 << 20);
-  normalise(near.positions, near.faces);
-  normalise(far.positions, far.faces);
+  normalise(near.positions, near.faces, Work(1));
+  normalise(far.positions, far.faces, Work(1));
   EXPECT_EQ(near.positions, far.positions);
 }
 
 TEST(Normalise, RecoversTheInput) {
   const TriangleList original = meshes::bumps(3, 3);
   TriangleList mesh = original;
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
+  const Normalisation frame = normalise(mesh.positions, mesh.faces, Work(1));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Vec3 back = mesh.positions[i] * std::ldexp(1.0, -frame.exponent) + frame.centre;
     EXPECT_LT((back - original.positions[i]).norm(), 1e-15);
@@ -290,7 +290,7 @@ TEST(Normalise, RecoversTheInput) {
 
 void expect_zero_area(TriangleList mesh) {
   try {
-    normalise(mesh.positions, mesh.faces);
+    normalise(mesh.positions, mesh.faces, Work(1));
     FAIL() << "was accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), BELTRAMI_E_ZERO_AREA);

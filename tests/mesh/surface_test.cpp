@@ -118,7 +118,7 @@ TEST(Surface, IsTheSameAtAnyThreadCount) {
 TEST(ProveDisk, IsWhatADiskIsBuiltBy) {
   const TriangleList mesh = meshes::grid(6, 5);
   const DiskMesh proven = prove_disk(built(mesh), Work(1));
-  const DiskMesh disk = build_disk(mesh.positions, mesh.faces);
+  const DiskMesh disk = build_disk(mesh.positions, mesh.faces, Work(1));
   EXPECT_EQ(proven.boundary, disk.boundary);
   EXPECT_EQ(proven.twin, disk.twin);
 }

@@ -66,7 +66,7 @@ TEST(FaceMetrics, OfAnIsometryHaveNoCoefficient) {
 TEST(FaceMetrics, TurnByTheSquareOfTheRotationWhenTheFirstCornerChanges) {
   Random random(1);
   DiskMesh mesh = disks::disk(meshes::cap(3, 9, 1.4));
-  std::vector<Vec2> uvs = tutte_embedding(mesh);
+  std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
   const auto before = metrics_of(mesh, uvs);
   std::vector<Frame> frames;
   for (Index f = 0; f < mesh.face_count(); ++f) frames.push_back(frame_of_face(mesh, f));
@@ -85,7 +85,7 @@ TEST(FaceMetrics, HaveCoefficientsBelowOneOnPositiveMaps) {
   for (const auto& list : {meshes::cap(6, 20, 2.8), disks::spike(8), disks::slivers(8, 8),
                            disks::degenerate_faces(8), disks::punctured(3)}) {
     const DiskMesh mesh = disks::disk(list);
-    for (const FaceMetric& m : metrics_of(mesh, tutte_embedding(mesh))) {
+    for (const FaceMetric& m : metrics_of(mesh, tutte_embedding(mesh, Work(1)))) {
       EXPECT_LT(std::abs(m.mu), 1);
       EXPECT_TRUE(std::isfinite(m.log_area));
       EXPECT_NEAR(std::abs(m.phase), 1, 1e-12);
@@ -360,7 +360,7 @@ std::vector<FaceMetric> random_metrics(const DiskMesh& mesh, Random& random) {
 TEST(ProlongMetric, OfAnAffineMapOntoTheSameFlatMeshIsExact) {
   const DiskMesh mesh = disks::disk(meshes::fan(9));
   const auto metrics = metrics_of(mesh, disks::affine_uvs(mesh, {0.2, 0.5}));
-  const auto prolonged = prolong_metric(mesh, metrics, mesh, {}, 1);
+  const auto prolonged = prolong_metric(mesh, metrics, mesh, {}, Work(1));
   for (Index f = 0; f < mesh.face_count(); ++f) {
     expect_near(prolonged[f].mu, metrics[f].mu, 1e-13);
     expect_near(prolonged[f].phase, metrics[f].phase, 1e-13);
@@ -373,7 +373,7 @@ TEST(ProlongMetric, OfAnAffineMapOntoAFinerFlatMeshIsExact) {
   const Complex k(-0.3, 0.6);
   const auto expected = metrics_of(fine, disks::affine_uvs(fine, k));
   const auto prolonged =
-      prolong_metric(coarse, metrics_of(coarse, disks::affine_uvs(coarse, k)), fine, {}, 1);
+      prolong_metric(coarse, metrics_of(coarse, disks::affine_uvs(coarse, k)), fine, {}, Work(1));
   for (Index f = 0; f < fine.face_count(); ++f) {
     expect_near(prolonged[f].mu, expected[f].mu, 1e-13);
     expect_near(prolonged[f].fz(), expected[f].fz(), 1e-13);
@@ -386,7 +386,7 @@ TEST(ProlongMetric, NeverExceedsTheGreatestCoarseValues) {
   for (const auto& list : {meshes::cap(3, 8, 2.0), meshes::cap(12, 40, 2.0)}) {
     const DiskMesh coarse = disks::disk(list);
     const auto metrics = random_metrics(coarse, random);
-    for (const FaceMetric& m : prolong_metric(coarse, metrics, fine, {}, 1)) {
+    for (const FaceMetric& m : prolong_metric(coarse, metrics, fine, {}, Work(1))) {
       EXPECT_LE(std::abs(m.mu), greatest_mu(metrics) * (1 + 1e-12));
       EXPECT_GE(m.log_area, -3);
       EXPECT_LE(m.log_area, 2);
@@ -398,8 +398,8 @@ TEST(ProlongMetric, NeverExceedsTheGreatestCoarseValues) {
 // At a slit, centroids may land on the wrong side: harmless, as long as the values are.
 TEST(ProlongMetric, StaysBelowOneAtCoincidentSeamSides) {
   const DiskMesh coarse = disks::disk(disks::slit(2)), fine = disks::disk(disks::slit(8));
-  const auto metrics = metrics_of(coarse, tutte_embedding(coarse));
-  const auto prolonged = prolong_metric(coarse, metrics, fine, {}, 1);
+  const auto metrics = metrics_of(coarse, tutte_embedding(coarse, Work(1)));
+  const auto prolonged = prolong_metric(coarse, metrics, fine, {}, Work(1));
   EXPECT_LE(greatest_mu(prolonged), greatest_mu(metrics) * (1 + 1e-12));
   EXPECT_LT(greatest_mu(prolonged), 1);
 }
@@ -410,7 +410,7 @@ TEST(ProlongMetric, IsFiniteWithFacesThatHaveNoNormalOnEitherSide) {
   const DiskMesh good = disks::disk(meshes::bumps(5, 5));
   for (const auto& [coarse, fine] : {std::pair(&bad, &good), std::pair(&good, &bad)}) {
     const auto metrics = random_metrics(*coarse, random);
-    for (const FaceMetric& m : prolong_metric(*coarse, metrics, *fine, {}, 1)) {
+    for (const FaceMetric& m : prolong_metric(*coarse, metrics, *fine, {}, Work(1))) {
       EXPECT_LT(std::abs(m.mu), 1);
       EXPECT_TRUE(std::isfinite(m.log_area));
       EXPECT_NEAR(std::abs(m.phase), 1, 1e-12);
@@ -422,10 +422,10 @@ TEST(ProlongMetric, IsFiniteWithFacesThatHaveNoNormalOnEitherSide) {
 TEST(ProlongMetric, IsTheSameFromANearbyVertexAsFromASearch) {
   for (const auto& list : {meshes::cap(40, 120, 1.5), disks::slit(40), meshes::bumps(60, 60)}) {
     const DiskMesh fine = disks::disk(list);
-    const CoarseDisk coarse = simplify(fine, 400);
-    const auto metrics = metrics_of(coarse.mesh, tutte_embedding(coarse.mesh));
-    const auto searched = prolong_metric(coarse.mesh, metrics, fine, {}, 1);
-    const auto walked = prolong_metric(coarse.mesh, metrics, fine, coarse.nearby, 1);
+    const CoarseDisk coarse = simplify(fine, 400, Work(1));
+    const auto metrics = metrics_of(coarse.mesh, tutte_embedding(coarse.mesh, Work(1)));
+    const auto searched = prolong_metric(coarse.mesh, metrics, fine, {}, Work(1));
+    const auto walked = prolong_metric(coarse.mesh, metrics, fine, coarse.nearby, Work(1));
     int off = 0;
     for (Index f = 0; f < fine.face_count(); ++f) {
       off += std::abs(searched[f].mu - walked[f].mu) > 1e-9;
@@ -469,8 +469,8 @@ TEST(ProlongMetric, HasTheSameBitsOnTwoThreads) {
   const DiskMesh coarse = disks::disk(meshes::bumps(12, 12));
   const DiskMesh fine = disks::disk(meshes::bumps(80, 80));
   const auto metrics = random_metrics(coarse, random);
-  const auto one = prolong_metric(coarse, metrics, fine, {}, 1);
-  const auto two = prolong_metric(coarse, metrics, fine, {}, 2);
+  const auto one = prolong_metric(coarse, metrics, fine, {}, Work(1));
+  const auto two = prolong_metric(coarse, metrics, fine, {}, Work(2));
   for (Index f = 0; f < fine.face_count(); ++f) {
     ASSERT_EQ(one[f].mu, two[f].mu);
     ASSERT_EQ(one[f].log_area, two[f].log_area);

@@ -28,11 +28,11 @@ namespace {
 using disks::Random;
 
 RepairResult mend(const DiskMesh& mesh, std::vector<Vec2>& uvs) {
-  return repair(mesh, disks::rest_of(mesh), uvs, {});
+  return repair(mesh, disks::rest_of(mesh), uvs, {}, Work(1));
 }
 
 bool injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
-  return certify(mesh.faces, mesh.boundary, uvs, 1).injective();
+  return certify(mesh.faces, mesh.boundary, uvs, Work(1)).injective();
 }
 
 double least_area(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
@@ -159,9 +159,9 @@ TEST(Repair, NeverAddsFlipsOrCrossings) {
     std::vector<Vec2> uvs = disks::flat_uvs(mesh);
     const double noise = 0.02 * (1 + seed % 10);
     for (Vec2& w : uvs) w += noise * random.vec2();
-    const Certificate before = certify(mesh.faces, mesh.boundary, uvs, 1);
+    const Certificate before = certify(mesh.faces, mesh.boundary, uvs, Work(1));
     const RepairResult result = mend(mesh, uvs);
-    const Certificate after = certify(mesh.faces, mesh.boundary, uvs, 1);
+    const Certificate after = certify(mesh.faces, mesh.boundary, uvs, Work(1));
     EXPECT_EQ(result.flips_before, before.orientations.negative + before.orientations.degenerate);
     EXPECT_EQ(result.flips_after, after.orientations.negative + after.orientations.degenerate);
     EXPECT_LE(result.flips_after, result.flips_before) << seed;
@@ -176,8 +176,8 @@ TEST(Repair, HasTheSameBitsOnTwoThreads) {
   for (int i = 0; i < 20; ++i) one[random.below(mesh.vertex_count())] += 0.03 * random.vec2();
   std::vector<Vec2> two = one;
   const auto rest = disks::rest_of(mesh);
-  repair(mesh, rest, one, {.threads = 1});
-  repair(mesh, rest, two, {.threads = 2});
+  repair(mesh, rest, one, {}, Work(1));
+  repair(mesh, rest, two, {}, Work(2));
   EXPECT_EQ(one, two);
 }
 
@@ -187,7 +187,7 @@ TEST(GlobalFix, ReproducesALayoutThatIsInjective) {
   const DiskMesh mesh = disks::disk(meshes::bumps(9, 7));
   const std::vector<Vec2> before = disks::flat_uvs(mesh);
   std::vector<Vec2> after = before;
-  ASSERT_TRUE(embed_with_scaffold(mesh, after));
+  ASSERT_TRUE(embed_with_scaffold(mesh, after, Work(1)));
   for (std::size_t v = 0; v < after.size(); ++v) EXPECT_LT((after[v] - before[v]).norm(), 1e-9);
 }
 
@@ -197,12 +197,12 @@ TEST(GlobalFix, EmbedsAnyLayout) {
     Random random(500 + seed);
     std::vector<Vec2> uvs;
     for (Index v = 0; v < mesh.vertex_count(); ++v) uvs.push_back(random.vec2());
-    ASSERT_TRUE(embed_with_scaffold(mesh, uvs));
+    ASSERT_TRUE(embed_with_scaffold(mesh, uvs, Work(1)));
     EXPECT_TRUE(injective(mesh, uvs)) << seed;
   }
   // Nothing to go by at all: every vertex in one place.
   std::vector<Vec2> uvs(mesh.positions.size(), Vec2(0.25, 0.5));
-  ASSERT_TRUE(embed_with_scaffold(mesh, uvs));
+  ASSERT_TRUE(embed_with_scaffold(mesh, uvs, Work(1)));
   EXPECT_TRUE(injective(mesh, uvs));
 }
 
@@ -212,7 +212,7 @@ TEST(GlobalFix, EndsOnRequest) {
   std::vector<Vec2> uvs = before;
   const std::atomic<bool> request{true};
   const InterruptScope scope(&request);
-  EXPECT_THROW(embed_with_scaffold(mesh, uvs), Cancelled);
+  EXPECT_THROW(embed_with_scaffold(mesh, uvs, Work(1)), Cancelled);
   EXPECT_EQ(uvs, before);
 }
 
@@ -240,9 +240,9 @@ TEST(GlobalFix, OpensABoundaryThatCrossesItselfOnDemandOnly) {
   std::vector<Vec2> uvs = bent;
   EXPECT_EQ(mend(mesh, uvs).flips_before, 0);
   EXPECT_EQ(uvs, bent);
-  ASSERT_GT(certify(mesh.faces, mesh.boundary, bent, 1).crossings.count, 0);
+  ASSERT_GT(certify(mesh.faces, mesh.boundary, bent, Work(1)).crossings.count, 0);
   const auto rest = disks::rest_of(mesh);
-  EXPECT_EQ(repair(mesh, rest, uvs, {.simple_boundary = true}).global_fixes, 1);
+  EXPECT_EQ(repair(mesh, rest, uvs, {.simple_boundary = true}, Work(1)).global_fixes, 1);
   EXPECT_TRUE(injective(mesh, uvs));
 }
 
@@ -268,14 +268,15 @@ std::vector<Vec2> squeezed(const DiskMesh& mesh) {
 }
 
 double energy_of(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
-  return measure_distortion(mesh.positions, mesh.faces, uvs, 1, nullptr).symmetric_dirichlet;
+  return measure_distortion(mesh.positions, mesh.faces, uvs, nullptr, Work(1)).symmetric_dirichlet;
 }
 
 TEST(CleanOutliers, MendsAFaceOfEnormousEnergy) {
   const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
   std::vector<Vec2> uvs = squeezed(mesh);
   EXPECT_GT(energy_of(mesh, uvs), 1e10);
-  EXPECT_GE(clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, 1), 1);
+  EXPECT_GE(
+      clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, {}, Work(1)), 1);
   EXPECT_LT(energy_of(mesh, uvs), 20);
   EXPECT_TRUE(injective(mesh, uvs));
 }
@@ -283,7 +284,8 @@ TEST(CleanOutliers, MendsAFaceOfEnormousEnergy) {
 TEST(CleanOutliers, LeavesAMapWithoutOutliersBitForBit) {
   const DiskMesh mesh = disks::disk(meshes::bumps(6, 6));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
-  EXPECT_EQ(clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, 1), 0);
+  EXPECT_EQ(
+      clean_outliers(Energy::kSymmetricDirichlet, mesh, disks::rest_of(mesh), uvs, {}, Work(1)), 0);
   EXPECT_EQ(uvs, disks::flat_uvs(mesh));
 }
 
@@ -324,7 +326,7 @@ TEST(Repair, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
     const DiskMesh mesh = disks::disk(meshes::fan(faces));
     std::vector<Vec2> uvs = folded_fan(faces);
     const auto rest = disks::rest_of(mesh);
-    return count_polls([&] { repair(mesh, rest, uvs, {}); });
+    return count_polls([&] { repair(mesh, rest, uvs, {}, Work(1)); });
   };
   EXPECT_LE(polls(16000), 3 * polls(8000));
 }
@@ -336,7 +338,7 @@ TEST(RoundMap, TakesLittleMoreThanTwiceTheWorkForAHubOfTwiceTheFaces) {
     // Slivers far from the origin: rounding flips very many.
     for (const Vec2& w : disks::flat_uvs(mesh)) uvs.push_back(w + Vec2(300, 200));
     EXPECT_TRUE(injective(mesh, uvs));
-    return count_polls([&] { round_map(mesh, uvs, uvs, {.single = true}, 1); });
+    return count_polls([&] { round_map(mesh, uvs, uvs, {.single = true}, Work(1)); });
   };
   EXPECT_LE(polls(40000), 3 * polls(20000));
 }

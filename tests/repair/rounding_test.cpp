@@ -18,7 +18,7 @@ using disks::Random;
 constexpr Numbers kSingle = {.single = true};
 
 Rounded round(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int threads = 1) {
-  return round_map(mesh, uvs, uvs, kSingle, threads);
+  return round_map(mesh, uvs, uvs, kSingle, Work(threads));
 }
 
 void expect_single_numbers(const Rounded& rounded) {
@@ -49,7 +49,7 @@ TEST(Rounding, OpensFacesThatRoundingFolds) {
       const double t = std::clamp((w.y() - 0.4) / 0.2, 0.0, 1.0);
       w = {w.x(), 1 + bent + t * height + 0.3 * w.x()};
     }
-    const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, 1);
+    const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, Work(1));
     if (!exact.injective()) continue;  // the squeeze is lost in double precision, too
     const Rounded rounded = round(mesh, uvs);
     EXPECT_TRUE(rounded.certificate.injective()) << height;
@@ -71,7 +71,7 @@ TEST(Rounding, KeepsBoundariesApartThatRoundingBringsTogether) {
       uvs[v].y() += gap * (1 + v - first_upper);
     }
     for (Vec2& w : uvs) w = {w.x() + 0.377 * w.y(), 0.61 * w.y() - 0.33 * w.x() + 0.7};
-    ASSERT_TRUE(certify(mesh.faces, mesh.boundary, uvs, 1).injective());
+    ASSERT_TRUE(certify(mesh.faces, mesh.boundary, uvs, Work(1)).injective());
     const Rounded rounded = round(mesh, uvs);
     EXPECT_TRUE(rounded.certificate.injective()) << gap;
     expect_single_numbers(rounded);
@@ -127,10 +127,10 @@ TEST(Rounding, OpensFacesThatPlacingFolds) {
   for (const double height : {1e-15, 1e-16, 1e-17, 1e-25}) {
     std::vector<Vec2> uvs = disks::flat_uvs(mesh);
     for (Vec2& w : uvs) w = {w.x(), w.y() < 0.3 ? height * w.y() : w.y()};
-    ASSERT_TRUE(certify(mesh.faces, mesh.boundary, uvs, 1).injective());
+    ASSERT_TRUE(certify(mesh.faces, mesh.boundary, uvs, Work(1)).injective());
     std::vector<Vec2> placed = uvs;
     for (Vec2& w : placed) w += Vec2(0.7, 0.6 + 0.3 * w.x());
-    const Rounded rounded = round_map(mesh, uvs, placed, {}, 1);
+    const Rounded rounded = round_map(mesh, uvs, placed, {}, Work(1));
     EXPECT_TRUE(rounded.certificate.injective()) << height;
     EXPECT_GT(rounded.moved, 0) << height;
   }

@@ -194,7 +194,7 @@ void expect_ring(const RingTriangulation& ring, const Polygon& inner, const Poly
   ASSERT_EQ(size_of(ring.points), n + m);
   EXPECT_TRUE(std::equal(inner.begin(), inner.end(), ring.points.begin()));
   EXPECT_TRUE(std::equal(outer.begin(), outer.end(), ring.points.begin() + n));
-  EXPECT_EQ(count_orientations(ring.faces, ring.points, 1).positive, size_of(ring.faces));
+  EXPECT_EQ(count_orientations(ring.faces, ring.points, Work(1)).positive, size_of(ring.faces));
 
   const DirectedEdges edges = sorted_edges(ring.faces);
   EXPECT_EQ(std::adjacent_find(edges.begin(), edges.end()), edges.end());

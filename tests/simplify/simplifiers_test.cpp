@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "descend/newton.h"
@@ -36,8 +35,8 @@ struct Comparison {
 
   Comparison(std::string its_name, meshes::TriangleList mesh, Index target_faces)
       : name(std::move(its_name)), fine(disks::disk(std::move(mesh))) {
-    ours = simplify_in_passes(fine, target_faces, 1, no_checkpoint);
-    openmesh = simplify_by_openmesh(fine, target_faces, no_checkpoint);
+    ours = simplify_in_passes(fine, target_faces, Work(1));
+    openmesh = simplify_by_openmesh(fine, target_faces, Work(1));
   }
 };
 
@@ -99,8 +98,8 @@ std::vector<bool> held(const DiskMesh& mesh) {
 /// The minimum in the space of all maps.
 std::vector<Vec2> flatten_coarse(const DiskMesh& mesh) {
   const auto rest = disks::rest_of(mesh);
-  std::vector<Vec2> uvs = tutte_embedding(mesh);
-  minimise_energy(mesh.faces, rest, held(mesh), uvs, {});
+  std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
+  minimise_energy(mesh.faces, rest, held(mesh), uvs, {}, Work(1));
   return uvs;
 }
 
@@ -109,17 +108,17 @@ double final_energy(const DiskMesh& fine, const CoarseDisk& coarse) {
   const std::vector<Vec2> coarse_uvs = flatten_coarse(coarse.mesh);
   const auto metric = prolong_metric(
       coarse.mesh, face_metrics(coarse.mesh.faces, disks::rest_of(coarse.mesh), coarse_uvs), fine,
-      coarse.nearby, 1);
+      coarse.nearby, Work(1));
   const auto rest = disks::rest_of(fine);
-  const auto stiffness = energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, 1);
-  const MetricLaplacian laplacian(fine, stiffness, held(fine));
+  const auto stiffness = energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, Work(1));
+  const MetricLaplacian laplacian(fine, stiffness, held(fine), {Precision::kSingle}, {}, Work(1));
   std::vector<Vec2> uvs = carry_boundary(fine, coarse, coarse_uvs);
-  solve_metric(fine, rest, metric, stiffness, laplacian, {}, false, 1, uvs);
-  EXPECT_TRUE(non_positive_faces(fine.faces, uvs, 1).empty());
+  solve_metric(fine, rest, metric, stiffness, laplacian, {}, false, uvs, Work(1));
+  EXPECT_TRUE(non_positive_faces(fine.faces, uvs, Work(1)).empty());
   const auto precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
     laplacian.precondition(in, out);
   };
-  return polish(fine.faces, rest, precondition, uvs, {}).energies.back();
+  return polish(fine.faces, rest, precondition, uvs, {}, Work(1)).energies.back();
 }
 
 TEST(Simplifiers, BothLeadToTheSameEnergy) {

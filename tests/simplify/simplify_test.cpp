@@ -1,6 +1,7 @@
 // The coarse disk: a subset of the fine vertices, the boundary in its order, and what must stay.
 // Every simplifier that this build has keeps the same contract.
 #include "simplify/simplify.h"
+#include "base/interrupt.h"
 #include "base/portable_math.h"
 
 #include <gtest/gtest.h>
@@ -52,8 +53,9 @@ DiskMesh grid(int width, int height, const Lift& lift = flat, const KeepsCell& k
     }
   }
   std::vector<Vec3> kept;
-  for (const Index v : drop_unreferenced(size_of(positions), faces)) kept.push_back(positions[v]);
-  return build_disk(std::move(kept), std::move(faces));
+  for (const Index v : drop_unreferenced(size_of(positions), faces, Work(1)))
+    kept.push_back(positions[v]);
+  return build_disk(std::move(kept), std::move(faces), Work(1));
 }
 
 /// Two squares joined by a corridor one cell wide, so that its interior edges are bridges.
@@ -81,7 +83,7 @@ DiskMesh spherical_cap(int rings, int spokes, double angle) {
       faces.push_back({at(r, s), at(r + 1, s + 1), at(r, s + 1)});
     }
   }
-  return build_disk(std::move(positions), std::move(faces));
+  return build_disk(std::move(positions), std::move(faces), Work(1));
 }
 
 DiskMesh fan(int rim) {
@@ -92,7 +94,7 @@ DiskMesh fan(int rim) {
     positions.push_back({portable::cos(turn), portable::sin(turn), 0});
     faces.push_back({0, 1 + i, 1 + (i + 1) % rim});
   }
-  return build_disk(std::move(positions), std::move(faces));
+  return build_disk(std::move(positions), std::move(faces), Work(1));
 }
 
 using Edges = std::set<std::pair<Index, Index>>;
@@ -197,9 +199,8 @@ std::vector<Index> identity(Index count) {
 
 class Simplify : public testing::TestWithParam<Simplifier> {
  protected:
-  static CoarseDisk simplify(const DiskMesh& fine, Index target_faces, int threads = 1,
-                             const Checkpoint& checkpoint = no_checkpoint) {
-    return GetParam().simplify(fine, target_faces, threads, checkpoint);
+  static CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work = Work(1)) {
+    return GetParam().simplify(fine, target_faces, work);
   }
 };
 
@@ -212,7 +213,7 @@ TEST_P(Simplify, FlatGridReachesTheTargetWithEvenTriangles) {
   expect_sound(fine, coarse);
   EXPECT_LE(coarse.mesh.face_count(), 500);
   EXPECT_GE(coarse.mesh.face_count(), 499);
-  EXPECT_NEAR(surface_area(coarse.mesh), 3600, 1e-9);
+  EXPECT_NEAR(surface_area(coarse.mesh, Work(1)), 3600, 1e-9);
   EXPECT_GT(smallest_angle(coarse.mesh), 5);
 }
 
@@ -226,7 +227,7 @@ TEST_P(Simplify, SphericalCapStaysCloseToTheSphere) {
     for (const Index v : face) centroid += coarse.mesh.positions[v] / 3;
     EXPECT_GT(centroid.norm(), 0.985);
   }
-  EXPECT_GT(surface_area(coarse.mesh), 0.98 * surface_area(fine));
+  EXPECT_GT(surface_area(coarse.mesh, Work(1)), 0.98 * surface_area(fine, Work(1)));
 }
 
 TEST_P(Simplify, LongStripKeepsItsEndsAndReachesTheTarget) {
@@ -365,10 +366,10 @@ TEST_P(Simplify, KeepsTheOutlineWhereTheBoundaryFacesHaveNoArea) {
     const double radius = ring * (1 + 0.4 * portable::cos(5 * turn));
     positions[i] = {radius * portable::cos(turn), radius * portable::sin(turn), 0};
   }
-  const DiskMesh fine = build_disk(std::move(positions), cap.faces);
+  const DiskMesh fine = build_disk(std::move(positions), cap.faces, Work(1));
   const CoarseDisk coarse = simplify(fine, 400);
   expect_sound(fine, coarse);
-  EXPECT_NEAR(surface_area(coarse.mesh) / surface_area(fine), 1, 0.002);
+  EXPECT_NEAR(surface_area(coarse.mesh, Work(1)) / surface_area(fine, Work(1)), 1, 0.002);
   EXPECT_GE(size_of(coarse.mesh.boundary), 30);
 }
 
@@ -379,7 +380,7 @@ TEST_P(Simplify, PutsDegenerateVerticesOnTheirDuplicatesFirst) {
   });
   const CoarseDisk coarse = simplify(fine, 1200);
   expect_sound(fine, coarse);
-  EXPECT_NEAR(surface_area(coarse.mesh), surface_area(fine), 1e-9);
+  EXPECT_NEAR(surface_area(coarse.mesh, Work(1)), surface_area(fine, Work(1)), 1e-9);
 }
 
 TEST_P(Simplify, ReducesAMeshOfSlivers) {
@@ -401,7 +402,7 @@ TEST_P(Simplify, ReturnsTheMeshItselfAtOrAboveItsFaceCount) {
 }
 
 TEST_P(Simplify, LeavesTinyMeshesAlone) {
-  const DiskMesh triangle = build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  const DiskMesh triangle = build_disk({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, Work(1));
   EXPECT_EQ(simplify(triangle, 1).mesh.faces, triangle.faces);
   EXPECT_EQ(simplify(triangle, 0).mesh.faces, triangle.faces);
   const DiskMesh quad = grid(1, 1);
@@ -412,8 +413,8 @@ TEST_P(Simplify, LeavesTinyMeshesAlone) {
 
 TEST(SimplifyInPasses, HasTheSameBitsOnTwoThreadsInBlocks) {
   const DiskMesh fine = grid(220, 220, wavy);  // three blocks of vertices
-  const CoarseDisk one = simplify_in_passes(fine, 3000, 1, no_checkpoint);
-  const CoarseDisk two = simplify_in_passes(fine, 3000, 2, no_checkpoint);
+  const CoarseDisk one = simplify_in_passes(fine, 3000, Work(1));
+  const CoarseDisk two = simplify_in_passes(fine, 3000, Work(2));
   EXPECT_EQ(one.mesh.faces, two.mesh.faces);
   EXPECT_EQ(one.fine_vertex, two.fine_vertex);
   EXPECT_EQ(one.nearby, two.nearby);
@@ -434,31 +435,29 @@ TEST_P(Simplify, SaysWhereEveryVertexWent) {
     mean +=
         (fine.positions[v] - coarse.mesh.positions[coarse.nearby[v]]).norm() / fine.vertex_count();
   }
-  const double coarse_edge = std::sqrt(surface_area(fine) / coarse.mesh.vertex_count());
+  const double coarse_edge = std::sqrt(surface_area(fine, Work(1)) / coarse.mesh.vertex_count());
   EXPECT_LT(mean, 2 * coarse_edge);
 }
 
 TEST_P(Simplify, ReportsGrowingFractionsFromZeroToOne) {
   std::vector<double> fractions;
-  simplify(grid(60, 60, wavy), 300, 1, [&](double fraction) { fractions.push_back(fraction); });
+  simplify(grid(60, 60, wavy), 300, Work({}, [&](double fraction, const char*) {
+             fractions.push_back(fraction);
+             return false;
+           }));
   ASSERT_GE(fractions.size(), 5u);
   EXPECT_EQ(fractions.front(), 0);
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_LE(fractions.back(), 1);
 }
 
-TEST_P(Simplify, IsCancelledByAThrowingCheckpoint) {
-  struct Cancelled : std::runtime_error {
-    using std::runtime_error::runtime_error;
-  };
+TEST_P(Simplify, IsCancelledByItsProgress) {
   const DiskMesh fine = grid(40, 40, wavy);
   const DiskMesh copy = fine;
   for (int allowed = 0; allowed < 8; ++allowed) {
     int calls = 0;
-    const Checkpoint cancel = [&](double) {
-      if (calls++ == allowed) throw Cancelled("cancelled");
-    };
-    EXPECT_THROW(simplify(fine, 100, 1, cancel), Cancelled);
+    const Work work({}, [&](double, const char*) { return calls++ == allowed; });
+    EXPECT_THROW(simplify(fine, 100, work), Cancelled);
   }
   EXPECT_EQ(fine.faces, copy.faces);
   EXPECT_EQ(fine.positions, copy.positions);

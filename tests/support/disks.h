@@ -18,11 +18,11 @@
 namespace beltrami::disks {
 
 inline DiskMesh disk(meshes::TriangleList mesh) {
-  return build_disk(std::move(mesh.positions), std::move(mesh.faces));
+  return build_disk(std::move(mesh.positions), std::move(mesh.faces), Work(1));
 }
 
 inline std::vector<RestTriangle> rest_of(const DiskMesh& mesh) {
-  return rest_triangles(mesh.positions, mesh.faces, 1);
+  return rest_triangles(mesh.positions, mesh.faces, Work(1));
 }
 
 /// The x and y of every vertex: the isometric map of a flat mesh.
@@ -73,7 +73,7 @@ meshes::TriangleList cells(Index nx, Index ny, const Keeps& keeps) {
   for (Index f = 0; f < size_of(all.faces); ++f) {
     if (keeps(f / 2 % nx, f / 2 / nx)) kept.faces.push_back(all.faces[f]);
   }
-  for (const Index v : drop_unreferenced(size_of(all.positions), kept.faces)) {
+  for (const Index v : drop_unreferenced(size_of(all.positions), kept.faces, Work(1))) {
     const Vec3& p = all.positions[v];
     kept.positions.push_back({p.x() * nx, p.y() * ny, 0});
   }

@@ -40,7 +40,7 @@ inline void add_spikes(Random& random, meshes::TriangleList& mesh) {
 
 /// Faces glued to boundary edges by one edge each.
 inline void add_ears(Random& random, meshes::TriangleList& mesh) {
-  const DiskMesh disk = build_disk(mesh.positions, mesh.faces);
+  const DiskMesh disk = build_disk(mesh.positions, mesh.faces, Work(1));
   const Index count = size_of(disk.boundary);
   for (Index i = 0; i < count; ++i) {
     if (random.below(4) != 0) continue;
@@ -55,7 +55,7 @@ inline void add_ears(Random& random, meshes::TriangleList& mesh) {
 /// Flips interior edges at random, for vertices of high degree and bridges.
 inline void flip_edges(Random& random, meshes::TriangleList& mesh) {
   for (int attempt = 0; attempt < 200; ++attempt) {
-    const DiskMesh disk = build_disk(mesh.positions, mesh.faces);
+    const DiskMesh disk = build_disk(mesh.positions, mesh.faces, Work(1));
     const Index h = random.below(static_cast<int>(disk.twin.size()));
     if (disk.twin[h] == kNone) continue;
     const Index t = disk.twin[h];
@@ -65,7 +65,7 @@ inline void flip_edges(Random& random, meshes::TriangleList& mesh) {
     faces[h / 3] = {p, s, r};
     faces[t / 3] = {q, r, s};
     try {
-      build_disk(mesh.positions, faces);
+      build_disk(mesh.positions, faces, Work(1));
     } catch (const Error&) {
       continue;  // the edge is there already
     }

@@ -14,7 +14,7 @@ namespace beltrami::disks {
 /// The map of a disk, as it is delivered.
 inline Flattening run(meshes::TriangleList mesh, const ChartOptions& options = {},
                       const Work& work = Work()) {
-  const Normalisation frame = normalise(mesh.positions, mesh.faces);
+  const Normalisation frame = normalise(mesh.positions, mesh.faces, Work(1));
   return flatten(disk(std::move(mesh)), frame, options, work);
 }
 

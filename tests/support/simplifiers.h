@@ -4,7 +4,6 @@
 #include <ostream>
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
@@ -14,8 +13,7 @@ namespace beltrami {
 
 struct Simplifier {
   const char* name;
-  CoarseDisk (*simplify)(const DiskMesh& fine, Index target_faces, int threads,
-                         const Checkpoint& checkpoint);
+  CoarseDisk (*simplify)(const DiskMesh& fine, Index target_faces, const Work& work);
 };
 
 inline std::ostream& operator<<(std::ostream& stream, const Simplifier& simplifier) {
@@ -26,10 +24,7 @@ inline std::ostream& operator<<(std::ostream& stream, const Simplifier& simplifi
 inline std::vector<Simplifier> simplifiers() {
   std::vector<Simplifier> found = {{"native", simplify_in_passes}};
 #ifdef BELTRAMI_WITH_OPENMESH
-  found.push_back({"openmesh", [](const DiskMesh& fine, Index target_faces, int /*threads*/,
-                                  const Checkpoint& checkpoint) {
-                     return simplify_by_openmesh(fine, target_faces, checkpoint);
-                   }});
+  found.push_back({"openmesh", simplify_by_openmesh});
 #endif
   return found;
 }

@@ -22,13 +22,13 @@ constexpr Index kShortBoundary = 100;
 constexpr double kLongestPiece = 0.05;
 constexpr double kCurvedShare = 0.001;
 
-Index stride_along(const DiskMesh& mesh, const std::vector<double>& lengths) {
+Index stride_along(const DiskMesh& mesh, const std::vector<double>& lengths, const Work& work) {
   const Index count = size_of(mesh.boundary);
   if (count < kShortBoundary) return 1;
   const Index cap = (count + kMostByStride - 1) / kMostByStride;
   if (mesh.face_count() > kLargeMesh) return cap;
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  const double longest = kLongestPiece * std::sqrt(surface_area(mesh));
+  const double longest = kLongestPiece * std::sqrt(surface_area(mesh, work));
   const auto fitting = static_cast<Index>(std::min<double>(kUsualStride, longest * count / length));
   return std::max({cap, fitting, Index{1}});
 }
@@ -117,10 +117,10 @@ MetaVertices connect(const std::vector<bool>& chosen, const std::vector<double>&
 
 }  // namespace
 
-MetaVertices choose_meta_vertices(const DiskMesh& mesh) {
+MetaVertices choose_meta_vertices(const DiskMesh& mesh, const Work& work) {
   const Index count = size_of(mesh.boundary);
   const std::vector<double> lengths = boundary_lengths(mesh);
-  const Index stride = stride_along(mesh, lengths);
+  const Index stride = stride_along(mesh, lengths, work);
   std::vector<bool> chosen(count, false);
   for (Index i = 0; i < count; i += stride) chosen[i] = true;
   choose_curved(mesh, chosen);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -27,6 +28,6 @@ struct MetaVertices {
 /// curvature|; both ends of every bridge (interior edge that joins two boundary vertices) and one
 /// vertex between bridge ends that follow each other, without which the faces cut off by the bridge
 /// would be collinear. About 250 at most, bridge ends on top.
-MetaVertices choose_meta_vertices(const DiskMesh& mesh);
+MetaVertices choose_meta_vertices(const DiskMesh& mesh, const Work& work);
 
 }  // namespace beltrami

@@ -39,7 +39,7 @@ std::vector<Vec2> metas_on_circle(const MetaVertices& metas, double area) {
 
 /// The sampled faces' edges as rows of H. Faces that share vertices share the work.
 ReducedProblem sampled_problem(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                               const ReducedBasis& basis, int threads) {
+                               const ReducedBasis& basis) {
   const SampledFaces samples = sample_faces(mesh, rest, basis.metas(), kStrata);
 
   std::vector<Index> vertices;
@@ -48,7 +48,7 @@ ReducedProblem sampled_problem(const DiskMesh& mesh, const std::vector<RestTrian
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const DenseMatrix rows = basis.rows(vertices, threads);
+  const DenseMatrix rows = basis.rows(vertices);
   const auto row = [&](Index v) {
     return std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin();
   };
@@ -69,9 +69,9 @@ ReducedProblem sampled_problem(const DiskMesh& mesh, const std::vector<RestTrian
 
 ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                               const std::vector<Cotangents>& cotangents,
-                              const ReducedOptions& options, const Checkpoint& checkpoint) {
-  checkpoint(0);
-  MetaVertices metas = choose_meta_vertices(mesh);
+                              const ReducedOptions& options, const Work& work) {
+  work.report(0);
+  MetaVertices metas = choose_meta_vertices(mesh, work);
   if (metas.count() > kMostMetas) {
     throw Error(BELTRAMI_E_SOLVER, "the boundary has " + std::to_string(metas.count()) +
                                        " vertices at bridges and between them: too many for a "
@@ -80,15 +80,15 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   double area = 0;
   for (const RestTriangle& r : rest) area += r.area();
   std::vector<Vec2> x = metas_on_circle(metas, area);
-  const ReducedBasis basis(mesh, cotangents, std::move(metas));
-  checkpoint(0.5 * kBasisShare);
-  ReducedProblem problem = sampled_problem(mesh, rest, basis, options.threads);
+  const ReducedBasis basis(mesh, cotangents, std::move(metas), work);
+  work.report(0.5 * kBasisShare);
+  ReducedProblem problem = sampled_problem(mesh, rest, basis);
   problem.energy = options.energy;
-  checkpoint(kBasisShare);
+  work.report(kBasisShare);
 
-  ReducedDescent descent = minimise_reduced(
-      problem, options.scaffold, options.tolerance, options.max_iterations, options.threads, x,
-      [&](double fraction) { checkpoint(kBasisShare + kNewtonShare * fraction); });
+  ReducedDescent descent =
+      minimise_reduced(problem, options.scaffold, options.tolerance, options.max_iterations, x,
+                       work.part(kBasisShare, kBasisShare + kNewtonShare));
   ReducedResult result;
   result.uvs = basis.expand(x);
   result.energies = std::move(descent.energies);

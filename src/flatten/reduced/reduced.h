@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/energy.h"
 #include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
@@ -21,7 +21,6 @@ struct ReducedOptions {
   bool scaffold = true;     ///< GIF: the boundary may not cross itself. false: FLIM, no flips alone
   double tolerance = 1e-3;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 200;  ///< Newton steps
-  int threads = 1;
 };
 
 struct ReducedResult {
@@ -36,12 +35,11 @@ struct ReducedResult {
 
 /// Flattens a disk. Boundary vertices lie on straight pieces between meta vertices, the interior is
 /// harmonic in the metric of the corner `cotangents` (those of the surface: plain GIF or FLIM).
-/// Starts from the meta vertices on a circle. The same bits at any number of threads. Throws Error
-/// SOLVER where a system cannot be solved, or where bridges call for more meta vertices than dense
-/// algebra can serve.
+/// Starts from the meta vertices on a circle; ends, not converged, where the time is up. The same
+/// bits at any number of threads. Throws Error SOLVER where a system cannot be solved, or where
+/// bridges call for more meta vertices than dense algebra can serve.
 ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                               const std::vector<Cotangents>& cotangents,
-                              const ReducedOptions& options,
-                              const Checkpoint& checkpoint = no_checkpoint);
+                              const ReducedOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -7,12 +7,12 @@
 namespace beltrami {
 
 ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents,
-                           MetaVertices metas)
+                           MetaVertices metas, const Work& work)
     : mesh_(mesh), metas_(std::move(metas)), position_(mesh.vertex_count(), kNone) {
   for (Index i = 0; i < size_of(mesh.boundary); ++i) position_[mesh.boundary[i]] = i;
   std::vector<Eigen::Triplet<double>> pull;
   MeshMatrix laplacian =
-      assemble_laplacian(mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary, 1,
+      assemble_laplacian(work, mesh.vertex_count(), mesh.faces, cotangents, mesh.on_boundary,
                          [&](Index row, Index vertex, double weight) {
                            const Index at = position_[vertex], meta = metas_.piece[at];
                            const double share = metas_.share[at];
@@ -22,16 +22,17 @@ ReducedBasis::ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& 
   row_ = laplacian.rows();
   pull_.resize(laplacian.free_count(), metas_.count());
   pull_.setFromTriplets(pull.begin(), pull.end());
-  if (laplacian.free_count() > 0) solver_ = factorize_laplacian(laplacian, mesh.positions, {});
+  if (laplacian.free_count() > 0)
+    solver_ = factorize_laplacian(laplacian, mesh.positions, {}, work);
 }
 
-DenseMatrix ReducedBasis::rows(const std::vector<Index>& vertices, int threads) const {
+DenseMatrix ReducedBasis::rows(const std::vector<Index>& vertices) const {
   std::vector<Index> interior;
   for (const Index v : vertices) {
     if (row_[v] != kNone) interior.push_back(row_[v]);
   }
   DenseMatrix inner(0, metas_.count());
-  if (!interior.empty()) inner = solver_->solve_rows(pull_, interior, threads);
+  if (!interior.empty()) inner = solver_->solve_rows(pull_, interior);
   DenseMatrix result = DenseMatrix::Zero(size_of(vertices), metas_.count());
   Index taken = 0;
   for (Index i = 0; i < size_of(vertices); ++i) {

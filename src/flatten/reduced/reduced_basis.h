@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "flatten/laplacian.h"
 #include "flatten/reduced/meta_vertices.h"
 #include "linear/spd_solver.h"
@@ -18,12 +19,13 @@ class ReducedBasis {
  public:
   /// Harmonic in the metric of the corner `cotangents`. Throws Error SOLVER if the Laplacian is not
   /// definite in floating point.
-  ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents, MetaVertices metas);
+  ReducedBasis(const DiskMesh& mesh, const std::vector<Cotangents>& cotangents, MetaVertices metas,
+               const Work& work);
 
   const MetaVertices& metas() const { return metas_; }
 
   /// The rows of H at `vertices`, one column per meta vertex.
-  DenseMatrix rows(const std::vector<Index>& vertices, int threads) const;
+  DenseMatrix rows(const std::vector<Index>& vertices) const;
 
   /// H x for the places x of the meta vertices: one UV per vertex.
   std::vector<Vec2> expand(const std::vector<Vec2>& x) const;

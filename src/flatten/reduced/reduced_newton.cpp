@@ -42,10 +42,10 @@ struct LooseFaces {
 
 class Descent {
  public:
-  Descent(const ReducedProblem& problem, bool scaffold, int threads, std::vector<Vec2>& x)
+  Descent(const ReducedProblem& problem, bool scaffold, std::vector<Vec2>& x, const Work& work)
       : problem_(problem),
         scaffold_(scaffold),
-        threads_(threads),
+        work_(work),
         metas_(size_of(x)),
         x_(x),
         active_(problem.rest.size(), false),
@@ -75,7 +75,7 @@ class Descent {
 
   const ReducedProblem& problem_;
   const bool scaffold_;
-  const int threads_;
+  const Work work_;
   const Index metas_;
   std::vector<Vec2>& x_;
   std::vector<bool> active_;
@@ -184,7 +184,7 @@ double Descent::energy(const LooseFaces& loose, const std::vector<Vec2>& points)
 template <class Density>
 std::vector<FaceModel> Descent::model_faces(const LooseFaces& loose, const Density& density) const {
   std::vector<FaceModel> models(loose.faces.size());
-  parallel_for(threads_, size_of(loose.faces), 1024, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work_, size_of(loose.faces), 1024, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = loose.faces[f];
       const LinearMap map =
@@ -202,7 +202,7 @@ std::vector<FaceModel> Descent::model_faces(const LooseFaces& loose, const Densi
 void Descent::assemble(const LooseFaces& loose, const std::vector<FaceModel>& models) {
   const Index samples = size_of(active_list_);
   DenseMatrix edges(2 * samples, metas_), pull(2 * samples, 2);
-  parallel_for(threads_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t m = begin; m < end; ++m) {
       for (Index i = 0; i < samples; ++i) {
         edges.col(m).segment<2>(2 * i) = problem_.edges.col(m).segment<2>(2 * active_list_[i]);
@@ -221,7 +221,7 @@ void Descent::assemble(const LooseFaces& loose, const std::vector<FaceModel>& mo
   hessian_.setZero(2 * metas_, 2 * metas_);
   // (row, column) of D: u with u, v with u, v with v.
   const std::array<std::array<int, 2>, 3> blocks = {{{0, 0}, {1, 0}, {1, 1}}};
-  parallel_for(threads_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
     const Eigen::Index width = end - begin;
     DenseMatrix scaled(2 * samples, width);
     for (const auto& [r, c] : blocks) {
@@ -294,8 +294,8 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
     point_direction[1 + e] = edge_direction.row(e).transpose();
   }
   std::copy(direction.begin(), direction.end(), point_direction.begin() + first_meta());
-  double length = std::min(1.0, kSingularShare * first_singular_step(loose.faces, loose.points,
-                                                                     point_direction, threads_));
+  double length = std::min(
+      1.0, kSingularShare * first_singular_step(loose.faces, loose.points, point_direction, work_));
   std::vector<Vec2> trial(loose.points.size()), places(metas_);
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     for (std::size_t p = 0; p < trial.size(); ++p) {
@@ -315,14 +315,14 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
 }  // namespace
 
 ReducedDescent minimise_reduced(const ReducedProblem& problem, bool scaffold, double tolerance,
-                                int max_iterations, int threads, std::vector<Vec2>& x,
-                                const Checkpoint& checkpoint) {
-  Descent descent(problem, scaffold, threads, x);
+                                int max_iterations, std::vector<Vec2>& x, const Work& work) {
+  Descent descent(problem, scaffold, x, work);
   ReducedDescent result;
   result.energies.push_back(descent.sample_energy());
   int proxy_steps = kProxySteps, little_gain = 0;
   for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
-    checkpoint(iteration / (iteration + 12.0));
+    if (work.out_of_time()) break;
+    work.report(iteration / (iteration + 12.0));
     const double before = result.energies.back();
     const bool proxy = proxy_steps > 0;
     const auto [length, exhausted] = descent.step(proxy, tolerance);

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "base/checkpoint.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/energy.h"
 #include "linear/spd_solver.h"
 #include "mesh/rest_shape.h"
@@ -34,7 +34,6 @@ struct ReducedDescent {
 /// its faces joining the energy with a small weight, and every step is judged by exact predicates.
 /// Ends, not converged, where no shift makes a Newton system definite.
 ReducedDescent minimise_reduced(const ReducedProblem& problem, bool scaffold, double tolerance,
-                                int max_iterations, int threads, std::vector<Vec2>& x,
-                                const Checkpoint& checkpoint);
+                                int max_iterations, std::vector<Vec2>& x, const Work& work);
 
 }  // namespace beltrami

@@ -18,13 +18,13 @@ template <class T>
 class TreeSolve {
  public:
   TreeSolve(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x, int columns,
-            int threads)
+            const Work& work)
       : vectors_(vectors),
         symbolic_(symbolic),
         factor_(factor),
         x_(x),
         columns_(columns),
-        threads_(threads),
+        work_(work),
         size_(static_cast<std::int64_t>(symbolic.column_count()) * symbolic.block_size),
         top_(static_cast<std::int64_t>(symbolic.block_size) *
              symbolic.first_column[symbolic.top_begin()]),
@@ -42,7 +42,7 @@ class TreeSolve {
       work->front.resize(static_cast<std::size_t>(highest_) * columns_);
       return work;
     };
-    parallel_for(threads_, tasks, 1, [&](std::int64_t t, std::int64_t) {
+    parallel_for(work_, tasks, 1, [&](std::int64_t t, std::int64_t) {
       auto work = pool.take(make);
       work->above.resize(static_cast<std::size_t>((size_ - top_) * columns_), T(0));
       const Symbolic::Range task = symbolic_.tasks[t];
@@ -56,7 +56,7 @@ class TreeSolve {
     for (int s = top; s < count; ++s) forward(s, x_ + top_, *work, size_);
     for (int s = count - 1; s >= top; --s) backward(s, *work);
     pool.give_back(std::move(work));
-    parallel_for(threads_, tasks, 1, [&](std::int64_t t, std::int64_t) {
+    parallel_for(work_, tasks, 1, [&](std::int64_t t, std::int64_t) {
       auto own = pool.take(make);
       const Symbolic::Range task = symbolic_.tasks[t];
       for (int s = task.end - 1; s >= task.begin; --s) backward(s, *own);
@@ -165,7 +165,8 @@ class TreeSolve {
   const Symbolic& symbolic_;
   const T* factor_;
   T* const x_;
-  const int columns_, threads_;
+  const int columns_;
+  const Work work_;
   const std::int64_t size_, top_;  // scalars: all, and before the top
   int highest_ = 0;
   std::vector<std::vector<T>> sums_;  // per task: for the rows of its root
@@ -302,27 +303,29 @@ class PrunedSolve {
 
 template <class T>
 void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x,
-                       int columns, int threads) {
-  TreeSolve<T>(vectors, symbolic, factor, x, columns, threads).run();
+                       int columns, const Work& work) {
+  TreeSolve<T>(vectors, symbolic, factor, x, columns, work).run();
 }
 
 template <class T>
 DenseMatrix solve_rows_with_factor(const Symbolic& symbolic, const T* factor,
                                    const SparseMatrix& rhs, const std::vector<int>& rows,
-                                   int threads) {
+                                   const Work& work) {
   DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
   const PrunedSolve<T> pruned(symbolic, factor, rhs, rows);
-  parallel_for(
-      threads, rhs.cols(), PrunedSolve<T>::kBlock,
-      [&](std::int64_t begin, std::int64_t end) { pruned.run(begin, end - begin, result); });
+  parallel_for(work, rhs.cols(), PrunedSolve<T>::kBlock, [&](std::int64_t begin, std::int64_t end) {
+    pruned.run(begin, end - begin, result);
+  });
   return result;
 }
 
-template void solve_with_factor(front::Vectors, const Symbolic&, const float*, float*, int, int);
-template void solve_with_factor(front::Vectors, const Symbolic&, const double*, double*, int, int);
+template void solve_with_factor(front::Vectors, const Symbolic&, const float*, float*, int,
+                                const Work&);
+template void solve_with_factor(front::Vectors, const Symbolic&, const double*, double*, int,
+                                const Work&);
 template DenseMatrix solve_rows_with_factor(const Symbolic&, const float*, const SparseMatrix&,
-                                            const std::vector<int>&, int);
+                                            const std::vector<int>&, const Work&);
 template DenseMatrix solve_rows_with_factor(const Symbolic&, const double*, const SparseMatrix&,
-                                            const std::vector<int>&, int);
+                                            const std::vector<int>&, const Work&);
 
 }  // namespace beltrami

@@ -12,13 +12,13 @@ namespace beltrami {
 /// panels of the supernodes, at symbolic.value_start. The same bits at any number of threads.
 template <class T>
 void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x,
-                       int columns, int threads);
+                       int columns, const Work& work);
 
 /// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes
 /// that right-hand sides or wanted rows reach are visited.
 template <class T>
 DenseMatrix solve_rows_with_factor(const Symbolic& symbolic, const T* factor,
                                    const SparseMatrix& rhs, const std::vector<int>& rows,
-                                   int threads);
+                                   const Work& work);
 
 }  // namespace beltrami

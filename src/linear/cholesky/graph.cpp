@@ -82,7 +82,7 @@ int block_size_of(const SparseMatrix& lower) {
   return 2;
 }
 
-Graph graph_of(const SparseMatrix& lower, int block_size, int threads) {
+Graph graph_of(const SparseMatrix& lower, int block_size, const Work& work) {
   const int n = static_cast<int>(lower.cols()) / block_size;
   const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
   const auto for_each_row_below = [&](std::int64_t c, auto&& visit) {
@@ -93,14 +93,13 @@ Graph graph_of(const SparseMatrix& lower, int block_size, int threads) {
     }
   };
   Graph graph;
-  BucketSort<std::uint32_t> sort(threads, n, n, graph.start,
-                                 [&](std::int64_t c, const auto& count) {
-                                   for_each_row_below(c, [&](int r) {
-                                     count(r);
-                                     count(c);
-                                   });
-                                 });
-  parallel_assign(threads, graph.neighbour, graph.start[n]);
+  BucketSort<std::uint32_t> sort(work, n, n, graph.start, [&](std::int64_t c, const auto& count) {
+    for_each_row_below(c, [&](int r) {
+      count(r);
+      count(c);
+    });
+  });
+  parallel_assign(work, graph.neighbour, graph.start[n]);
   sort.place([&](std::int64_t c, const auto& place) {
     for_each_row_below(c, [&](int r) {
       graph.neighbour[place(r)] = static_cast<int>(c);
@@ -110,7 +109,7 @@ Graph graph_of(const SparseMatrix& lower, int block_size, int threads) {
   return graph;
 }
 
-Graph renumber(const Graph& graph, const std::vector<int>& order, int threads) {
+Graph renumber(const Graph& graph, const std::vector<int>& order, const Work& work) {
   std::vector<int> place(order.size());
   for (int i = 0; i < graph.count(); ++i) place[order[i]] = i;
   Graph result;
@@ -119,8 +118,8 @@ Graph renumber(const Graph& graph, const std::vector<int>& order, int threads) {
   for (int i = 0; i < graph.count(); ++i) {
     result.start[i + 1] = result.start[i] + (graph.start[order[i] + 1] - graph.start[order[i]]);
   }
-  parallel_assign(threads, result.neighbour, graph.neighbour.size());
-  parallel_for(threads, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
+  parallel_assign(work, result.neighbour, graph.neighbour.size());
+  parallel_for(work, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       int* target = result.neighbour.data() + result.start[i];
       for (const int w : graph.neighbours(order[i])) *target++ = place[w];
@@ -129,13 +128,13 @@ Graph renumber(const Graph& graph, const std::vector<int>& order, int threads) {
   return result;
 }
 
-ClusterGraph coarsen(const Graph& graph, int threads) {
+ClusterGraph coarsen(const Graph& graph, const Work& work) {
   ClusterGraph coarse;
   std::vector<int>& cluster = coarse.cluster;
   cluster.resize(graph.count());
   std::vector<Chunk> chunks((graph.count() + kChunk - 1) / kChunk);
   const auto for_each_chunk = [&](const auto& body) {
-    parallel_for(threads, graph.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, graph.count(), kChunk, [&](std::int64_t begin, std::int64_t end) {
       body(chunks[begin / kChunk], static_cast<int>(begin), static_cast<int>(end));
     });
   };

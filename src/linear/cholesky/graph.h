@@ -30,14 +30,14 @@ struct ClusterGraph {
 int block_size_of(const SparseMatrix& lower);
 
 /// The graph of a lower triangle; with blocks of two, one vertex per block.
-Graph graph_of(const SparseMatrix& lower, int block_size, int threads);
+Graph graph_of(const SparseMatrix& lower, int block_size, const Work& work);
 
 /// The same graph with vertex order[i] as vertex i.
-Graph renumber(const Graph& graph, const std::vector<int>& order, int threads);
+Graph renumber(const Graph& graph, const std::vector<int>& order, const Work& work);
 
 /// Puts each vertex that is left together with its neighbours that are left: about five each. No
 /// cluster reaches from one chunk of vertices into another, so that chunks go side by side: the
 /// same clusters at any number of threads.
-ClusterGraph coarsen(const Graph& graph, int threads);
+ClusterGraph coarsen(const Graph& graph, const Work& work);
 
 }  // namespace beltrami

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "base/bucket_sort.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "linear/cholesky/factor_solve.h"
 #include "linear/cholesky/front.h"
@@ -63,23 +64,23 @@ template <class T>
 class Numeric {
  public:
   Numeric(front::Vectors vectors, const Symbolic& symbolic, const PermutedPattern& pattern,
-          const T* values, T* factor, int threads)
+          const T* values, T* factor, const Work& work)
       : vectors_(vectors),
         symbolic_(symbolic),
         pattern_(pattern),
         values_(values),
         factor_(factor),
-        threads_(threads),
+        work_(work),
         plan_(plan_stacks(symbolic)),
         kept_(symbolic.supernode_count() - symbolic.top_begin()),
         kept_of_task_(symbolic.tasks.size()) {}
 
-  bool run(const Poll& poll) {
-    poll();
+  bool run() {
+    poll_interrupt();
     if (!run_tasks()) return false;
     WorkspacePool<Workspace> pool;
     for (const Wave& wave : plan_waves()) {
-      poll();
+      poll_interrupt();
       if (!run_wave(wave, pool)) return false;
     }
     return true;
@@ -96,7 +97,7 @@ class Numeric {
 
   /// Supernodes of the top at one depth, which share nothing.
   struct Wave {
-    int threads = 1;
+    bool worth_threads = false;
     std::vector<int> side_by_side, alone;  // alone: with all threads at work on one front
   };
 
@@ -120,62 +121,64 @@ class Numeric {
     for (int s = top; s < count; ++s) {
       const int d = depth[s - top];
       Wave& wave = waves[deepest - d];
-      wave.threads = work[d] > kParallelWave ? threads_ : 1;
+      wave.worth_threads = work[d] > kParallelWave;
+      const int threads = wave.worth_threads ? work_.threads() : 1;
       // What is much more than a thread's share of its wave would keep the others waiting.
-      const bool dominates = work_of(s) * wave.threads > kDominant * work[d];
+      const bool dominates = work_of(s) * threads > kDominant * work[d];
       (dominates ? wave.alone : wave.side_by_side).push_back(s);
     }
     return waves;
   }
 
   std::unique_ptr<Workspace> make_workspace() const {
-    auto work = std::make_unique<Workspace>();
-    work->place.resize(symbolic_.column_count());
-    return work;
+    auto space = std::make_unique<Workspace>();
+    space->place.resize(symbolic_.column_count());
+    return space;
   }
 
   bool run_tasks() {
     std::atomic<bool> positive{true};
     WorkspacePool<Workspace> pool;
     const auto make = [&] {
-      auto work = make_workspace();
-      for (int d = 0; d < 2; ++d) work->stack[d] = allocate_large<T>(plan_.peak[d]);
-      work->buffer = allocate_large<T>(plan_.buffer);
-      return work;
+      auto space = make_workspace();
+      for (int d = 0; d < 2; ++d) space->stack[d] = allocate_large<T>(plan_.peak[d]);
+      space->buffer = allocate_large<T>(plan_.buffer);
+      return space;
     };
-    parallel_for(threads_, static_cast<std::int64_t>(symbolic_.tasks.size()), 1,
+    parallel_for(work_, static_cast<std::int64_t>(symbolic_.tasks.size()), 1,
                  [&](std::int64_t t, std::int64_t) {
                    if (!positive) return;
-                   auto work = pool.take(make);
-                   if (!run_task(static_cast<int>(t), *work)) positive = false;
-                   pool.give_back(std::move(work));
+                   auto space = pool.take(make);
+                   if (!run_task(static_cast<int>(t), *space)) positive = false;
+                   pool.give_back(std::move(space));
                  });
     return positive;
   }
 
   bool run_wave(const Wave& wave, WorkspacePool<Workspace>& pool) {
     std::atomic<bool> positive{true};
-    const auto run = [&](int s, int threads) {
+    const auto run = [&](int s, const Work& work) {
       if (!positive) return;
-      auto work = pool.take([&] { return make_workspace(); });
-      if (!run_top(s, threads, *work)) positive = false;
-      pool.give_back(std::move(work));
+      auto space = pool.take([&] { return make_workspace(); });
+      if (!run_top(s, *space, work)) positive = false;
+      pool.give_back(std::move(space));
     };
-    parallel_for(wave.threads, static_cast<std::int64_t>(wave.side_by_side.size()), 1,
-                 [&](std::int64_t i, std::int64_t) { run(wave.side_by_side[i], 1); });
-    for (const int s : wave.alone) run(s, wave.threads);
+    const Work alone = work_.aside(), &shared = wave.worth_threads ? work_ : alone;
+    parallel_for(shared, static_cast<std::int64_t>(wave.side_by_side.size()), 1,
+                 [&](std::int64_t i, std::int64_t) { run(wave.side_by_side[i], alone); });
+    for (const int s : wave.alone) run(s, shared);
     return positive;
   }
 
-  bool run_task(int t, Workspace& work) {
+  bool run_task(int t, Workspace& space) {
     const Symbolic::Range task = symbolic_.tasks[t];
     for (int s = task.begin; s < task.end; ++s) {
-      T* update = work.stack[plan_.depth[s]].get() + plan_.offset[s];
-      assemble(s, update, work, [&](int c) -> const T* {
-        return work.stack[plan_.depth[c]].get() + plan_.offset[c];
+      T* update = space.stack[plan_.depth[s]].get() + plan_.offset[s];
+      assemble(s, update, space, [&](int c) -> const T* {
+        return space.stack[plan_.depth[c]].get() + plan_.offset[c];
       });
       if (!front::factorize(vectors_, panel(s), symbolic_.height(s), symbolic_.width(s), update,
-                            work.buffer.get(), {})) {
+                            space.buffer.get(), {})) {
         return false;
       }
     }
@@ -184,35 +187,35 @@ class Numeric {
     if (symbolic_.parent[root] < 0) return true;
     const std::int64_t size = update_size(symbolic_, root);
     kept_of_task_[t] = allocate_large<T>(size);
-    const T* update = work.stack[plan_.depth[root]].get() + plan_.offset[root];
+    const T* update = space.stack[plan_.depth[root]].get() + plan_.offset[root];
     std::copy(update, update + size, kept_of_task_[t].get());
     return true;
   }
 
-  bool run_top(int s, int threads, Workspace& work) {
+  bool run_top(int s, Workspace& space, const Work& work) {
     const int top = symbolic_.top_begin();
     const auto kept = [&](int c) -> LargeArray<T>& {
       return c >= top ? kept_[c - top] : kept_of_task_[task_of(c)];
     };
     kept_[s - top] = allocate_large<T>(update_size(symbolic_, s));
-    assemble(s, kept_[s - top].get(), work, [&](int c) -> const T* { return kept(c).get(); });
+    assemble(s, kept_[s - top].get(), space, [&](int c) -> const T* { return kept(c).get(); });
     for (const int c : symbolic_.children(s)) kept(c).reset();
     const int height = symbolic_.height(s), width = symbolic_.width(s);
     const std::int64_t size = front::buffer_size(height, width);
-    if (size > work.buffer_size) {
-      work.buffer = allocate_large<T>(size);
-      work.buffer_size = size;
+    if (size > space.buffer_size) {
+      space.buffer = allocate_large<T>(size);
+      space.buffer_size = size;
     }
     front::ForChunks for_chunks;
-    if (threads > 1) {
-      for_chunks = [threads](int count, const std::function<void(int, int)>& body) {
-        parallel_for(threads, count, 1, [&](std::int64_t begin, std::int64_t end) {
+    if (work.threads() > 1) {
+      for_chunks = [&work](int count, const std::function<void(int, int)>& body) {
+        parallel_for(work, count, 1, [&](std::int64_t begin, std::int64_t end) {
           body(static_cast<int>(begin), static_cast<int>(end));
         });
       };
     }
     return front::factorize(vectors_, panel(s), height, width, kept_[s - top].get(),
-                            work.buffer.get(), for_chunks);
+                            space.buffer.get(), for_chunks);
   }
 
   /// The task whose root is supernode c.
@@ -227,15 +230,15 @@ class Numeric {
 
   /// Sums up a front: entries of the matrix in its panel, and the updates of its children.
   template <class UpdateOf>
-  void assemble(int s, T* update, Workspace& work, const UpdateOf& update_of_child) {
+  void assemble(int s, T* update, Workspace& space, const UpdateOf& update_of_child) {
     const int height = symbolic_.height(s), width = symbolic_.width(s),
               block = symbolic_.block_size;
     const int begin = symbolic_.first_column[s], end = symbolic_.first_column[s + 1];
     const auto rows = symbolic_.rows_of(s);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      work.place[rows[i]] = width + block * static_cast<int>(i);
+      space.place[rows[i]] = width + block * static_cast<int>(i);
     }
-    for (int c = begin; c < end; ++c) work.place[c] = block * (c - begin);
+    for (int c = begin; c < end; ++c) space.place[c] = block * (c - begin);
     T* const columns = panel(s);
     std::fill(columns, columns + static_cast<std::int64_t>(height) * width, T(0));
     const int shift = block - 1;  // blocks are of one or two
@@ -244,7 +247,7 @@ class Numeric {
       for (int e = pattern_.start[block * begin + j]; e < pattern_.start[block * begin + j + 1];
            ++e) {
         const int row = pattern_.row[e];
-        column[work.place[row >> shift] + (row & shift)] = values_[e];
+        column[space.place[row >> shift] + (row & shift)] = values_[e];
       }
     }
     const int below = height - width;
@@ -252,22 +255,22 @@ class Numeric {
     for (int j = 0; j < below; ++j) {
       std::fill(update + j * stride + j, update + (j + 1) * stride, T(0));
     }
-    for (const int c : symbolic_.children(s)) add_child(s, c, update_of_child(c), update, work);
+    for (const int c : symbolic_.children(s)) add_child(s, c, update_of_child(c), update, space);
   }
 
-  void add_child(int s, int c, const T* source, T* update, Workspace& work) {
+  void add_child(int s, int c, const T* source, T* update, Workspace& space) {
     const int width = symbolic_.width(s), height = symbolic_.height(s),
               block = symbolic_.block_size;
     const std::int64_t stride = update_stride(symbolic_, s), from = update_stride(symbolic_, c);
     const auto rows = symbolic_.rows_of(c);
     const int count = block * static_cast<int>(rows.size());
-    work.relative.resize(count);
-    int* const relative = work.relative.data();
+    space.relative.resize(count);
+    int* const relative = space.relative.data();
     if (block == 1) {
-      for (int i = 0; i < count; ++i) relative[i] = work.place[rows[i]];
+      for (int i = 0; i < count; ++i) relative[i] = space.place[rows[i]];
     } else {
       for (int i = 0; i < count; i += 2) {
-        relative[i] = work.place[rows[i / 2]];
+        relative[i] = space.place[rows[i / 2]];
         relative[i + 1] = relative[i] + 1;
       }
     }
@@ -290,25 +293,26 @@ class Numeric {
   const PermutedPattern& pattern_;
   const T* values_;
   T* const factor_;
-  const int threads_;
+  const Work work_;
   StackPlan plan_;
   std::vector<LargeArray<T>> kept_, kept_of_task_;  // updates that the top will add
 };
 
 }  // namespace
 
-PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbolic, int threads) {
+PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbolic,
+                                const Work& work) {
   const int n = static_cast<int>(lower.cols()), block = symbolic.block_size, shift = block - 1;
   const int *start = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
   const auto place = [&](int r) { return block * symbolic.place[r >> shift] + (r & shift); };
   PermutedPattern pattern;
-  BucketSort<int> sort(threads, n, n, pattern.start, [&](std::int64_t c, const auto& count) {
+  BucketSort<int> sort(work, n, n, pattern.start, [&](std::int64_t c, const auto& count) {
     const int column = place(static_cast<int>(c));
     for (int e = start[c]; e < start[c + 1]; ++e) count(std::min(column, place(row[e])));
   });
   const auto entries = static_cast<std::size_t>(lower.nonZeros());
-  parallel_assign(threads, pattern.row, entries);
-  parallel_assign(threads, pattern.source, entries);
+  parallel_assign(work, pattern.row, entries);
+  parallel_assign(work, pattern.source, entries);
   sort.place([&](std::int64_t c, const auto& place_in) {
     const int column = place(static_cast<int>(c));
     for (int e = start[c]; e < start[c + 1]; ++e) {
@@ -323,25 +327,25 @@ PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbo
 
 template <class T>
 bool Factor<T>::factorize(const Symbolic& symbolic, const PermutedPattern& pattern, const T* values,
-                          int threads, const Poll& poll) {
+                          const Work& work) {
   const std::int64_t size = symbolic.value_start.back();
   if (capacity_ < size) {
     clear();
     values_ = allocate_large<T>(size);
     capacity_ = size;
   }
-  return Numeric<T>(vectors_, symbolic, pattern, values, values_.get(), threads).run(poll);
+  return Numeric<T>(vectors_, symbolic, pattern, values, values_.get(), work).run();
 }
 
 template <class T>
-void Factor<T>::solve(const Symbolic& symbolic, T* x, int columns, int threads) const {
-  solve_with_factor(vectors_, symbolic, values_.get(), x, columns, threads);
+void Factor<T>::solve(const Symbolic& symbolic, T* x, int columns, const Work& work) const {
+  solve_with_factor(vectors_, symbolic, values_.get(), x, columns, work);
 }
 
 template <class T>
 DenseMatrix Factor<T>::solve_rows(const Symbolic& symbolic, const SparseMatrix& rhs,
-                                  const std::vector<int>& rows, int threads) const {
-  return solve_rows_with_factor<T>(symbolic, values_.get(), rhs, rows, threads);
+                                  const std::vector<int>& rows, const Work& work) const {
+  return solve_rows_with_factor<T>(symbolic, values_.get(), rhs, rows, work);
 }
 
 template class Factor<float>;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/work.h"
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/large_array.h"
 #include "linear/cholesky/symbolic.h"
@@ -22,7 +23,8 @@ struct PermutedPattern {
   int count() const { return static_cast<int>(start.size()) - 1; }
 };
 
-PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbolic, int threads);
+PermutedPattern permute_pattern(const SparseMatrix& lower, const Symbolic& symbolic,
+                                const Work& work);
 
 /// L, for one kind of numbers. Each front is a dense matrix that is made by one thread, or by
 /// several that share nothing, in an order given by the tree: the same bits at any number of
@@ -35,15 +37,15 @@ class Factor {
   /// `values`: per entry of the pattern. False if a pivot is not positive. The memory of the last
   /// factor is used again.
   [[nodiscard]] bool factorize(const Symbolic& symbolic, const PermutedPattern& pattern,
-                               const T* values, int threads, const Poll& poll);
+                               const T* values, const Work& work);
 
   /// x = A^-1 x for `columns` right-hand sides, one after the other, in the order of L.
-  void solve(const Symbolic& symbolic, T* x, int columns, int threads) const;
+  void solve(const Symbolic& symbolic, T* x, int columns, const Work& work) const;
 
   /// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes
   /// that right-hand sides or wanted rows reach are visited.
   DenseMatrix solve_rows(const Symbolic& symbolic, const SparseMatrix& rhs,
-                         const std::vector<int>& rows, int threads) const;
+                         const std::vector<int>& rows, const Work& work) const;
 
   bool empty() const { return values_ == nullptr; }
   void clear() {

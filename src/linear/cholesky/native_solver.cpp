@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
@@ -31,35 +32,35 @@ bool all_finite(std::span<const Place> places) {
 
 class NativeSolver final : public SpdSolver {
  public:
-  NativeSolver(const SolverOptions& options, int least_single)
-      : options_(options), least_single_(least_single) {}
+  NativeSolver(const SolverOptions& options, int least_single, const Work& work)
+      : options_(options), least_single_(least_single), work_(work) {}
 
   void analyze(const SparseMatrix& lower, std::span<const Place> places) override {
     single_.clear();
     double_.clear();
     scaling_.clear();
     const int block = block_size_of(lower);
-    const Graph graph = graph_of(lower, block, options_.threads);
-    options_.poll();
+    const Graph graph = graph_of(lower, block, work_);
+    poll_interrupt();
     std::vector<int> order;
     bool doubtful = false;
     if (static_cast<int>(places.size()) == graph.count() && graph.count() >= kLeastDissected &&
         all_finite(places)) {
-      order = nested_dissection_order(graph, places, options_.threads, options_.poll);
+      order = nested_dissection_order(graph, places, work_);
       doubtful = true;
     } else {
       order = minimum_degree_order(graph);
     }
-    options_.poll();
-    symbolic_ = analyze_pattern(graph, order, block, options_.threads, options_.poll);
+    poll_interrupt();
+    symbolic_ = analyze_pattern(graph, order, block, work_);
     const double count = graph.count();
     if (doubtful && symbolic_.work > kMostWork * count * std::sqrt(count)) {
       const std::vector<int> other = minimum_degree_order(graph);
-      if (factor_work(graph, other) < symbolic_.work) {
-        symbolic_ = analyze_pattern(graph, other, block, options_.threads, options_.poll);
+      if (factor_work(graph, other, work_) < symbolic_.work) {
+        symbolic_ = analyze_pattern(graph, other, block, work_);
       }
     }
-    pattern_ = permute_pattern(lower, symbolic_, options_.threads);
+    pattern_ = permute_pattern(lower, symbolic_, work_);
   }
 
   bool factorize(const SparseMatrix& lower) override {
@@ -70,11 +71,11 @@ class NativeSolver final : public SpdSolver {
     double_.clear();
     if (!scale(lower)) return false;
     std::vector<float> values(values_.begin(), values_.end());
-    if (single_.factorize(symbolic_, pattern_, values.data(), options_.threads, options_.poll)) {
+    if (single_.factorize(symbolic_, pattern_, values.data(), work_)) {
       return true;
     }
     single_.clear();
-    return double_.factorize(symbolic_, pattern_, values_.data(), options_.threads, options_.poll);
+    return double_.factorize(symbolic_, pattern_, values_.data(), work_);
   }
 
   DenseMatrix solve(const DenseMatrix& rhs) const override {
@@ -85,8 +86,7 @@ class NativeSolver final : public SpdSolver {
     if (!single_.empty()) {
       const std::vector<double> b = x;
       if (!iterate(b, x, columns)) {
-        if (!double_.factorize(symbolic_, pattern_, values_.data(), options_.threads,
-                               options_.poll)) {
+        if (!double_.factorize(symbolic_, pattern_, values_.data(), work_)) {
           double_.clear();
           throw Error(BELTRAMI_E_SOLVER, "a linear system is not definite in floating point");
         }
@@ -94,7 +94,7 @@ class NativeSolver final : public SpdSolver {
         x = b;
       }
     }
-    if (single_.empty()) double_.solve(symbolic_, x.data(), columns, options_.threads);
+    if (single_.empty()) double_.solve(symbolic_, x.data(), columns, work_);
     return restored(x, columns);
   }
 
@@ -103,15 +103,14 @@ class NativeSolver final : public SpdSolver {
     // A power of two keeps the numbers in the range of single precision, and costs no bits.
     const double unit = unit_of(largest_of(rhs.data(), rhs.size()));
     std::vector<float> x = permuted<float>(rhs, 1 / unit);
-    single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), options_.threads);
+    single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), work_);
     return restored(x, static_cast<int>(rhs.cols()), unit);
   }
 
-  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows,
-                         int threads) const override {
+  DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const override {
     if (rows.empty() || rhs.cols() == 0) return DenseMatrix(rows.size(), rhs.cols());
     if (single_.empty() && scaling_.empty()) {
-      return double_.solve_rows(symbolic_, rhs, rows, threads);
+      return double_.solve_rows(symbolic_, rhs, rows, work_);
     }
     return rows_of_whole_solves(*this, rhs, rows);
   }
@@ -131,24 +130,24 @@ class NativeSolver final : public SpdSolver {
 
   bool factorize_double(const double* values) {
     std::vector<double> gathered;
-    parallel_assign(options_.threads, gathered, pattern_.source.size());
-    parallel_for(options_.threads, static_cast<std::int64_t>(gathered.size()), 4 * kGrain,
+    parallel_assign(work_, gathered, pattern_.source.size());
+    parallel_for(work_, static_cast<std::int64_t>(gathered.size()), 4 * kGrain,
                  [&](std::int64_t begin, std::int64_t end) {
                    for (std::int64_t e = begin; e < end; ++e) {
                      gathered[e] = values[pattern_.source[e]];
                    }
                  });
-    return double_.factorize(symbolic_, pattern_, gathered.data(), options_.threads, options_.poll);
+    return double_.factorize(symbolic_, pattern_, gathered.data(), work_);
   }
 
   /// Scales the matrix to a diagonal near 1, by powers of two. False: the diagonal is not positive.
   bool scale(const SparseMatrix& lower) {
     const int n = static_cast<int>(lower.cols());
     const double* given = lower.valuePtr();
-    parallel_assign(options_.threads, values_, pattern_.source.size());
+    parallel_assign(work_, values_, pattern_.source.size());
     scaling_.assign(n, 0);
     std::atomic<bool> positive{true};
-    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t c = begin; c < end; ++c) {
         for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
           const double diagonal = given[pattern_.source[e]];
@@ -160,7 +159,7 @@ class NativeSolver final : public SpdSolver {
     });
     if (!positive) return false;
     unscaling_.resize(n);
-    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t c = begin; c < end; ++c) {
         unscaling_[c] = 1 / scaling_[c];
         for (int e = pattern_.start[c]; e < pattern_.start[c + 1]; ++e) {
@@ -178,10 +177,10 @@ class NativeSolver final : public SpdSolver {
   std::vector<T> permuted(const DenseMatrix& rhs, double factor = 1) const {
     const auto n = static_cast<int>(rhs.rows());
     std::vector<T> x;
-    parallel_assign(options_.threads, x, static_cast<std::size_t>(rhs.size()));
+    parallel_assign(work_, x, static_cast<std::size_t>(rhs.size()));
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
       T* column = x.data() + c * n;
-      parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<int>(begin); i < end; ++i) {
           const int at = column_of(i);
           column[at] = static_cast<T>(rhs(i, c) * factor * scaling(at));
@@ -197,7 +196,7 @@ class NativeSolver final : public SpdSolver {
     DenseMatrix result(n, columns);
     for (int c = 0; c < columns; ++c) {
       const T* column = x.data() + static_cast<std::size_t>(c) * n;
-      parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<int>(begin); i < end; ++i) {
           const int at = column_of(i);
           result(i, c) = static_cast<double>(column[at]) * scaling(at) * factor;
@@ -247,7 +246,7 @@ class NativeSolver final : public SpdSolver {
       for (int k = 0; k < kColumns; ++k) std::fill(y + k * n + begin, y + k * n + end, 0.0);
     };
     std::vector<std::vector<Aside>> asides(symbolic_.tasks.size());
-    parallel_for(options_.threads, static_cast<std::int64_t>(asides.size()), 1,
+    parallel_for(work_, static_cast<std::int64_t>(asides.size()), 1,
                  [&](std::int64_t t, std::int64_t) {
                    const std::int64_t begin = first_of(symbolic_.tasks[t].begin);
                    const std::int64_t end = first_of(symbolic_.tasks[t].end);
@@ -269,7 +268,7 @@ class NativeSolver final : public SpdSolver {
 
   template <class Body>
   void for_rows(std::int64_t n, const Body& body) const {
-    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) body(i);
     });
   }
@@ -277,7 +276,7 @@ class NativeSolver final : public SpdSolver {
   /// Sums over the rows in fixed chunks: the same bits at any number of threads.
   template <class Term>
   double sum_rows(std::int64_t n, const Term& term) const {
-    return parallel_sum(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    return parallel_sum(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       double sum = 0;
       for (std::int64_t i = begin; i < end; ++i) sum += term(i);
       return sum;
@@ -287,7 +286,7 @@ class NativeSolver final : public SpdSolver {
   /// The largest magnitude.
   double largest_of(const double* values, std::int64_t n) const {
     std::vector<double> of_chunk(static_cast<std::size_t>((n + kGrain - 1) / kGrain), 0.0);
-    parallel_for(options_.threads, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work_, n, kGrain, [&](std::int64_t begin, std::int64_t end) {
       double largest = 0;
       for (std::int64_t i = begin; i < end; ++i) largest = std::max(largest, std::abs(values[i]));
       of_chunk[static_cast<std::size_t>(begin / kGrain)] = largest;
@@ -305,9 +304,9 @@ class NativeSolver final : public SpdSolver {
     std::vector<double> residual, direction, product;
     std::vector<float> correction;
     for (std::vector<double>* vector : {&residual, &direction, &product}) {
-      parallel_assign(options_.threads, *vector, static_cast<std::size_t>(size));
+      parallel_assign(work_, *vector, static_cast<std::size_t>(size));
     }
-    parallel_assign(options_.threads, correction, static_cast<std::size_t>(size));
+    parallel_assign(work_, correction, static_cast<std::size_t>(size));
     std::copy(b, b + size, residual.begin());
     std::array<double, kColumns> rho{}, goal{};
     std::array<bool, kColumns> done{};
@@ -332,7 +331,7 @@ class NativeSolver final : public SpdSolver {
           correction[k * n + i] = static_cast<float>(residual[k * n + i] * inverse);
         });
       }
-      single_.solve(symbolic_, correction.data(), kColumns, options_.threads);
+      single_.solve(symbolic_, correction.data(), kColumns, work_);
       for (int k = 0; k < kColumns; ++k) {
         if (done[k]) continue;
         const double* r = residual.data() + k * n;
@@ -375,6 +374,7 @@ class NativeSolver final : public SpdSolver {
 
   const SolverOptions options_;
   const int least_single_;
+  const Work work_;
   const front::Vectors vectors_ = front::widest_vectors();
   Symbolic symbolic_;
   PermutedPattern pattern_;
@@ -387,8 +387,9 @@ class NativeSolver final : public SpdSolver {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options, int least_single) {
-  return std::make_unique<NativeSolver>(options, least_single);
+std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options, int least_single,
+                                              const Work& work) {
+  return std::make_unique<NativeSolver>(options, least_single, work);
 }
 
 }  // namespace beltrami

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "base/work.h"
 #include "linear/spd_solver.h"
 
 namespace beltrami {
@@ -17,7 +18,7 @@ inline constexpr int kLeastSingle = 50000;
 /// by nested dissection where their places are known and make it the better order.
 /// Smaller matrices than `least_single` are factorized in double precision whatever the options
 /// say: iterating would cost more than it saves.
-std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options = {},
-                                              int least_single = kLeastSingle);
+std::unique_ptr<SpdSolver> make_native_solver(const SolverOptions& options, int least_single,
+                                              const Work& work);
 
 }  // namespace beltrami

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "linear/cholesky/minimum_degree.h"
 #include "linear/cholesky/vertex_separator.h"
@@ -28,13 +29,13 @@ struct Part {
 /// of the part, and then among the vertices near the best of them.
 class Dissection {
  public:
-  Dissection(const Graph& graph, std::span<const Place> places, int threads)
+  Dissection(const Graph& graph, std::span<const Place> places, const Work& work)
       : graph_(graph), label_(graph.count()), members_(graph.count()) {
     for (int level = 0; level < kLevels; ++level) {
-      coarse_.push_back(coarsen(level == 0 ? graph : coarse_.back().graph, threads));
+      coarse_.push_back(coarsen(level == 0 ? graph : coarse_.back().graph, work));
     }
     std::vector<int> finest(graph.count());
-    parallel_for(threads, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(work, graph.count(), 16384, [&](std::int64_t begin, std::int64_t end) {
       for (auto v = static_cast<int>(begin); v < end; ++v) {
         members_[v] = {places[v], v};
         label_[v] = kOutside;
@@ -400,21 +401,21 @@ class Dissection {
 }  // namespace
 
 std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
-                                         int threads, const Poll& poll) {
-  Dissection dissection(graph, places, threads);
+                                         const Work& work) {
+  Dissection dissection(graph, places, work);
 
   // Level by level while parts are few, then part by part.
   std::vector<Part> parts = {{0, graph.count()}};
   Dissection::Scratch scratch;
   while (parts.size() < kParts) {
-    poll();
+    poll_interrupt();
     std::vector<Part> next(2 * parts.size());
     std::vector<Part> splittable;
     const int least = 4 * kLeaf;
     bool any = false;
     for (const Part& p : parts) any = any || p.end - p.begin > least;
     if (!any) break;
-    parallel_for(threads, static_cast<std::int64_t>(parts.size()), 1,
+    parallel_for(work, static_cast<std::int64_t>(parts.size()), 1,
                  [&](std::int64_t i, std::int64_t) {
                    const Part p = parts[i];
                    next[2 * i] = p;
@@ -425,12 +426,11 @@ std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Pla
                  });
     parts.swap(next);
   }
-  poll();
-  parallel_for(threads, static_cast<std::int64_t>(parts.size()), 1,
-               [&](std::int64_t i, std::int64_t) {
-                 Dissection::Scratch own;
-                 dissection.finish(parts[i], own);
-               });
+  poll_interrupt();
+  parallel_for(work, static_cast<std::int64_t>(parts.size()), 1, [&](std::int64_t i, std::int64_t) {
+    Dissection::Scratch own;
+    dissection.finish(parts[i], own);
+  });
   std::vector<int> order;
   order.reserve(places.size());
   for (const auto& member : dissection.members()) order.push_back(member.vertex);

@@ -14,6 +14,6 @@ namespace beltrami {
 /// vertices with numbers close together are close together: memory is walked in that order. The
 /// same order at any number of threads. Precondition: places are finite.
 std::vector<int> nested_dissection_order(const Graph& graph, std::span<const Place> places,
-                                         int threads, const Poll& poll);
+                                         const Work& work);
 
 }  // namespace beltrami

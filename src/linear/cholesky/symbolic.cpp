@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "linear/spd_solver.h"
 
@@ -335,12 +336,14 @@ void find_rows(const Graph& graph, const Columns& columns, Symbolic& symbolic, i
 }
 
 /// The rows of all supernodes.
-void find_all_rows(const Graph& graph, const Columns& columns, int threads, Symbolic& symbolic) {
+void find_all_rows(const Graph& graph, const Columns& columns, Symbolic& symbolic,
+                   const Work& work) {
   symbolic.rows.resize(symbolic.row_start.back());
   // Subtrees side by side, in as many parts as there are threads, each with marks of its own.
   const auto tasks = static_cast<std::int64_t>(symbolic.tasks.size());
-  const std::int64_t part = std::max<std::int64_t>(1, (tasks + threads - 1) / threads);
-  parallel_for(threads, tasks, part, [&](std::int64_t begin, std::int64_t end) {
+  const std::int64_t part =
+      std::max<std::int64_t>(1, (tasks + work.threads() - 1) / work.threads());
+  parallel_for(work, tasks, part, [&](std::int64_t begin, std::int64_t end) {
     std::vector<int> seen(graph.count(), kRoot);
     for (std::int64_t t = begin; t < end; ++t) {
       for (int s = symbolic.tasks[t].begin; s < symbolic.tasks[t].end; ++s) {
@@ -357,12 +360,12 @@ void find_all_rows(const Graph& graph, const Columns& columns, int threads, Symb
 }  // namespace
 
 Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int block_size,
-                         int threads, const Poll& poll) {
-  const Graph graph = renumber(given, order, threads);
+                         const Work& work) {
+  const Graph graph = renumber(given, order, work);
   const std::vector<int> tree = elimination_tree(graph);
   const std::vector<int> post = postorder(tree);
   const std::vector<int> counts = column_counts(graph, tree, post);
-  poll();
+  poll_interrupt();
 
   Supernodes supernodes = find_supernodes(tree, post, counts);
   merge_nodes(supernodes.nodes, block_size);
@@ -376,14 +379,14 @@ Symbolic analyze_pattern(const Graph& given, const std::vector<int>& order, int 
   const Columns columns = number_columns(supernodes, target, post, symbolic.first_column);
   symbolic.place.resize(given.count());
   for (int v = 0; v < given.count(); ++v) symbolic.place[order[v]] = columns.column[v];
-  poll();
+  poll_interrupt();
 
-  find_all_rows(graph, columns, threads, symbolic);
+  find_all_rows(graph, columns, symbolic, work);
   return symbolic;
 }
 
-double factor_work(const Graph& given, const std::vector<int>& order) {
-  const Graph graph = renumber(given, order, 1);
+double factor_work(const Graph& given, const std::vector<int>& order, const Work& work) {
+  const Graph graph = renumber(given, order, work);
   const std::vector<int> tree = elimination_tree(graph);
   return work_of(column_counts(graph, tree, postorder(tree)));
 }

@@ -50,9 +50,9 @@ struct Symbolic {
 /// Elimination tree (Liu 1986), column counts (Gilbert, Ng, Peyton 1994), supernodes merged by what
 /// they would cost, and their rows. `order`: see minimum_degree_order.
 Symbolic analyze_pattern(const Graph& graph, const std::vector<int>& order, int block_size,
-                         int threads, const Poll& poll);
+                         const Work& work);
 
 /// The multiplications that factorizing in this order takes, as in Symbolic.
-double factor_work(const Graph& graph, const std::vector<int>& order);
+double factor_work(const Graph& graph, const std::vector<int>& order, const Work& work);
 
 }  // namespace beltrami

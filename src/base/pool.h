@@ -1,0 +1,43 @@
+// The threads of a run: started once, lent to its parallel loops one after the other.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace beltrami {
+
+class Pool {
+ public:
+  /// Starts none yet: a run of small loops alone never does.
+  explicit Pool(int threads) : helpers_(threads - 1) {}
+  /// Ends and joins them.
+  ~Pool();
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  /// Calls `task` on this thread and, at the same time, on up to `helpers` of the pool's; returns
+  /// once all calls have. None is waited for that has not begun by the time this thread is done,
+  /// and where no thread can be started, or a task is running already (loops in a loop), it is
+  /// called on this thread alone. `task` throws nothing.
+  void run(int helpers, const std::function<void()>& task);
+
+ private:
+  void start(int helpers);
+  void serve();
+
+  int helpers_;  // that there may be
+  std::atomic<bool> taken_ = false;
+  std::mutex guard_;  // of what follows, but for the threads
+  std::condition_variable begin_, end_;
+  const std::function<void()>* task_ = nullptr;
+  int places_ = 0;  // of the task at hand that are not taken
+  int inside_ = 0;  // helpers that are at it
+  bool closing_ = false;
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace beltrami
