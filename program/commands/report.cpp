@@ -246,7 +246,7 @@ std::string to_summary(const Report& report, const std::string& written) {
            static_cast<unsigned long long>(report.result->delaunay_refused));
   }
   if (report.status == "BELTRAMI_NOT_CONVERGED") {
-    append(text, "note       stopped at the iteration limit before it converged\n");
+    append(text, "note       stopped at a limit of iterations or time before it converged\n");
   }
   append(text, "time       %.2f s\n", report.seconds);
   append_memory(report, text);
