@@ -34,9 +34,10 @@ DiskMesh disk_of(const TriangleMesh& file) {
     for (std::size_t k = 0; k < 3; ++k) face[k] = static_cast<Index>(file.faces[i + k]);
   }
   std::vector<Vec3> kept;
-  for (const Index v : drop_unreferenced(size_of(positions), faces)) kept.push_back(positions[v]);
-  DiskMesh mesh = build_disk(std::move(kept), std::move(faces));
-  normalise(mesh.positions, mesh.faces);
+  for (const Index v : drop_unreferenced(size_of(positions), faces, Work(1)))
+    kept.push_back(positions[v]);
+  DiskMesh mesh = build_disk(std::move(kept), std::move(faces), Work(1));
+  normalise(mesh.positions, mesh.faces, Work(1));
   return mesh;
 }
 
@@ -44,7 +45,7 @@ double distance(const DiskMesh& fine, const DiskMesh& coarse) {
   const ClosestPoint closest(coarse.positions, coarse.faces);
   double sum = 0;
   for (const Vec3& p : fine.positions) sum += closest.find(p, Vec3::Zero(), kNone).distance_sq;
-  return std::sqrt(sum / fine.vertex_count() / surface_area(fine));
+  return std::sqrt(sum / fine.vertex_count() / surface_area(fine, Work(1)));
 }
 
 struct Outcome {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/work.h"
 #include "linear/cholesky/native_solver.h"
 #include "linear/spd_solver.h"
 #include "refine.h"

@@ -85,7 +85,7 @@ namespace {
 
 /// Numbers the vertices as the library does before all else.
 void number_along_curve(std::vector<Vec3>& positions, std::vector<Triangle>& faces) {
-  const std::vector<Index> order = along_hilbert_curve(positions);
+  const std::vector<Index> order = along_hilbert_curve(positions, Work(1));
   std::vector<Vec3> arranged;
   std::vector<Index> place(order.size());
   for (Index i = 0; i < size_of(order); ++i) {
@@ -113,7 +113,7 @@ System interior_laplacian(const TriangleMesh& file, Numbering numbering) {
                      static_cast<Index>(file.faces[3 * f + 2])});
   }
   if (numbering == Numbering::kAlongCurve) number_along_curve(positions, faces);
-  const DiskMesh mesh = build_disk(std::move(positions), std::move(faces));
+  const DiskMesh mesh = build_disk(std::move(positions), std::move(faces), Work(1));
   MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1, Work(1));
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triangle& t = mesh.faces[f];
