@@ -113,12 +113,12 @@ class NewtonStepper {
   const Work work_;
   Density density_;
   std::optional<BoundaryContact> contact_;
-  Neighbours neighbours_;          // in the map that the last step left, if there was one
+  Neighbours neighbours_;          // in the map that the last step left; none before the first
   std::vector<Contact> contacts_;  // that the matrix has entries for
   std::vector<Contact> loose_;     // without
   double last_gain_ = std::numeric_limits<double>::infinity();
   double loose_share_ = kLooseShare;
-  std::set<std::pair<Index, Index>> stuck_;  // of them, by vertex and first vertex of the edge
+  std::set<std::pair<Index, Index>> stuck_;  // kept together, by vertex and first of the edge
   std::vector<Triangle> with_contacts_;  // the faces, then the vertices of each contact; or empty
   MeshMatrix hessian_;
   std::unique_ptr<SpdSolver> solver_;
