@@ -51,8 +51,8 @@ class BoundaryContact {
   /// and one with more parts near each other than the barrier needs, too.
   void fit(const std::vector<Vec2>& uvs, double energy);
 
-  /// The same. `known`: what neighbours() gave for `uvs`, or nothing yet; replaced where it does not
-  /// reach far enough.
+  /// The same. `known`: what neighbours() gave for `uvs`, or nothing yet; replaced where it does
+  /// not reach far enough.
   void fit(const std::vector<Vec2>& uvs, double energy, Neighbours& known);
 
   /// What the barrier's energy counts in an objective, times the inverse area of the surface: it
