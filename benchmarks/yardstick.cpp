@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "linear/mesh_matrix.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"

@@ -7,10 +7,12 @@
 #include "abi/reports.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

@@ -8,6 +8,7 @@
 #include "abi/buffers.h"
 #include "abi/reports.h"
 #include "base/error.h"
+#include "base/floating_point.h"
 #include "base/interrupt.h"
 #include "base/work.h"
 #include "chart/memory_estimate.h"

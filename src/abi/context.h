@@ -9,8 +9,10 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/options.h"
+#include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/types.h"
 #include "mesh/locality.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "abi/option_table.h"
 #include "base/error.h"
+#include "energy/energy.h"
 
 namespace beltrami {
 namespace {

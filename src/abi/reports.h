@@ -5,10 +5,11 @@
 
 #include <vector>
 
-#include "base/error.h"
+#include "base/types.h"
 #include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 
 namespace beltrami {
 

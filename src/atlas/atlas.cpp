@@ -12,7 +12,10 @@
 #include "base/parallel.h"
 #include "cut/cut_into_charts.h"
 #include "cut/open_minimal.h"
+#include "exact/certificate.h"
+#include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 #include "repair/rounding.h"
 
 namespace beltrami {

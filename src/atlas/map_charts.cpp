@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "chart/options.h"
 #include "descend/flat_start.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/rest_shape.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/bucket_sort.h"
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 

@@ -5,12 +5,14 @@
 
 #include "base/error.h"
 #include "base/resources.h"
+#include "base/types.h"
 #include "chart/coarser_start.h"
 #include "chart/descent.h"
 #include "chart/fine_problem.h"
 #include "chart/modes.h"
 #include "chart/refine.h"
 #include "descend/grid_drawing.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 namespace {

@@ -2,8 +2,14 @@
 // the surface itself.
 #include <utility>
 
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/coarser_start.h"
+#include "chart/fine_problem.h"
 #include "chart/modes.h"
+#include "chart/options.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

@@ -1,8 +1,16 @@
 // Boundary first flattening in the prolonged metric, or in that of the surface.
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/fine_problem.h"
+#include "chart/memory.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
 #include "flatten/boundary_first.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

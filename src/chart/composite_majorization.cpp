@@ -1,11 +1,20 @@
 // Composite majorization on a whole mesh: the method cm, and the coarse map of the others.
 #include <utility>
 
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/coarser_start.h"
 #include "chart/descent.h"
+#include "chart/memory.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "chart/starts.h"
+#include "descend/newton.h"
 #include "exact/certificate.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 namespace {

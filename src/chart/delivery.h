@@ -7,6 +7,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "chart/options.h"
 #include "exact/certificate.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "chart/chart_map.h"
 #include "chart/coarser_start.h"
 #include "descend/contact.h"
 #include "descend/tutte.h"
+#include "energy/energy.h"
 #include "mesh/boundary.h"
 
 namespace beltrami {

@@ -1,6 +1,14 @@
 // The harmonic map in the prolonged Beltrami coefficients (paper section 3.4).
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/fine_problem.h"
+#include "chart/memory.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "chart/descent.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "flatten/intrinsic_delaunay.h"

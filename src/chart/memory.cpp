@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/types.h"
+#include "base/work.h"
 #include "flatten/reduced/meta_vertices.h"
 #include "flatten/reduced/reduced.h"
 #include "linear/cholesky/native_solver.h"

@@ -6,10 +6,11 @@
 
 #include <algorithm>
 
+#include "base/types.h"
 #include "chart/fine_problem.h"
 #include "chart/memory.h"
 #include "chart/modes.h"
-#include "flatten/metric.h"
+#include "flatten/laplacian.h"
 
 namespace beltrami {
 namespace {

@@ -3,15 +3,24 @@
 #include <memory>
 #include <utility>
 
+#include "base/types.h"
+#include "base/work.h"
 #include "chart/anchors.h"
+#include "chart/chart_map.h"
+#include "chart/fine_problem.h"
+#include "chart/memory.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "chart/polish_schedule.h"
 #include "descend/contact.h"
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

@@ -15,6 +15,7 @@
 #include "chart/fine_problem.h"
 #include "chart/memory.h"
 #include "chart/options.h"
+#include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

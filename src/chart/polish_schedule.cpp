@@ -19,7 +19,9 @@
 #include "chart/memory_estimate.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
+#include "energy/energy.h"
 #include "mesh/boundary.h"
+#include "mesh/disk_mesh.h"
 #include "repair/outliers.h"
 
 namespace beltrami {

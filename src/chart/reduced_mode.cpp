@@ -2,14 +2,23 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/descent.h"
+#include "chart/fine_problem.h"
+#include "chart/memory.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "chart/starts.h"
 #include "descend/grid_drawing.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
+#include "flatten/laplacian.h"
 #include "flatten/reduced/reduced.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
 #include "repair/repair.h"
 
 namespace beltrami {

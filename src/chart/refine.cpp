@@ -2,9 +2,12 @@
 
 #include <utility>
 
+#include "base/types.h"
 #include "chart/descent.h"
+#include "descend/newton.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 

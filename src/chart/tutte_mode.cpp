@@ -1,7 +1,15 @@
 // Tutte's embedding as a method of its own, and as what is left where no other map is injective.
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/memory.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "descend/tutte.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "repair/repair.h"
 
 namespace beltrami {

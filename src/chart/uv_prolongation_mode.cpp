@@ -1,7 +1,13 @@
 // The baseline that carries UVs over instead of coefficients.
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/fine_problem.h"
 #include "chart/modes.h"
+#include "chart/options.h"
 #include "exact/certificate.h"
 #include "flatten/uv_prolongation.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

@@ -6,6 +6,7 @@
 #include "base/grouping.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/split_fans.h"
 
 namespace beltrami {

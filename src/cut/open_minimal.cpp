@@ -13,6 +13,7 @@
 #include "base/grouping.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/types.h"
 
 namespace beltrami {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/rest_shape.h"

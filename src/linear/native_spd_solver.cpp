@@ -1,3 +1,4 @@
+#include "base/work.h"
 #include "linear/cholesky/native_solver.h"
 #include "linear/spd_solver.h"
 

@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/work.h"
 
 namespace beltrami {
 

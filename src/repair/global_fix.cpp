@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
-#include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
 #include "linear/spd_solver.h"

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/simplify.h"
 

@@ -1,4 +1,5 @@
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
 #include "simplify/simplify.h"

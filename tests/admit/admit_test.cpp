@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "support/meshes.h"
 #include "support/polls.h"
 #include "support/surfaces.h"

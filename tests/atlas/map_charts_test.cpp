@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

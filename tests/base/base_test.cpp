@@ -17,6 +17,7 @@
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
+#include "base/work.h"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/work.h"
 #include "exact/crossings.h"
 #include "simplify/simplify.h"
 #include "support/cuts.h"

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/types.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami {
 namespace {

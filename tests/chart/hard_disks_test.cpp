@@ -8,10 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
+#include "base/work.h"
 #include "chart/flattening.h"
+#include "chart/options.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"
 #include "support/disks.h"

@@ -17,12 +17,16 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/chart_map.h"
+#include "chart/options.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 #include "support/run.h"
 #include "support/shared_data.h"
 

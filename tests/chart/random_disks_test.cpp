@@ -10,6 +10,7 @@
 #include "support/random_disks.h"
 
 #include "base/types.h"
+#include "chart/flattening.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/meshes.h"

@@ -10,7 +10,11 @@
 #include <vector>
 
 #include "admit/admit.h"
+#include "base/interrupt.h"
+#include "base/types.h"
 #include "cut/cut_into_charts.h"
+#include "mesh/chart.h"
+#include "mesh/disk_mesh.h"
 #include "support/meshes.h"
 #include "support/polls.h"
 #include "support/surfaces.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/work.h"
 #include "exact/certificate.h"
 #include "support/disks.h"
 #include "support/meshes.h"

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "exact/rational_overlaps.h"
 #include "support/disks.h"
 #include "support/polls.h"

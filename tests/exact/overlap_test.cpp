@@ -10,12 +10,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.h"
+#include "base/work.h"
 #include "chart/flattening.h"
+#include "chart/options.h"
 #include "descend/flat_start.h"
 #include "energy/energy.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
+#include "support/disks.h"
+#include "support/meshes.h"
 #include "support/run.h"
 #include "support/shared_data.h"
 

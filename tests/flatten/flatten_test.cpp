@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "descend/polish.h"
 #include "descend/tutte.h"
+#include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/work.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
 #include "linear/cholesky/nested_dissection.h"

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "base/types.h"
 #include "linear/cholesky/native_solver.h"
 #include "linear/mesh_matrix.h"

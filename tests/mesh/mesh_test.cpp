@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/types.h"
+#include "base/work.h"
 #include "support/meshes.h"
 
 namespace beltrami {

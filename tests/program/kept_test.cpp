@@ -3,7 +3,6 @@
 
 #include "files/column.h"
 #include "files/mesh_file.h"
-#include "tiny_meshes.h"
 
 namespace beltrami::cli {
 namespace {

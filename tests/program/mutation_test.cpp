@@ -5,9 +5,10 @@
 #include <random>
 
 #include "binary.h"
+#include "files/column.h"
+#include "files/mesh_file.h"
 #include "files/surface.h"
 #include "process/failure.h"
-#include "tiny_meshes.h"
 
 namespace beltrami::cli {
 namespace {

@@ -1,5 +1,4 @@
 // Mending fold-overs without making new ones, near-zero areas or boundary crossings.
-#include <beltrami/beltrami.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "repair/global_fix.h"

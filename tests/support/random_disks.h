@@ -8,8 +8,13 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
-#include "chart/flattening.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/options.h"
+#include "energy/energy.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami::disks {
 

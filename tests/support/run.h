@@ -8,6 +8,7 @@
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
+#include "support/meshes.h"
 
 namespace beltrami::disks {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
 #include "simplify/simplify.h"

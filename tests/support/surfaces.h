@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "support/meshes.h"
 
 namespace beltrami::meshes {

@@ -1,8 +1,8 @@
 """Include cleanliness: a file includes the project's headers that it uses, and no others.
 
-A file uses a header if it names something that the header declares; what comes with a type, its
-members, asks for no include. A source may leave to the header of its own name what that header
-includes. Headers of the system are not looked at.
+A file uses a header if it names, or defines, something that the header declares; what comes with a
+type, its members, asks for no include. A source may leave to the header of its own name what that
+header includes. Headers of the system are not looked at.
 """
 
 from __future__ import annotations
@@ -102,6 +102,8 @@ def targets_of(cursor: Cursor) -> Iterator[Cursor]:
             declaration = cursor.type.get_canonical().get_declaration()
             if declaration.kind != CursorKind.NO_DECL_FOUND and declaration.semantic_parent:
                 yield declaration
+        elif cursor.kind == CursorKind.FUNCTION_DECL and cursor.is_definition():
+            yield cursor.canonical  # so that the compiler compares the two
     elif cursor.referenced:
         yield cursor.referenced
 

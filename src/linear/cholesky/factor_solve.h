@@ -3,8 +3,10 @@
 
 #include <vector>
 
+#include "base/work.h"
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/symbolic.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 

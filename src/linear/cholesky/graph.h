@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/work.h"
 #include "linear/spd_solver.h"
 
 namespace beltrami {

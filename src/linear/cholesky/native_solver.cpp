@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "linear/cholesky/front.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
 #include "linear/cholesky/multifrontal.h"

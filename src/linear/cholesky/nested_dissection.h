@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "base/work.h"
 #include "linear/cholesky/graph.h"
+#include "linear/spd_solver.h"
 
 namespace beltrami {
 

@@ -6,7 +6,6 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "linear/spd_solver.h"
 
 namespace beltrami {
 namespace {
