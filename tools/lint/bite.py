@@ -24,7 +24,7 @@ CASES = {
     "chain_test.cpp": ('#include "base/chain.h"\nint main() { return next(1, Place()); }\n', []),
     "missing.cpp": ('#include "base/chain.h"\nint a = next(1, {2});\nPlace b;\n', ["3: place.h"]),
     "defined.cpp": (
-        '#include "base/chain.h"\n#include "base/types.h"\nIndex next(Index i, Place) { return i; }\n',
+        '#include "base/chain.h"\n#include "base/types.h"\nIndex next(Index, Place) { return 1; }',
         ["3: place.h"],
     ),
     "idle.cpp": ('#include "base/place.h"\n#include "base/types.h"\nPlace b;\n', ["2: types.h"]),
