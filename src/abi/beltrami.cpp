@@ -49,19 +49,6 @@ bool has_gpl() {
          std::string_view(ring_triangulation_name()) == "cgal";
 }
 
-/// The wrapper of every entry point with a context: refuses NULL, and calls during a run.
-template <class Body>
-beltrami_status enter(beltrami_context* context, Body&& body) noexcept {
-  if (context == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
-  return guarded(context->failure, [&]() -> beltrami_status {
-    if (context->running) {
-      throw Error(BELTRAMI_E_INVALID_STATE,
-                  "a run is under way on this context: only beltrami_cancel is possible");
-    }
-    return body(*context);
-  });
-}
-
 beltrami_option_info describe(const OptionEntry& option) {
   beltrami_option_info info{};
   info.key = option.key;
@@ -71,6 +58,7 @@ beltrami_option_info describe(const OptionEntry& option) {
   info.default_value = option.get(Options{});
   info.name = option.name;
   info.summary = option.summary;
+  info.calls = option.calls;
   return info;
 }
 
@@ -343,13 +331,7 @@ beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index, bel
                   "there is no stage " + std::to_string(index) + ": the last run had " +
                       std::to_string(stages.size()) + " stages, counted from 0");
     }
-    const beltrami::StageStatistics& statistics = stages[static_cast<std::size_t>(index)];
-    beltrami_stage stage{};
-    stage.iterations = statistics.iterations;
-    stage.seconds = statistics.seconds;
-    stage.cpu_seconds = statistics.cpu_seconds;
-    stage.name = statistics.name;
-    beltrami::write_sized(out, stage);
+    beltrami::write_sized(out, beltrami::describe_stage(stages[static_cast<std::size_t>(index)]));
     return BELTRAMI_OK;
   });
 }

@@ -113,6 +113,24 @@ std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& 
   return points;
 }
 
+/// All elements of `count` items, one after the other.
+template <class Scalar, class Value>
+std::vector<Value> read_elements(const Reader& reader, std::uint64_t count, int components,
+                                 const Work& work) {
+  std::vector<Value> values;
+  parallel_assign(work, values, count * static_cast<std::uint64_t>(components));
+  parallel_for(work, static_cast<std::int64_t>(count), kGrain,
+               [&](std::int64_t begin, std::int64_t end) {
+                 auto* value = values.data() + begin * components;
+                 for (std::int64_t i = begin; i < end; ++i) {
+                   for (int k = 0; k < components; ++k) {
+                     *value++ = reader.read<Scalar>(static_cast<std::size_t>(i), k);
+                   }
+                 }
+               });
+  return values;
+}
+
 }  // namespace
 
 beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
@@ -165,6 +183,24 @@ std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_coun
   return points;
 }
 
+std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uint64_t count,
+                                         int components, const char* what, const Work& work) {
+  require_type(buffer.type, BELTRAMI_U32, BELTRAMI_U64, what);
+  const Reader reader(buffer, count, components, what);
+  return buffer.type == BELTRAMI_U32
+             ? read_elements<std::uint32_t, std::uint64_t>(reader, count, components, work)
+             : read_elements<std::uint64_t, std::uint64_t>(reader, count, components, work);
+}
+
+std::vector<double> read_numbers(const beltrami_buffer& buffer, std::uint64_t count, int components,
+                                 const char* what, const Work& work) {
+  require_type(buffer.type, BELTRAMI_F32, BELTRAMI_F64, what);
+  const Reader reader(buffer, count, components, what);
+  return buffer.type == BELTRAMI_F32
+             ? read_elements<float, double>(reader, count, components, work)
+             : read_elements<double, double>(reader, count, components, work);
+}
+
 void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original,
                  const std::vector<Index>& original_face, void* out, std::int32_t type,
                  std::uint64_t stride) {
@@ -183,6 +219,25 @@ void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& o
       } else {
         std::memcpy(item + k * sizeof wide, &wide, sizeof wide);
       }
+    }
+  }
+}
+
+void write_integers(const std::vector<Index>& values, int components, void* out, std::int32_t type,
+                    std::uint64_t stride) {
+  if (out == nullptr) refuse("the memory to write to is NULL");
+  require_type(type, BELTRAMI_U32, BELTRAMI_U64, "output");
+  const auto per_item = static_cast<std::size_t>(components);
+  const std::size_t step =
+      checked_stride(stride, type, components, values.size() / per_item, "output");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    auto* item = static_cast<unsigned char*>(out) + step * (i / per_item);
+    const auto wide = static_cast<std::uint64_t>(std::int64_t{values[i]});
+    const auto narrow = static_cast<std::uint32_t>(wide);
+    if (type == BELTRAMI_U32) {
+      std::memcpy(item + i % per_item * sizeof narrow, &narrow, sizeof narrow);
+    } else {
+      std::memcpy(item + i % per_item * sizeof wide, &wide, sizeof wide);
     }
   }
 }

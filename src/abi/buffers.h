@@ -28,6 +28,10 @@ BELTRAMI_FIRST_SIZE(beltrami_certificate, reserved);
 BELTRAMI_FIRST_SIZE(beltrami_energy, left_out);
 BELTRAMI_FIRST_SIZE(beltrami_result, coarse_energy);
 BELTRAMI_FIRST_SIZE(beltrami_stage, name);
+BELTRAMI_FIRST_SIZE(beltrami_surface, cancel);
+BELTRAMI_FIRST_SIZE(beltrami_atlas, peak_memory_bytes);
+BELTRAMI_FIRST_SIZE(beltrami_chart, box);
+BELTRAMI_FIRST_SIZE(beltrami_atlas_certificate, reserved);
 #undef BELTRAMI_FIRST_SIZE
 
 /// The struct_size of the caller's struct; throws Error INVALID_ARGUMENT if it is null or too
@@ -82,12 +86,25 @@ std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<In
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
                            const std::vector<Index>& original, const Work& work);
 
+/// Reads `count` items of U32 or U64 elements, one after the other. Throws Error INVALID_ARGUMENT.
+std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uint64_t count,
+                                         int components, const char* what, const Work& work);
+
+/// Reads `count` items of F32 or F64 elements, one after the other. Throws Error INVALID_ARGUMENT.
+std::vector<double> read_numbers(const beltrami_buffer& buffer, std::uint64_t count, int components,
+                                 const char* what, const Work& work);
+
 /// Writes faces as items of 3 elements of `type` U32 or U64, `stride` bytes apart (0: packed): face
 /// i as item `original_face[i]`, its vertices as `original` numbers them. Throws Error
 /// INVALID_ARGUMENT.
 void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original,
                  const std::vector<Index>& original_face, void* out, std::int32_t type,
                  std::uint64_t stride);
+
+/// Writes integers as items of `components` elements of `type` U32 or U64, `stride` bytes apart (0:
+/// packed); kNone has all bits set. Throws Error INVALID_ARGUMENT.
+void write_integers(const std::vector<Index>& values, int components, void* out, std::int32_t type,
+                    std::uint64_t stride);
 
 /// A strided array in the caller's memory to write to.
 class Writer {

@@ -7,6 +7,8 @@
 
 #include "abi/buffers.h"
 #include "abi/reports.h"
+#include "abi/surface.h"
+#include "abi/unwrapped.h"
 #include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"
@@ -36,6 +38,11 @@ class HostProgress {
   }
 
   bool cancelled() const { return cancelled_; }
+  /// As the work takes it, on this object.
+  Progress watched() {
+    if (callback_ == nullptr) return {};
+    return [this](double fraction, const char* stage) { return (*this)(fraction, stage); };
+  }
 
  private:
   beltrami_progress callback_;
@@ -118,11 +125,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);
-  beltrami::Progress report;
-  if (progress != nullptr) {
-    report = [&host](double fraction, const char* stage) { return host(fraction, stage); };
-  }
-  const beltrami::Work work(beltrami::limits(options), report);
+  const beltrami::Work work(beltrami::limits(options), host.watched());
   beltrami::Flattening result =
       beltrami::flatten(mesh->input.disk, mesh->frame, beltrami::chart_options(options), work);
   // A request that came after the last look at it still counts, since the run was under way.
@@ -131,6 +134,31 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   }
   flattening = std::move(result);
   return beltrami::status_of(flattening->status);
+}
+
+beltrami_status beltrami_context::unwrap(const beltrami_surface* surface,
+                                         beltrami_progress progress, void* user) {
+  beltrami::require_effect_on_atlas(options);
+  const beltrami_surface header = beltrami::read_surface_header(surface);
+  beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
+  beltrami::HostProgress host(progress, user);
+  const beltrami::Work work(beltrami::limits(options), host.watched());
+  beltrami::Unwrapped result =
+      beltrami::unwrap_surface(header, beltrami::atlas_options(options),
+                               options.cut == BELTRAMI_CUT_ISLANDS, options.hard_angle, work);
+  if (mark.take_request() || host.cancelled()) {
+    throw beltrami::Cancelled();
+  }
+  unwrapped = std::move(result);
+  return beltrami::status_of(unwrapped->atlas.outcome);
+}
+
+const beltrami::Unwrapped& beltrami_context::atlas() const {
+  if (!unwrapped) {
+    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no atlas yet: call beltrami_unwrap");
+  }
+  return *unwrapped;
 }
 
 const beltrami::Flattening& beltrami_context::results() const {

@@ -9,6 +9,8 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/options.h"
+#include "abi/unwrapped.h"
+#include "base/error.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
@@ -37,6 +39,7 @@ struct beltrami_context {
   beltrami::Options options;
   std::optional<beltrami::LoadedMesh> mesh;
   std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
+  std::optional<beltrami::Unwrapped> unwrapped;    ///< of the last surface
   beltrami::Failure failure;
   std::atomic<bool> cancelled{false};
   bool running = false;
@@ -49,6 +52,28 @@ struct beltrami_context {
   /// Cancelled; keeps old results then.
   beltrami_status run(beltrami_progress progress, void* user);
 
+  /// Unwraps a surface. Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or
+  /// Cancelled; keeps old results then.
+  beltrami_status unwrap(const beltrami_surface* surface, beltrami_progress progress, void* user);
+
   /// The results. Throws Error INVALID_STATE where there are none.
   const beltrami::Flattening& results() const;
+  const beltrami::Unwrapped& atlas() const;
 };
+
+namespace beltrami {
+
+/// The wrapper of every entry point with a context: refuses NULL, and calls during a run.
+template <class Body>
+beltrami_status enter(beltrami_context* context, Body&& body) noexcept {
+  if (context == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
+  return guarded(context->failure, [&]() -> beltrami_status {
+    if (context->running) {
+      throw Error(BELTRAMI_E_INVALID_STATE,
+                  "a run is under way on this context: only beltrami_cancel is possible");
+    }
+    return body(*context);
+  });
+}
+
+}  // namespace beltrami

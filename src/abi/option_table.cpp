@@ -14,6 +14,8 @@ constexpr const char* kMethods[] = {"beltrami", "cm", "tutte", "gif", "bff", "uv
 constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"};
 constexpr const char* kInjectivities[] = {"auto", "global", "local"};
 constexpr const char* kSwitch[] = {"off", "on"};
+constexpr const char* kCuts[] = {"minimal", "islands"};
+constexpr const char* kWelds[] = {"auto", "on", "off"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
 template <auto Member>
@@ -192,6 +194,7 @@ const OptionEntry kOptions[] = {
         .choices = kSwitch,
         .get = get<&Options::delaunay>,
         .set = set<&Options::delaunay>,
+        .calls = BELTRAMI_CALL_RUN,
     },
     {
         .key = BELTRAMI_OPTION_MEMORY_LIMIT,
@@ -204,6 +207,81 @@ const OptionEntry kOptions[] = {
         .maximum = 1e14,
         .get = get<&Options::memory_limit>,
         .set = set<&Options::memory_limit>,
+    },
+    {
+        .key = BELTRAMI_OPTION_CUT,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "cut",
+        .summary = "Where seams go beside those that are given: minimal (a short cut graph where a "
+                   "piece is no disk) or islands (the charts of the UVs that the mesh has; what is "
+                   "no disk of them is opened).",
+        .minimum = 0,
+        .maximum = std::size(kCuts) - 1,
+        .choices = kCuts,
+        .get = get<&Options::cut>,
+        .set = set<&Options::cut>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_HARD_ANGLE,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "hard-angle",
+        .summary = "Degrees between the normals of two faces above which the edge between them is "
+                   "a seam; 180 makes none.",
+        .minimum = 0,
+        .maximum = 180,
+        .get = get<&Options::hard_angle>,
+        .set = set<&Options::hard_angle>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_WELD,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "weld",
+        .summary = "Whether vertices at one place, to the last bit, count as one: auto (yes, but a "
+                   "mesh that is one disk as it stands stays so), on or off.",
+        .minimum = 0,
+        .maximum = std::size(kWelds) - 1,
+        .choices = kWelds,
+        .get = get<&Options::weld>,
+        .set = set<&Options::weld>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_WELD_DISTANCE,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "weld-distance",
+        .summary = "Vertices no further apart, in the mesh's unit of length, count as one; 0 those "
+                   "at one place.",
+        .minimum = 0,
+        .maximum = 1e300,
+        .get = get<&Options::weld_distance>,
+        .set = set<&Options::weld_distance>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_FILL_HOLES,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "fill-holes",
+        .summary = "Holes whose boundary is no longer than this many roots of their component's "
+                   "area cost no seam, larger ones are joined to one; 0 joins all.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::fill_holes>,
+        .set = set<&Options::fill_holes>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_SHARE_COPIES,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "share-copies",
+        .summary = "1 gives copies of a face, as of double-sided surfaces, the UVs of the first "
+                   "instead of a layer of their own.",
+        .minimum = 0,
+        .maximum = 1,
+        .get = get<&Options::share_copies>,
+        .set = set<&Options::share_copies>,
+        .calls = BELTRAMI_CALL_UNWRAP,
     },
 };
 

@@ -18,6 +18,7 @@ struct OptionEntry {
   std::span<const char* const> choices = {};  ///< names of the values 0, 1, ... of a choice
   double (*get)(const Options&);
   void (*set)(Options&, double);
+  std::int32_t calls = BELTRAMI_CALL_RUN | BELTRAMI_CALL_UNWRAP;  ///< that take it
 };
 
 /// The options in the order of their keys, which count from 0 without gaps.

@@ -1,6 +1,7 @@
 #include "abi/options.h"
 
 #include <string>
+#include <utility>
 
 #include "abi/option_table.h"
 #include "base/error.h"
@@ -94,6 +95,19 @@ ChartOptions chart_options(const Options& options) {
           .float32 = options.float32};
 }
 
+AtlasOptions atlas_options(const Options& options) {
+  AtlasOptions atlas;
+  atlas.admit.weld_distance = options.weld_distance;
+  if (options.weld == BELTRAMI_WELD_OFF) atlas.admit.weld_distance.reset();
+  atlas.admit.share_copies = options.share_copies;
+  atlas.keep_disk = options.weld == BELTRAMI_WELD_AUTO && options.weld_distance == 0;
+  atlas.fill_limit = options.fill_holes;
+  atlas.chart = chart_options(options);
+  atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
+  atlas.float32 = std::exchange(atlas.chart.float32, false);
+  return atlas;
+}
+
 Limits limits(const Options& options) {
   return {.threads = options.threads,
           .memory_bytes = options.memory_limit,
@@ -120,6 +134,14 @@ void require_effect(const Options& options) {
   }
   if (!options.refine) {
     refuse_if_set(options, BELTRAMI_OPTION_REFINE_ITERATIONS, "refine=0", "or set refine");
+  }
+}
+
+void require_effect_on_atlas(const Options& options) {
+  require_effect(options);
+  refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, "an atlas", "or flatten disks");
+  if (options.weld == BELTRAMI_WELD_OFF) {
+    refuse_if_set(options, BELTRAMI_OPTION_WELD_DISTANCE, "weld=off", "or weld");
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "atlas/atlas.h"
 #include "base/work.h"
 #include "chart/options.h"
 
@@ -27,10 +28,19 @@ struct Options {
   bool float32 = false;
   bool delaunay = false;
   std::int64_t memory_limit = 0;
+  std::int32_t cut = BELTRAMI_CUT_MINIMAL;
+  double hard_angle = 180;
+  std::int32_t weld = BELTRAMI_WELD_AUTO;
+  double weld_distance = 0;
+  double fill_holes = 0.5;
+  bool share_copies = false;
 };
 
 /// How a disk is to be flattened.
 ChartOptions chart_options(const Options& options);
+
+/// How a surface is to be unwrapped.
+AtlasOptions atlas_options(const Options& options);
 
 /// What a run may use.
 Limits limits(const Options& options);
@@ -41,5 +51,9 @@ Limits limits(const Options& options);
 /// coarse-faces, tolerance and max-iterations go with any method: those without such a stage have
 /// nothing to bound.
 void require_effect(const Options& options);
+
+/// The same for what an atlas takes no notice of: delaunay, and weld-distance where nothing is
+/// welded.
+void require_effect_on_atlas(const Options& options);
 
 }  // namespace beltrami

@@ -26,15 +26,19 @@ constexpr double kLeastArea = 1e-14;
 
 /// Names the welded vertices instead of those welded to them.
 std::vector<Triangle> welded(const std::vector<Vec3>& positions, std::vector<Triangle> faces,
-                             const AdmitOptions& options, const Work& work, AdmitCounts& counts) {
+                             const AdmitOptions& options, const Work& work, Admitted& admitted) {
   if (!options.weld_distance) return faces;
-  const std::vector<Index> first = weld(positions, *options.weld_distance, work);
-  for (Index v = 0; v < size_of(first); ++v) counts.welded_vertices += first[v] != v ? 1 : 0;
+  std::vector<Index> first = weld(positions, *options.weld_distance, work);
+  for (Index v = 0; v < size_of(first); ++v) {
+    admitted.counts.welded_vertices += first[v] != v ? 1 : 0;
+  }
+  if (admitted.counts.welded_vertices == 0) return faces;
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : faces[f]) v = first[v];
     }
   });
+  admitted.welded_to = std::move(first);
   return faces;
 }
 
@@ -94,16 +98,13 @@ std::vector<Size> sizes_of(const std::vector<Vec3>& positions, const std::vector
 std::vector<Triangle> faces_with_area(const std::vector<Vec3>& positions,
                                       const std::vector<Triangle>& faces, const Work& work,
                                       Admitted& admitted) {
-  const std::vector<Size> sizes = sizes_of(positions, faces, work);
-  double largest = 0;
-  for (const Size& size : sizes) largest = std::max(largest, size.area);
+  const std::vector<bool> without = faces_without_area(positions, faces, work);
   std::vector<Triangle> kept;
   kept.reserve(faces.size());
   PollSometimes poll;
   for (Index f = 0; f < size_of(faces); ++f) {
     poll();
-    const Size& size = sizes[f];
-    if (size.area > kLeastArea * std::max(largest, size.longest_edge_sq)) {
+    if (!without[f]) {
       kept.push_back(faces[f]);
       admitted.input_face.push_back(f);
       continue;
@@ -157,6 +158,29 @@ std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& fa
   return layers;
 }
 
+/// Of the faces that are left.
+std::vector<Index> polygons_of(const Admitted& admitted, const AdmitOptions& options) {
+  std::vector<Index> polygons;
+  if (options.polygons.empty()) return polygons;
+  polygons.reserve(admitted.input_face.size());
+  for (const Index face : admitted.input_face) polygons.push_back(options.polygons[face]);
+  return polygons;
+}
+
+/// Drops the faces of further layers.
+void drop_copies(std::vector<Triangle>& faces, std::vector<Index>& layers, Admitted& admitted) {
+  Index kept = 0;
+  for (Index f = 0; f < size_of(faces); ++f) {
+    if (layers[f] > 0) continue;
+    faces[kept] = faces[f];
+    admitted.input_face[kept] = admitted.input_face[f];
+    ++kept;
+  }
+  faces.resize(kept);
+  admitted.input_face.resize(kept);
+  layers.assign(kept, 0);
+}
+
 void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
   counts.reversed_faces =
       static_cast<Index>(std::count(admitted.reversed.begin(), admitted.reversed.end(), true));
@@ -174,6 +198,18 @@ void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
 
 }  // namespace
 
+std::vector<bool> faces_without_area(const std::vector<Vec3>& positions,
+                                     const std::vector<Triangle>& faces, const Work& work) {
+  const std::vector<Size> sizes = sizes_of(positions, faces, work);
+  double largest = 0;
+  for (const Size& size : sizes) largest = std::max(largest, size.area);
+  std::vector<bool> without(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    without[f] = !(sizes[f].area > kLeastArea * std::max(largest, sizes[f].longest_edge_sq));
+  }
+  return without;
+}
+
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work) {
   const Index vertex_count = size_of(positions);
@@ -183,10 +219,13 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
   AdmitCounts& counts = admitted.counts;
   counts.unused_vertices = unused_vertices(vertex_count, faces);
   std::vector<Triangle> kept =
-      faces_with_area(positions, welded(positions, faces, options, work, counts), work, admitted);
-  Gluing gluing = glue(vertex_count, kept, layers_of(vertex_count, kept, work, admitted), work);
+      faces_with_area(positions, welded(positions, faces, options, work, admitted), work, admitted);
+  std::vector<Index> layers = layers_of(vertex_count, kept, work, admitted);
+  if (options.share_copies && counts.copies > 0) drop_copies(kept, layers, admitted);
+  const std::vector<Index> polygons = polygons_of(admitted, options);
+  Gluing gluing = glue(vertex_count, kept, layers, polygons, work);
   counts.crowded_edges = gluing.crowded_edges;
-  Orientation orientation = orient(kept, gluing.twin, work);
+  Orientation orientation = orient(kept, gluing.twin, polygons, work);
   counts.one_sided_edges = orientation.one_sided_edges;
   admitted.reversed = std::move(orientation.reversed);
   SplitSurface split = split_fans(positions, kept, gluing.twin, work);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -13,6 +14,10 @@ namespace beltrami {
 struct AdmitOptions {
   /// Vertices no further apart become one, see weld; 0: those at one place; nothing: none.
   std::optional<double> weld_distance = 0;
+  /// Copies are no faces of the surface: they are to share what the first of them gets.
+  bool share_copies = false;
+  /// Per face the polygon that it is a part of; none: each is one. Polygons stay in one piece.
+  std::span<const Index> polygons = {};
 };
 
 /// What was done to the input. Faces and vertices are the input's.
@@ -23,7 +28,7 @@ struct AdmitCounts {
   Index faces_without_area = 0;  ///< set aside: no more than 1e-14 of the largest face, or of the
                                  ///< square of their longest edge
   Index copies = 0;              ///< faces with the vertices of a face before them, either way
-                                 ///< round: each further copy lies in a further layer
+                                 ///< round: each lies in a layer of its own, or is shared
   Index crowded_edges = 0;       ///< of more than two faces of a layer, which part there
   Index one_sided_edges = 0;     ///< where the sides of a one-sided surface part
   Index split_vertices = 0;      ///< that became several, one for each fan of faces
@@ -46,10 +51,13 @@ struct Admitted {
   std::vector<Index> input_vertex;  ///< per vertex, the least of those welded, increasing
   std::vector<Index> input_face;    ///< per face, increasing
   std::vector<bool> reversed;       ///< per face of the surface
-  std::vector<Index> set_aside;     ///< faces of the input that the surface lacks, increasing
+  std::vector<Index> set_aside;     ///< faces without area, which the surface lacks, increasing
   std::vector<Copy> copies;         ///< by their face
+  std::vector<Index> welded_to;     ///< per vertex of the input, the least that it became one
+                                    ///< with; empty where none did
   AdmitCounts counts;
 
+  Index welded(Index input) const { return welded_to.empty() ? input : welded_to[input]; }
   int input_corner(Index face, int k) const { return reversed[face] ? (3 - k) % 3 : k; }
 };
 
@@ -59,5 +67,10 @@ struct Admitted {
 /// ZERO_AREA where no face has any.
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work);
+
+/// Per face whether it has no area on the surface, as admit sets aside: no more than 1e-14 of the
+/// largest face, or of the square of its longest edge, or a vertex named twice.
+std::vector<bool> faces_without_area(const std::vector<Vec3>& positions,
+                                     const std::vector<Triangle>& faces, const Work& work);
 
 }  // namespace beltrami

@@ -26,6 +26,26 @@ void keep_majority(const std::vector<Index>& order, std::size_t begin,
   for (std::size_t i = begin; i < order.size(); ++i) reversed[order[i]] = !reversed[order[i]];
 }
 
+/// The spokes of one edge in one layer, by their polygons.
+using Crowd = std::vector<std::array<Index, 3>>;  // layer, polygon, half-edge
+
+/// Calls join for the pairs of one polygon, takes them out and returns how many are left at
+/// [first, last).
+template <class Join>
+std::size_t join_in_polygons(Crowd& crowd, std::size_t first, std::size_t last, const Join& join) {
+  std::size_t left = first;
+  for (std::size_t i = first, next = 0; i < last; i = next) {
+    next = i + 1;
+    while (next < last && crowd[next][1] == crowd[i][1]) ++next;
+    if (next - i == 2) {
+      join(crowd[i][2], crowd[i + 1][2]);
+    } else {
+      for (; i < next; ++i) crowd[left++] = crowd[i];
+    }
+  }
+  return left - first;
+}
+
 /// Half-edge h, where its face is turned over.
 Index turned(Index h) {
   return h + 2 - 2 * (h % 3);
@@ -34,7 +54,7 @@ Index turned(Index h) {
 }  // namespace
 
 Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
-            const std::vector<Index>& layers, const Work& work) {
+            const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work) {
   Gluing gluing;
   parallel_assign(work, gluing.twin, 3 * faces.size(), kNone);
   const auto join = [&](Index one, Index other) {
@@ -50,22 +70,26 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
       if (layers[one / 3] == layers[other / 3]) join(one, other);
       return;
     }
-    std::vector<std::array<Index, 2>> by_layer;
+    Crowd crowd;
     for (const Spoke& spoke : edge) {
-      by_layer.push_back({layers[spoke.halfedge / 3], spoke.halfedge});
+      const Index face = spoke.halfedge / 3;
+      crowd.push_back({layers[face], polygons.empty() ? face : polygons[face], spoke.halfedge});
     }
-    sort_interruptibly(by_layer.begin(), by_layer.end(), std::less<>());
-    for (std::size_t first = 0, last = 0; first < by_layer.size(); first = last) {
-      while (last < by_layer.size() && by_layer[last][0] == by_layer[first][0]) ++last;
-      if (last - first == 2) join(by_layer[first][1], by_layer[first + 1][1]);
-      if (last - first > 2) ++crowded;
+    sort_interruptibly(crowd.begin(), crowd.end(), std::less<>());
+    for (std::size_t first = 0, last = 0; first < crowd.size(); first = last) {
+      while (last < crowd.size() && crowd[last][0] == crowd[first][0]) ++last;
+      const std::size_t left =
+          last - first > 2 ? join_in_polygons(crowd, first, last, join) : last - first;
+      if (left == 2) join(crowd[first][2], crowd[first + 1][2]);
+      if (left > 2) ++crowded;
     }
   });
   gluing.crowded_edges = crowded;
   return gluing;
 }
 
-Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin, const Work& work) {
+Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
+                   std::span<const Index> polygons, const Work& work) {
   Orientation result;
   result.reversed.assign(faces.size(), false);
   std::vector<bool>& reversed = result.reversed;
@@ -73,23 +97,39 @@ Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin, const
   std::vector<Index> order;
   order.reserve(faces.size());
   PollSometimes poll;
+  // Whether the face beyond is to be turned for its twin to run against h.
+  const auto wanted = [&](Index h) {
+    const bool alike = ends_of(faces, h)[0] == ends_of(faces, twin[h])[0];
+    return reversed[h / 3] != alike;
+  };
+  // Adds a face, and at once the rest of its polygon, so that no other way comes first.
+  const auto add = [&](Index face, bool is_reversed) {
+    seen[face] = true;
+    reversed[face] = is_reversed;
+    order.push_back(face);
+    if (polygons.empty()) return;
+    for (std::size_t i = order.size() - 1; i < order.size(); ++i) {
+      for (Index h = 3 * order[i]; h < 3 * order[i] + 3; ++h) {
+        const Index other = twin[h] == kNone ? kNone : twin[h] / 3;
+        if (other == kNone || seen[other] || polygons[other] != polygons[face]) continue;
+        seen[other] = true;
+        reversed[other] = wanted(h);
+        order.push_back(other);
+      }
+    }
+  };
   for (Index seed = 0; seed < size_of(faces); ++seed) {
     if (seen[seed]) continue;
     const std::size_t begin = order.size();
-    seen[seed] = true;
-    order.push_back(seed);
+    add(seed, false);
     for (std::size_t i = begin; i < order.size(); ++i) {
       poll();
       for (int k = 0; k < 3; ++k) {
         const Index h = 3 * order[i] + k, other = twin[h];
         if (other == kNone) continue;
-        const bool alike = ends_of(faces, h)[0] == ends_of(faces, other)[0];
-        const bool wanted = reversed[order[i]] != alike;
         if (!seen[other / 3]) {
-          seen[other / 3] = true;
-          reversed[other / 3] = wanted;
-          order.push_back(other / 3);
-        } else if (reversed[other / 3] != wanted) {
+          add(other / 3, wanted(h));
+        } else if (reversed[other / 3] != wanted(h)) {
           twin[h] = twin[other] = kNone;
           ++result.one_sided_edges;
         }

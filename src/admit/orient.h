@@ -1,6 +1,7 @@
 // Faces glued across their edges, and turned to agree.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -14,10 +15,11 @@ struct Gluing {
   Index crowded_edges = 0;  ///< of more than two faces of a layer
 };
 
-/// Glues the faces of a layer (one number per face) across edges that exactly two of them share.
-/// Precondition: no face names a vertex twice.
+/// Glues the faces of a layer (one number per face) across edges that exactly two of them share,
+/// and of a crowded edge the two of one polygon (one number per face, or none). Precondition: no
+/// face names a vertex twice.
 Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
-            const std::vector<Index>& layers, const Work& work);
+            const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work);
 
 struct Orientation {
   std::vector<bool> reversed;  ///< per face
@@ -27,7 +29,8 @@ struct Orientation {
 /// Turns faces, breadth first from the least one of each component, so that twins run against each
 /// other, and most faces of a component stay as they are (the least one where it is half of them).
 /// Where that is impossible, the edge parts. Turns a face (a, b, c) into (a, c, b), its half-edges
-/// and those in `twin` with it.
-Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin, const Work& work);
+/// and those in `twin` with it. Polygons (one number per face, or none) stay in one piece.
+Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
+                   std::span<const Index> polygons, const Work& work);
 
 }  // namespace beltrami

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "base/bucket_sort.h"
 #include "base/disjoint_sets.h"
@@ -163,6 +164,12 @@ std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, con
   }
   if (distance > std::ldexp(greatest, -50)) return weld_near(positions, distance, work);
   return weld_equal(positions, PointTable(positions, work), work);
+}
+
+std::vector<Index> each_its_own(Index count) {
+  std::vector<Index> first(count);
+  std::iota(first.begin(), first.end(), 0);
+  return first;
 }
 
 }  // namespace beltrami

@@ -15,4 +15,7 @@ namespace beltrami {
 /// the distance not negative.
 std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, const Work& work);
 
+/// The same where nothing is welded.
+std::vector<Index> each_its_own(Index count);
+
 }  // namespace beltrami

@@ -6,13 +6,10 @@
 
 #include "atlas/map_charts.h"
 #include "atlas/measure.h"
-#include "atlas/rows.h"
-#include "base/error.h"
+#include "atlas/open.h"
+#include "atlas/place.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "cut/cut_into_charts.h"
-#include "cut/open_minimal.h"
-#include "exact/certificate.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
@@ -53,134 +50,131 @@ int bring_to_unit(Surface& surface, const Work& work) {
   return exponent;
 }
 
-std::vector<Chart> cut_open(const Surface& surface, const Topology& topology, const Work& work) {
-  CutSurface cut = cut_into_charts(surface, open_minimal(surface, topology, {}, work), work);
-  if (!cut.non_disks.empty()) {
-    throw Error(BELTRAMI_E_INTERNAL, "a chart of the cut surface is no disk, please report it");
+/// The maps as UVs of the input's corners.
+class Collector {
+ public:
+  Collector(const std::vector<Triangle>& faces, const Admitted& admitted, Atlas& atlas)
+      : faces_(faces), admitted_(admitted), atlas_(atlas) {
+    atlas.faces.resize(faces.size());
+    atlas.chart_of_face.assign(faces.size(), kNone);
+    atlas.reversed.assign(faces.size(), false);
+    atlas.excepted.assign(faces.size(), false);
+    Index vertices = 0;
+    for (const Triangle& face : faces) vertices = std::max({vertices, face[0], face[1], face[2]});
+    uv_of_.assign(static_cast<std::size_t>(vertices) + 1, kNone);
   }
-  return std::move(cut.charts);
-}
 
-Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
-  Eigen::AlignedBox2d box;
-  for (const Vec2& w : uvs) box.extend(w);
-  return box;
-}
+  void add(const AtlasChart& part, const std::vector<Vec2>& uvs);
+  void put_aside();
+  void share();
 
-/// Rounds a map, moved by `shift`, to doubles that rounded to nearest stay injective in single
-/// precision; or to single-precision numbers at once. Notes where it does not stay injective.
-void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool float32,
-                 const Work& work, MappedChart& map) {
-  const Numbers doubles{.single = false, .exponent = exponent};
-  const Numbers floats{.single = true, .exponent = exponent};
-  const bool was_injective = map.outcome <= Outcome::kNotConverged;
-  const auto note = [&](const Numbers& numbers, const Certificate& certificate, Outcome outcome) {
-    if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) {
-      map.outcome = outcome;
-    }
-  };
-  std::vector<Vec2> placed = map.uvs;
-  for (Vec2& w : placed) w += shift;
-  Rounded rounded = round_map(mesh, map.uvs, placed, doubles, work);
-  map.uvs = std::move(rounded.uvs);
-  note(doubles, rounded.certificate, Outcome::kNotInjective);
-  Rounded single = round_map(mesh, map.uvs, map.uvs, floats, work);
-  if (float32) {
-    if (map.outcome != Outcome::kNotInjective) {
-      note(floats, single.certificate, Outcome::kNotInjectiveFloat32);
-    }
-    map.uvs = std::move(single.uvs);
-  } else if (single.moved > 0 && single.certificate.injective()) {
-    map.uvs = std::move(single.uvs);
+ private:
+  const std::vector<Triangle>& faces_;
+  const Admitted& admitted_;
+  Atlas& atlas_;
+  std::vector<Index> uv_of_;  ///< per vertex of the input, one of its UV vertices, or kNone
+  PollSometimes poll_;
+};
+
+void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
+  const Chart& chart = part.chart;
+  const auto c = static_cast<Index>(atlas_.charts.size());
+  std::vector<Index> place(uvs.size(), kNone);
+  for (Index f = 0; f < part.real_faces; ++f) {
+    for (const Index v : chart.mesh.faces[f]) place[v] = 0;
   }
-}
-
-/// Lays the maps out without overlap, in the numbers to be delivered but for 2^exponent. A single
-/// one stays where it is.
-void place_maps(const std::vector<Chart>& charts, int exponent, bool float32,
-                std::vector<MappedChart>& maps, const Work& work) {
-  std::vector<Vec2> shifts(maps.size(), Vec2::Zero());
-  if (maps.size() > 1) {
-    std::vector<Vec2> sizes;
-    for (const MappedChart& map : maps) sizes.push_back(box_of(map.uvs).sizes());
-    shifts = place_in_rows(sizes);
-    for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
+  ChartInfo info;
+  info.faces = part.real_faces;
+  info.first_face = admitted_.input_face[chart.input_face[0]];
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    if (place[v] == kNone) continue;  // of virtual faces alone
+    place[v] = size_of(atlas_.uvs);
+    atlas_.uvs.push_back(uvs[v]);
+    atlas_.input_vertex.push_back(admitted_.input_vertex[chart.input_vertex[v]]);
+    info.box.extend(uvs[v]);
   }
-  const Work of_chart = maps.size() == 1 ? work : work.aside();
-  parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
-    if (maps[c].error != BELTRAMI_OK) {
-      for (Vec2& w : maps[c].uvs) w += shifts[c];
-      return;
+  for (Index f = 0; f < part.real_faces; ++f) {
+    poll_();
+    const Index own = chart.input_face[f], input = admitted_.input_face[own];
+    atlas_.chart_of_face[input] = c;
+    atlas_.reversed[input] = admitted_.reversed[own];
+    for (int k = 0; k < 3; ++k) {
+      const int corner = admitted_.input_corner(own, k);
+      const Index uv = place[chart.mesh.faces[f][k]];
+      atlas_.faces[input][corner] = uv;
+      Index& known = uv_of_[faces_[input][corner]];
+      if (known == kNone) known = uv;
     }
-    round_chart(charts[c].mesh, shifts[c], exponent, float32, of_chart, maps[c]);
-  });
+  }
+  atlas_.charts.push_back(info);
 }
 
 /// UV vertices for the faces that were set aside: each a point, where another face has a corner of
-/// theirs, if one has. `uv_of`: per vertex of the input, one of its UV vertices, or kNone.
-void put_aside(const std::vector<Triangle>& faces, const std::vector<Index>& set_aside,
-               const std::vector<Index>& uv_of, Atlas& atlas) {
-  for (const Index f : set_aside) {
+/// theirs, if one has.
+void Collector::put_aside() {
+  for (const Index f : admitted_.set_aside) {
+    const Triangle& face = faces_[f];
     const auto met =
-        std::find_if(faces[f].begin(), faces[f].end(), [&](Index v) { return uv_of[v] != kNone; });
-    const Vec2 place = atlas.uvs[met != faces[f].end() ? uv_of[*met] : 0];
+        std::find_if(face.begin(), face.end(), [&](Index v) { return uv_of_[v] != kNone; });
+    const Vec2 place = atlas_.uvs[met != face.end() ? uv_of_[*met] : 0];
+    atlas_.excepted[f] = true;
     for (int k = 0; k < 3; ++k) {
-      atlas.faces[f][k] = size_of(atlas.uvs);
-      atlas.uvs.push_back(place);
-      atlas.input_vertex.push_back(faces[f][k]);
+      atlas_.faces[f][k] = size_of(atlas_.uvs);
+      atlas_.uvs.push_back(place);
+      atlas_.input_vertex.push_back(admitted_.welded(face[k]));
     }
   }
 }
 
-/// The maps as UVs of the input's corners.
-void collect(const std::vector<Triangle>& faces, const Admitted& admitted,
-             const std::vector<Chart>& charts, const std::vector<MappedChart>& maps, Atlas& atlas) {
-  atlas.faces.resize(faces.size());
-  atlas.chart_of_face.assign(faces.size(), kNone);
-  atlas.reversed.assign(faces.size(), false);
-  Index vertices = 0;
-  for (const Triangle& face : faces) vertices = std::max({vertices, face[0], face[1], face[2]});
-  std::vector<Index> uv_of(static_cast<std::size_t>(vertices) + 1, kNone);
-  PollSometimes poll;
-  for (Index c = 0; c < size_of(charts); ++c) {
-    const Chart& chart = charts[c];
-    const Index first = size_of(atlas.uvs);
-    atlas.uvs.insert(atlas.uvs.end(), maps[c].uvs.begin(), maps[c].uvs.end());
-    for (const Index v : chart.input_vertex) {
-      atlas.input_vertex.push_back(admitted.input_vertex[v]);
-    }
-    for (Index f = 0; f < chart.mesh.face_count(); ++f) {
-      poll();
-      const Index own = chart.input_face[f], input = admitted.input_face[own];
-      atlas.chart_of_face[input] = c;
-      atlas.reversed[input] = admitted.reversed[own];
-      for (int k = 0; k < 3; ++k) {
-        const int corner = admitted.input_corner(own, k);
-        const Index uv = first + chart.mesh.faces[f][k];
-        atlas.faces[input][corner] = uv;
-        Index& known = uv_of[faces[input][corner]];
-        if (known == kNone) known = uv;
+/// The UV vertices of the first of their kind for copies that are no faces of the surface.
+void Collector::share() {
+  for (const auto& [copy, first] : admitted_.copies) {
+    if (atlas_.chart_of_face[copy] != kNone) continue;
+    atlas_.chart_of_face[copy] = atlas_.chart_of_face[first];
+    atlas_.excepted[copy] = true;
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        if (admitted_.welded(faces_[first][j]) != admitted_.welded(faces_[copy][k])) continue;
+        atlas_.faces[copy][k] = atlas_.faces[first][j];
       }
     }
   }
-  put_aside(faces, admitted.set_aside, uv_of, atlas);
 }
 
-/// Judges the faces as they were oriented, but for those set aside: the UVs as they are, and
-/// rounded to single precision.
-void judge(const Numbers& floats, const Work& work, Atlas& atlas) {
-  AtlasRules rules;
-  rules.excepted.resize(atlas.faces.size());
-  std::vector<Triangle> faces = atlas.faces;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (atlas.reversed[f]) std::swap(faces[f][1], faces[f][2]);
-    rules.excepted[f] = atlas.chart_of_face[f] == kNone;
+/// Scales every map by the mean density of its faces, weighted by area. One per chart.
+std::vector<double> scale_by_density(const std::vector<double>& densities, const Admitted& admitted,
+                                     const std::vector<AtlasChart>& charts,
+                                     std::vector<MappedChart>& maps) {
+  std::vector<double> scales(charts.size(), 1);
+  if (densities.empty()) return scales;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    const DiskMesh& mesh = charts[c].chart.mesh;
+    double area = 0, sum = 0;
+    for (Index f = 0; f < charts[c].real_faces; ++f) {
+      const auto [i, j, k] = mesh.faces[f];
+      const double own = triangle_area(mesh.positions[i], mesh.positions[j], mesh.positions[k]);
+      area += own;
+      sum += own * densities[admitted.input_face[charts[c].chart.input_face[f]]];
+    }
+    if (!(area > 0)) continue;
+    scales[c] = sum / area;
+    for (Vec2& w : maps[c].uvs) w *= scales[c];
   }
-  atlas.certificate = certify_atlas(faces, atlas.uvs, rules, work.part(0, 0.5));
-  std::vector<Vec2> single = atlas.uvs;
-  for (Vec2& w : single) w = floats.nearest(w);
-  atlas.single_certificate =
-      single == atlas.uvs ? atlas.certificate : certify_atlas(faces, single, rules, work);
+  return scales;
+}
+
+/// Area of the UVs over that of their bounding box.
+double utilisation_of(const Atlas& atlas) {
+  Eigen::AlignedBox2d box;
+  double area = 0;
+  for (std::size_t f = 0; f < atlas.faces.size(); ++f) {
+    if (atlas.excepted[f]) continue;
+    const auto [a, b, c] = atlas.faces[f];
+    const Vec2 p = atlas.uvs[b] - atlas.uvs[a], q = atlas.uvs[c] - atlas.uvs[a];
+    area += 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
+    for (const Index v : atlas.faces[f]) box.extend(atlas.uvs[v]);
+  }
+  return box.volume() > 0 ? area / box.volume() : 0;
 }
 
 Outcome outcome_of(const Atlas& atlas, bool float32) {
@@ -195,39 +189,91 @@ Outcome outcome_of(const Atlas& atlas, bool float32) {
   return float32 ? Outcome::kNotInjectiveFloat32 : Outcome::kNotInjective;
 }
 
+/// Into the unit that is delivered, by a power of two; `exponent`: of the surface.
+void deliver(const Numbers& numbers, int exponent, Atlas& atlas) {
+  for (Vec2& w : atlas.uvs) w = numbers.delivered(w);
+  for (ChartInfo& chart : atlas.charts) {
+    chart.area = std::ldexp(chart.area, -2 * exponent);
+    atlas.area += chart.area;
+    chart.box = {numbers.delivered(chart.box.min()), numbers.delivered(chart.box.max())};
+  }
+  atlas.seam_length = std::ldexp(atlas.seam_length, -exponent);
+}
+
+/// The charts' outcomes, energies and counts, and the UVs of all corners.
+void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSurface& opened,
+              const std::vector<MappedChart>& maps, const std::vector<double>& scales,
+              const Work& work, Atlas& atlas) {
+  atlas.admitted = admitted.counts;
+  atlas.filled_holes = opened.filled_holes;
+  Collector collector(input.faces, admitted, atlas);
+  for (std::size_t c = 0; c < maps.size(); ++c) {
+    collector.add(opened.charts[c], maps[c].uvs);
+    ChartInfo& chart = atlas.charts.back();
+    chart.outcome = maps[c].outcome;
+    chart.error = maps[c].error;
+    chart.density = scales[c];
+  }
+  collector.put_aside();
+  collector.share();
+  atlas.energy = measure_charts(opened.charts, maps, atlas.charts, work);
+  atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
+  atlas.utilisation = utilisation_of(atlas);
+}
+
 }  // namespace
 
-Atlas unwrap(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
-             const AtlasOptions& options, const Work& work) {
-  Admitted admitted =
-      admitted_surface(positions, faces, options, work.part(0, kAdmitted).named("admit"));
-  const int exponent = bring_to_unit(admitted.surface, work);
-  const std::vector<Chart> charts =
-      cut_open(admitted.surface, admitted.topology, work.part(kAdmitted, kCut).named("cut"));
-  std::vector<MappedChart> maps = map_charts(charts, work.part(kCut, kMapped).named("flatten"));
-  place_maps(charts, exponent, options.float32, maps, work);
-  work.named("place").report(kPlaced);
-
-  Atlas atlas;
-  for (const Chart& chart : charts) {
-    const MappedChart& map = maps[atlas.charts.size()];
-    atlas.charts.push_back(
-        {.faces = chart.mesh.face_count(), .outcome = map.outcome, .error = map.error});
+std::vector<Triangle> oriented_faces(const Atlas& atlas) {
+  std::vector<Triangle> faces = atlas.faces;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (atlas.reversed[f]) std::swap(faces[f][1], faces[f][2]);
   }
-  atlas.admitted = admitted.counts;
-  collect(faces, admitted, charts, maps, atlas);
-  atlas.energy = measure_charts(charts, maps, atlas.charts, work);
-  double area = 0;
-  for (const ChartInfo& chart : atlas.charts) area += chart.area;
-  atlas.seam_over_root_area = seam_length(charts, admitted.input_vertex) / std::sqrt(area);
-  judge({.single = true, .exponent = exponent}, work.part(kPlaced, 1).named("certify"), atlas);
-  atlas.outcome = outcome_of(atlas, options.float32);
+  return faces;
+}
 
-  // Into the input's unit, by a power of two.
-  const Numbers numbers{.single = options.float32, .exponent = exponent};
-  for (Vec2& w : atlas.uvs) w = numbers.delivered(w);
-  for (ChartInfo& chart : atlas.charts) chart.area = std::ldexp(chart.area, -2 * exponent);
-  atlas.area = std::ldexp(area, -2 * exponent);
+void judge_atlas(int exponent, bool float32, const Work& work, Atlas& atlas) {
+  const Numbers floats{.single = true, .exponent = exponent};
+  const std::vector<Triangle> faces = oriented_faces(atlas);
+  const AtlasRules rules{.excepted = atlas.excepted};
+  atlas.certificate = certify_atlas(faces, atlas.uvs, rules, work.part(0, 0.5));
+  std::vector<Vec2> single = atlas.uvs;
+  for (Vec2& w : single) w = floats.nearest(w);
+  atlas.single_certificate = single == atlas.uvs
+                                 ? atlas.certificate
+                                 : certify_atlas(faces, single, rules, work.part(0.5, 1));
+  atlas.outcome = outcome_of(atlas, float32);
+}
+
+Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& work) {
+  Atlas atlas;
+  const auto stage = [&](const char* name, double from, double to, auto&& body) {
+    run_stage(name, work.part(from, to), atlas.stages,
+              [&](StageStatistics&, const Work& inner) { body(inner); });
+  };
+  Admitted admitted;
+  int exponent = 0;
+  stage("admit", 0, kAdmitted, [&](const Work& inner) {
+    admitted = admitted_surface(input.positions, input.faces, options, inner);
+    exponent = bring_to_unit(admitted.surface, inner);
+  });
+  OpenedSurface opened;
+  stage("cut", kAdmitted, kCut, [&](const Work& inner) {
+    opened = open_surface(admitted, input.cuts, options.fill_limit, options.admit.polygons, inner);
+  });
+  std::vector<MappedChart> maps;
+  stage("flatten", kCut, kMapped,
+        [&](const Work& inner) { maps = map_charts(opened.charts, options.chart, inner); });
+  Numbers numbers{.single = options.float32, .exponent = exponent};
+  stage("place", kMapped, kPlaced, [&](const Work& inner) {
+    const std::vector<double> scales =
+        scale_by_density(input.densities, admitted, opened.charts, maps);
+    numbers.exponent =
+        place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
+    assemble(input, admitted, opened, maps, scales, inner, atlas);
+  });
+  stage("certify", kPlaced, 1,
+        [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });
+  deliver(numbers, exponent, atlas);
   return atlas;
 }
 

@@ -4,35 +4,54 @@
 
 #include <beltrami/beltrami.h>
 
+#include <cmath>
 #include <vector>
 
 #include "admit/admit.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/flattening.h"
+#include "chart/options.h"
+#include "cut/given.h"
 #include "exact/atlas_certificate.h"
 
 namespace beltrami {
+
+/// Any triangles, and what comes with them. Lists are empty where nothing is given.
+struct AtlasInput {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> faces;
+  GivenCuts cuts;
+  std::vector<double> densities;  ///< per face: lengths in the plane per length on the surface
+};
 
 struct AtlasOptions {
   AdmitOptions admit = {};
   /// A mesh that is one disk as it stands is not welded: its seams may run between vertices at one
   /// place.
   bool keep_disk = true;
-  bool float32 = false;  ///< deliver single-precision numbers
+  /// Boundary loops no longer than so many roots of their component's area are filled.
+  double fill_limit = 0.5;
+  ChartOptions chart = {};   ///< of every chart, but for what follows
+  bool unit_square = false;  ///< scale the atlas by a power of two into the unit square
+  bool float32 = false;      ///< deliver single-precision numbers
 };
 
 struct ChartInfo {
   Index faces = 0;
-  double area = 0;  ///< of the surface, in the input's unit squared
+  Index first_face = 0;     ///< of the input, the least one
+  double area = 0;          ///< of the surface, in the input's unit squared
+  double density = 1;       ///< lengths in the plane were scaled by it: the mean of its faces
+  Eigen::AlignedBox2d box;  ///< of its UVs
   Outcome outcome = Outcome::kOk;
   beltrami_status error = BELTRAMI_OK;      ///< why it has no map, but one point, where that is so
   double symmetric_dirichlet = 0, max = 0;  ///< as those of the atlas
 };
 
 /// Symmetric Dirichlet energy, at least 2, over the faces weighted by area, at one scale for all:
-/// the input's unit. Faces that are flipped or have no area in the plane are left out; NaN where
-/// none is left.
+/// the input's unit, or where densities are given the chart's. Faces that are flipped or have no
+/// area in the plane are left out; NaN where none is left.
 struct AtlasEnergy {
   double symmetric_dirichlet = 0;  ///< mean
   double p99 = 0;                  ///< exceeded on no more than 1% of the area
@@ -42,6 +61,7 @@ struct AtlasEnergy {
 
 /// Charts come by their least face, UV vertices by their chart. Faces that were set aside are in no
 /// chart: each is a point in the plane, with a UV vertex for each corner, of that corner's vertex.
+/// Copies that share the UV vertices of another face are in its chart, and not judged.
 struct Atlas {
   Outcome outcome = Outcome::kOk;
   std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit
@@ -49,21 +69,34 @@ struct Atlas {
   std::vector<Triangle> faces;       ///< per face of the input: UV vertices of its corners
   std::vector<Index> chart_of_face;  ///< per face of the input, or kNone
   std::vector<bool> reversed;  ///< per face of the input: positive in the plane the other way round
+  std::vector<bool> excepted;  ///< per face of the input: not judged, set aside or sharing
   std::vector<ChartInfo> charts;
   AdmitCounts admitted;
+  Index filled_holes = 0;
   double area = 0;  ///< of the surface, in the input's unit squared
   AtlasEnergy energy;
-  double seam_over_root_area = 0;       ///< each seam once, and no border of the surface
+  double seam_length = 0;  ///< in the input's unit, each seam once, and no border of the surface
+  double utilisation = 0;  ///< area of the UVs over that of their bounding box
   AtlasCertificate certificate;         ///< of the numbers delivered
   AtlasCertificate single_certificate;  ///< of the single-precision numbers nearest to them
+  std::vector<StageStatistics> stages;  ///< in the order in which they ran
+
+  double seam_over_root_area() const { return seam_length / std::sqrt(area); }
 };
 
 /// Cuts the surface into disks, flattens each and lays them out in rows. A chart that rounding to
 /// single precision would fold is delivered in such numbers at once, mended. The same bits at any
 /// number of threads; powers of two of the input's unit scale the UVs alone. A chart that fails is
-/// named in its info; the others are not touched. Throws what admit does, Cancelled, or
-/// std::bad_alloc.
-Atlas unwrap(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
-             const AtlasOptions& options, const Work& work);
+/// named in its info; the others are not touched. Throws what admit does, Error OUT_OF_MEMORY where
+/// the charts are estimated to need more than the limit of the work, Cancelled, or std::bad_alloc.
+/// Precondition: densities finite and above 0.
+Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& work);
+
+/// Judges the faces but for those excepted, and sets certificates and outcome: of the UVs as they
+/// are, and rounded to single precision, where x stands for x * 2^-exponent. unwrap has done so.
+void judge_atlas(int exponent, bool float32, const Work& work, Atlas& atlas);
+
+/// The faces as they are to be judged: turned over where they were reversed.
+std::vector<Triangle> oriented_faces(const Atlas& atlas);
 
 }  // namespace beltrami

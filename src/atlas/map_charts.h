@@ -5,10 +5,11 @@
 
 #include <vector>
 
+#include "atlas/open.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "mesh/chart.h"
+#include "chart/options.h"
 
 namespace beltrami {
 
@@ -21,7 +22,10 @@ struct MappedChart {
 
 /// Flattens every chart: large ones with all threads, one after the other, the rest side by side on
 /// one thread each, the largest first. Charts of up to two faces are laid flat as they are.
-/// Errors stay in the map of their chart. Throws Cancelled or std::bad_alloc.
-std::vector<MappedChart> map_charts(const std::vector<Chart>& charts, const Work& work);
+/// Errors stay in the map of their chart. Throws Cancelled or std::bad_alloc, and Error
+/// OUT_OF_MEMORY, before any work, where a chart is estimated to need more than the limit of the
+/// work.
+std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
+                                    const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

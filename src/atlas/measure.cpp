@@ -37,14 +37,18 @@ struct Sums {
   double mean() const { return left > 0 ? energy / left : kNoEnergy; }
 };
 
-std::vector<Weighted> face_energies(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+std::vector<Weighted> face_energies(const AtlasChart& part, const std::vector<Vec2>& uvs,
+                                    double density) {
+  const DiskMesh& mesh = part.chart.mesh;
   std::vector<Weighted> energies;
-  energies.reserve(mesh.faces.size());
+  energies.reserve(part.real_faces);
   PollSometimes poll;
-  for (const auto& [a, b, c] : mesh.faces) {
+  for (Index f = 0; f < part.real_faces; ++f) {
     poll();
-    const FaceDistortion face = measure_face(
-        {mesh.positions[a], mesh.positions[b], mesh.positions[c]}, {uvs[a], uvs[b], uvs[c]});
+    const auto [a, b, c] = mesh.faces[f];
+    const FaceDistortion face =
+        measure_face({mesh.positions[a], mesh.positions[b], mesh.positions[c]},
+                     {uvs[a] / density, uvs[b] / density, uvs[c] / density});
     energies.push_back({face.symmetric_dirichlet, face.area});
   }
   return energies;
@@ -67,11 +71,12 @@ double percentile(std::vector<Weighted>& faces) {
 
 }  // namespace
 
-AtlasEnergy measure_charts(const std::vector<Chart>& parts, const std::vector<MappedChart>& maps,
-                           std::vector<ChartInfo>& charts, const Work& work) {
+AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
+                           const std::vector<MappedChart>& maps, std::vector<ChartInfo>& charts,
+                           const Work& work) {
   std::vector<std::vector<Weighted>> energies(parts.size());
   parallel_for(work, size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
-    energies[c] = face_energies(parts[c].mesh, maps[c].uvs);
+    energies[c] = face_energies(parts[c], maps[c].uvs, charts[c].density);
   });
   AtlasEnergy atlas;
   Sums all;
@@ -97,16 +102,16 @@ AtlasEnergy measure_charts(const std::vector<Chart>& parts, const std::vector<Ma
   return atlas;
 }
 
-double seam_length(const std::vector<Chart>& charts, const std::vector<Index>& vertex) {
+double seam_length(const std::vector<AtlasChart>& charts, const std::vector<Index>& vertex) {
   struct Side {
     Index low, high;
     double length;
   };
   std::vector<Side> sides;
   PollSometimes poll;
-  for (const Chart& chart : charts) {
+  for (const auto& [chart, real_faces] : charts) {
     const DiskMesh& mesh = chart.mesh;
-    for (Index h = 0; h < size_of(mesh.twin); ++h) {
+    for (Index h = 0; h < 3 * real_faces; ++h) {
       poll();
       if (mesh.twin[h] != kNone) continue;
       const Index from = mesh.origin(h), to = mesh.target(h);

@@ -28,7 +28,7 @@ constexpr Index kRootFaces = 4'000'000;
 struct Graph {
   const Surface& surface;
   const BoundaryLoops& loops;
-  std::vector<bool> filled;           ///< per loop
+  const EdgeMarks& locked;            ///< or none
   std::vector<Index> loop_of_vertex;  ///< or kNone
   std::vector<Index> node;            ///< per vertex
 
@@ -39,14 +39,14 @@ struct Graph {
   std::vector<Index> degree;             ///< in the cut
   std::vector<Index> incident;           ///< its edges there, combined by exclusive or
   std::vector<std::uint8_t> is_in_tree;  ///< per half-edge, those of an edge alike
-  // Per face, then per filled loop, which counts as a face: the dual graph off the tree.
+  // Per face: the dual graph off the tree.
   std::vector<Index> crossings;  ///< edges to faces that are not stripped
   DisjointSets sets;
 
-  Graph(const Surface& of_surface, const BoundaryLoops& of_loops, std::vector<bool> is_filled)
+  Graph(const Surface& of_surface, const BoundaryLoops& of_loops, const EdgeMarks& of_locked)
       : surface(of_surface),
         loops(of_loops),
-        filled(std::move(is_filled)),
+        locked(of_locked),
         loop_of_vertex(surface.positions.size(), kNone),
         node(surface.positions.size()),
         distance(node.size()),
@@ -55,14 +55,14 @@ struct Graph {
         degree(node.size(), 0),
         incident(node.size(), 0),
         is_in_tree(surface.twin.size(), 0),
-        crossings(surface.faces.size() + filled.size()),
+        crossings(surface.faces.size()),
         sets(size_of(crossings)) {
     std::iota(node.begin(), node.end(), 0);
     for (Index loop = 0; loop < loops.count(); ++loop) {
       const Index first = surface.origin(loops.halfedge[loops.start[loop]]);
       for (const Index h : halfedges_of(loop)) {
         loop_of_vertex[surface.origin(h)] = loop;
-        if (!filled[loop]) node[surface.origin(h)] = first;
+        node[surface.origin(h)] = first;
       }
     }
   }
@@ -71,10 +71,11 @@ struct Graph {
     return std::span(loops.halfedge)
         .subspan(loops.start[loop], loops.start[loop + 1] - loops.start[loop]);
   }
-  bool is_joined_loop(Index n) const {
-    return loop_of_vertex[n] != kNone && !filled[loop_of_vertex[n]];
-  }
+  bool is_joined_loop(Index n) const { return loop_of_vertex[n] != kNone; }
+  /// Infinite where the cut must not go: no path takes such an edge, and the spanning tree of the
+  /// dual, which begins with the longest loops, crosses it.
   double length(Index h) const {
+    if (!locked.empty() && locked[h]) return std::numeric_limits<double>::infinity();
     return (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
   }
   Index start_node(Index h) const { return node[surface.origin(h)]; }
@@ -100,26 +101,17 @@ struct Graph {
     is_in_tree[h] = is ? 1 : 0;
     if (surface.twin[h] != kNone) is_in_tree[surface.twin[h]] = is_in_tree[h];
   }
-  /// The face, or filled loop, beyond an edge off the tree; kNone in the tree and on joined loops.
+  /// The face beyond an edge off the tree; kNone in the tree and on loops.
   Index across(Index h) const {
-    if (is_in_tree[h] != 0) return kNone;
     const Index twin = surface.twin[h];
-    if (twin != kNone) return twin / 3;
-    const Index loop = loop_of_vertex[surface.origin(h)];
-    return filled[loop] ? surface.face_count() + loop : kNone;
+    return is_in_tree[h] != 0 || twin == kNone ? kNone : twin / 3;
   }
-  /// Calls visit(half-edge, other face) for each edge off the tree of a face or filled loop.
+  /// Calls visit(half-edge, other face) for each edge off the tree of a face.
   template <class Visit>
   void for_each_crossing(Index face, const Visit& visit) const {
-    if (face < surface.face_count()) {
-      for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-        const Index other = across(h);
-        if (other != kNone) visit(h, other);
-      }
-      return;
-    }
-    for (const Index h : halfedges_of(face - surface.face_count())) {
-      if (is_in_tree[h] == 0) visit(h, h / 3);
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index other = across(h);
+      if (other != kNone) visit(h, other);
     }
   }
 };
@@ -135,16 +127,9 @@ class Opening {
  public:
   Opening(Graph& graph, const Component& component, std::span<const Index> vertices,
           std::span<const Index> faces, std::span<const Index> loops)
-      : graph_(graph),
-        component_(component),
-        vertices_(vertices),
-        faces_(faces.begin(), faces.end()) {
+      : graph_(graph), component_(component), vertices_(vertices), faces_(faces) {
     for (const Index loop : loops) {
-      if (graph.filled[loop]) {
-        faces_.push_back(graph.surface.face_count() + loop);
-      } else {
-        loop_nodes_.push_back(graph.start_node(graph.halfedges_of(loop).front()));
-      }
+      loop_nodes_.push_back(graph.start_node(graph.halfedges_of(loop).front()));
     }
   }
 
@@ -183,8 +168,8 @@ class Opening {
   Graph& graph_;
   const Component& component_;
   std::span<const Index> vertices_;
-  std::vector<Index> faces_;       // and filled loops
-  std::vector<Index> loop_nodes_;  // of the joined loops
+  std::span<const Index> faces_;
+  std::vector<Index> loop_nodes_;
   PollSometimes poll_;
 };
 
@@ -217,11 +202,12 @@ void Opening::grow_tree(const std::vector<Index>& roots) {
   }
 }
 
+/// Of the nodes that paths reach.
 Index Opening::farthest() const {
   Index far = graph_.node[vertices_.front()];
   for (const Index v : vertices_) {
     const Index n = graph_.node[v];
-    if (graph_.distance[n] > graph_.distance[far]) far = n;
+    if (graph_.parent[n] != kNone && graph_.distance[n] > graph_.distance[far]) far = n;
   }
   return far;
 }
@@ -233,14 +219,13 @@ std::vector<Index> Opening::open_sphere() {
   grow_tree({root});
   // The two farthest nodes, those two edges away or more before the neighbours of the root.
   const auto rank = [&](Index n) {
-    const Index edge = graph_.parent[n];
-    const bool is_beyond = edge != kNone && graph_.other_end(edge, n) != root;
+    const bool is_beyond = graph_.other_end(graph_.parent[n], n) != root;
     return std::pair(is_beyond, graph_.distance[n]);
   };
   Index far = kNone, second = kNone;
   for (const Index n : vertices_) {
     poll_();
-    if (n == root) continue;
+    if (n == root || graph_.parent[n] == kNone) continue;
     if (far == kNone || rank(n) > rank(far)) {
       second = std::exchange(far, n);
     } else if (second == kNone || rank(n) > rank(second)) {
@@ -294,7 +279,6 @@ std::vector<Index> Opening::closing_edges() {
     poll_();
     if (graph_.crossings[face] == 0) continue;
     graph_.sets.make(face);
-    if (face >= graph_.surface.face_count()) continue;  // its edges are those of faces, too
     graph_.for_each_crossing(face, [&](Index h, Index other) {
       if (graph_.crossings[other] == 0 || graph_.surface.edge(h) != h) return;
       const double length = graph_.distance[graph_.start_node(h)] + graph_.length(h) +
@@ -374,11 +358,11 @@ void Opening::prune(const std::vector<Index>& roots, std::vector<Index>& edges) 
 
 }  // namespace
 
-EdgeMarks open_minimal(const Surface& surface, const Topology& topology,
-                       const std::vector<bool>& filled, const Work& work) {
+EdgeMarks open_minimal(const Surface& surface, const Topology& topology, const EdgeMarks& locked,
+                       const Work& work) {
   const Index components = size_of(topology.components);
   const BoundaryLoops& loops = topology.loops;
-  Graph graph(surface, loops, filled.empty() ? std::vector<bool>(loops.count(), false) : filled);
+  Graph graph(surface, loops, locked);
   const auto component_of_vertex = [&](Index v) {
     const Index h = surface.outgoing[v];
     return h == kNone ? kNone : topology.component_of_face[h / 3];

@@ -10,13 +10,14 @@
 namespace beltrami {
 
 /// Marks a short cut graph for each component that is no disk: cut along it, every component is
-/// one. A sphere is cut along a path of two edges or more between vertices far apart. Boundary loop
-/// i of the topology counts as closed by a face if filled[i]; the others are joined to the cut.
-/// The greedy system of loops of Erickson & Whittlesey (SODA 2005), from the best of three to six
-/// roots, the first of them all joined loops together. Time: as many shortest-path trees.
-/// Preconditions: `topology` is the surface's; one flag per loop, or none; lengths far from the
-/// ends of the range of numbers. May mark edges of a filled loop.
-EdgeMarks open_minimal(const Surface& surface, const Topology& topology,
-                       const std::vector<bool>& filled, const Work& work);
+/// one. A sphere is cut along a path of two edges or more between vertices far apart; boundary
+/// loops are joined. Locked edges are not cut: diagonals of polygons, and what crosses a filled
+/// hole. The greedy system of loops of Erickson & Whittlesey (SODA 2005), from the best of three to
+/// six roots, the first of them all loops together. Time: as many shortest-path trees.
+/// Preconditions: `topology` is the surface's; locked edges, or none, form no loop in the dual and
+/// leave the vertices with a free edge connected; lengths far from the ends of the range of
+/// numbers.
+EdgeMarks open_minimal(const Surface& surface, const Topology& topology, const EdgeMarks& locked,
+                       const Work& work);
 
 }  // namespace beltrami

@@ -1,0 +1,210 @@
+// The entry points that make an atlas and hand it out.
+#include <beltrami/beltrami.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "abi/buffers.h"
+#include "abi/context.h"
+#include "abi/reports.h"
+#include "abi/unwrapped.h"
+#include "atlas/atlas.h"
+#include "base/error.h"
+#include "base/types.h"
+#include "chart/chart_map.h"
+#include "exact/atlas_certificate.h"
+
+namespace beltrami {
+namespace {
+
+std::uint64_t count(std::int64_t number) {
+  return static_cast<std::uint64_t>(number);
+}
+
+void describe_admitted(beltrami_atlas& report, const AdmitCounts& counts) {
+  report.unused_vertices = count(counts.unused_vertices);
+  report.welded_vertices = count(counts.welded_vertices);
+  report.repeated_faces = count(counts.repeated_faces);
+  report.faces_without_area = count(counts.faces_without_area);
+  report.copies = count(counts.copies);
+  report.crowded_edges = count(counts.crowded_edges);
+  report.one_sided_edges = count(counts.one_sided_edges);
+  report.split_vertices = count(counts.split_vertices);
+  report.reversed_faces = count(counts.reversed_faces);
+  report.components = count(counts.components);
+  report.closed_components = count(counts.closed_components);
+  report.holes = count(counts.holes);
+}
+
+beltrami_atlas describe(const Unwrapped& result) {
+  const Atlas& atlas = result.atlas;
+  beltrami_atlas report{};
+  report.status = status_of(atlas.outcome);
+  report.vertices = result.vertices;
+  report.faces = result.faces;
+  report.corners = result.uv_vertex.size();
+  report.triangles = result.triangles.size();
+  report.charts = atlas.charts.size();
+  report.uv_vertices = result.uvs.size();
+  describe_admitted(report, atlas.admitted);
+  report.filled_holes = count(atlas.filled_holes);
+  report.left_out = count(atlas.energy.left_out);
+  report.area = atlas.area;
+  report.seam_length = atlas.seam_length;
+  report.utilisation = atlas.utilisation;
+  report.symmetric_dirichlet = atlas.energy.symmetric_dirichlet;
+  report.p99 = atlas.energy.p99;
+  report.max = atlas.energy.max;
+  report.seconds = result.seconds;
+  report.cpu_seconds = result.cpu_seconds;
+  report.peak_memory_bytes = result.peak_memory_bytes;
+  return report;
+}
+
+beltrami_chart describe(const Unwrapped& result, const ChartInfo& chart) {
+  beltrami_chart report{};
+  report.status = status_of(chart.outcome);
+  report.error = chart.error;
+  report.triangles = count(chart.faces);
+  report.first_face = result.face_of(chart.first_face);
+  report.area = chart.area;
+  report.density = chart.density;
+  report.symmetric_dirichlet = chart.symmetric_dirichlet;
+  report.max = chart.max;
+  for (int k = 0; k < 2; ++k) {
+    report.box[k] = chart.box.min()[k];
+    report.box[2 + k] = chart.box.max()[k];
+  }
+  return report;
+}
+
+/// The body of a getter of an atlas: body(const Unwrapped&) writes.
+template <class Body>
+beltrami_status get(beltrami_context* context, const Body& body) noexcept {
+  return enter(context, [&](beltrami_context& self) {
+    body(self.atlas());
+    return BELTRAMI_OK;
+  });
+}
+
+/// Calls value(i) for each of `items` UVs and writes them.
+template <class Value>
+void write_uvs(void* out, std::int32_t type, std::uint64_t stride, std::size_t items,
+               const Value& value) {
+  Writer writer(out, type, stride, items, 2);
+  for (std::size_t i = 0; i < items; ++i) writer.write(i, value(i).data());
+}
+
+template <class Item>
+[[noreturn]] void refuse_index(const char* what, Item index, std::size_t size) {
+  throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string("there is no ") + what + " " +
+                                               std::to_string(index) + ": there are " +
+                                               std::to_string(size) + ", counted from 0");
+}
+
+}  // namespace
+}  // namespace beltrami
+
+using beltrami::get;
+using beltrami::Unwrapped;
+
+beltrami_status beltrami_unwrap(beltrami_context* context, const beltrami_surface* surface,
+                                beltrami_progress progress, void* user) {
+  return beltrami::enter(
+      context, [&](beltrami_context& self) { return self.unwrap(surface, progress, user); });
+}
+
+beltrami_status beltrami_get_atlas(beltrami_context* context, beltrami_atlas* out) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::require_sized(out, "out");
+    beltrami::write_sized(out, beltrami::describe(result));
+  });
+}
+
+beltrami_status beltrami_get_chart(beltrami_context* context, uint64_t index, beltrami_chart* out) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::require_sized(out, "out");
+    const auto& charts = result.atlas.charts;
+    if (index >= charts.size()) beltrami::refuse_index("chart", index, charts.size());
+    beltrami::write_sized(out, beltrami::describe(result, charts[index]));
+  });
+}
+
+beltrami_status beltrami_get_atlas_certificate(beltrami_context* context, int32_t type,
+                                               beltrami_atlas_certificate* out) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::require_sized(out, "out");
+    if (type != BELTRAMI_F32 && type != BELTRAMI_F64) {
+      throw beltrami::Error(BELTRAMI_E_INVALID_ARGUMENT, "the type is " + std::to_string(type) +
+                                                             ": give BELTRAMI_F32 or BELTRAMI_F64");
+    }
+    const beltrami::Atlas& atlas = result.atlas;
+    beltrami_atlas_certificate report = beltrami::describe_atlas(
+        type == BELTRAMI_F32 ? atlas.single_certificate : atlas.certificate);
+    beltrami::name_faces(report, [&](beltrami::Index t) { return result.face_of(t); });
+    beltrami::write_sized(out, report);
+  });
+}
+
+beltrami_status beltrami_get_corner_uvs(beltrami_context* context, void* out, int32_t type,
+                                        uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_uvs(out, type, stride, result.uv_vertex.size(),
+                        [&](std::size_t i) { return result.uvs[result.uv_vertex[i]]; });
+  });
+}
+
+beltrami_status beltrami_get_corner_uv_vertices(beltrami_context* context, void* out, int32_t type,
+                                                uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_integers(result.uv_vertex, 1, out, type, stride);
+  });
+}
+
+beltrami_status beltrami_get_uv_vertices(beltrami_context* context, void* out, int32_t type,
+                                         uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_uvs(out, type, stride, result.uvs.size(),
+                        [&](std::size_t i) { return result.uvs[i]; });
+  });
+}
+
+beltrami_status beltrami_get_uv_vertex_origins(beltrami_context* context, void* out, int32_t type,
+                                               uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_integers(result.origin, 1, out, type, stride);
+  });
+}
+
+beltrami_status beltrami_get_face_charts(beltrami_context* context, void* out, int32_t type,
+                                         uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_integers(result.chart_of_face, 1, out, type, stride);
+  });
+}
+
+beltrami_status beltrami_get_triangles(beltrami_context* context, void* out, int32_t type,
+                                       uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_integers(beltrami::flat(result.triangles), 3, out, type, stride);
+  });
+}
+
+int32_t beltrami_atlas_stage_count(const beltrami_context* context) {
+  if (context == nullptr || !context->unwrapped) return 0;
+  return static_cast<int32_t>(context->unwrapped->atlas.stages.size());
+}
+
+beltrami_status beltrami_get_atlas_stage(beltrami_context* context, int32_t index,
+                                         beltrami_stage* out) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::require_sized(out, "out");
+    const auto& stages = result.atlas.stages;
+    if (index < 0 || static_cast<std::size_t>(index) >= stages.size()) {
+      beltrami::refuse_index("stage", index, stages.size());
+    }
+    beltrami::write_sized(out, beltrami::describe_stage(stages[static_cast<std::size_t>(index)]));
+  });
+}

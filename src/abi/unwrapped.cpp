@@ -1,0 +1,113 @@
+#include "abi/unwrapped.h"
+
+#include <numbers>
+#include <utility>
+
+#include "abi/reports.h"
+#include "abi/surface.h"
+#include "base/resources.h"
+
+namespace beltrami {
+namespace {
+
+/// Straight angles are exactly that.
+double radians(double degrees) {
+  return degrees / 180 * std::numbers::pi;
+}
+
+/// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner.
+std::vector<Index> uvs_of_corners(const LoadedSurface& surface, const Atlas& atlas) {
+  std::vector<Index> uv_of_corner(surface.polygons.corners.size(), kNone);
+  const std::vector<Triangle>& triangles = surface.triangulation.triangles;
+  for (const bool excepted : {false, true}) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (atlas.excepted[t] != excepted) continue;
+      for (int k = 0; k < 3; ++k) {
+        Index& uv = uv_of_corner[triangles[t][k]];
+        if (uv == kNone) uv = atlas.faces[t][k];
+      }
+    }
+  }
+  return uv_of_corner;
+}
+
+/// Gives every triangle the UVs of its corners. Returns whether one that is judged had others:
+/// where a polygon is so crooked that its triangles lie in two charts.
+bool follow_corners(const LoadedSurface& surface, const std::vector<Index>& uv_of_corner,
+                    Atlas& atlas) {
+  bool changed = false;
+  const std::vector<Triangle>& triangles = surface.triangulation.triangles;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const Index uv = uv_of_corner[triangles[t][k]];
+      changed = changed || (!atlas.excepted[t] && uv != atlas.faces[t][k]);
+      atlas.faces[t][k] = uv;
+    }
+  }
+  return changed;
+}
+
+/// One UV vertex for each pair of a UV and an input vertex, in the order of the corners.
+void split_vertices(const LoadedSurface& surface, const std::vector<Index>& uv_of_corner,
+                    Unwrapped& result) {
+  const std::vector<Index>& vertex = surface.polygons.corners;
+  std::vector<Index> first(result.atlas.uvs.size(), kNone), next;
+  result.uv_vertex.reserve(vertex.size());
+  for (std::size_t c = 0; c < vertex.size(); ++c) {
+    // Few: as many as there are vertices welded to one.
+    Index found = first[uv_of_corner[c]];
+    while (found != kNone && result.origin[found] != vertex[c]) found = next[found];
+    if (found == kNone) {
+      found = size_of(result.uvs);
+      result.uvs.push_back(result.atlas.uvs[uv_of_corner[c]]);
+      result.origin.push_back(vertex[c]);
+      next.push_back(std::exchange(first[uv_of_corner[c]], found));
+    }
+    result.uv_vertex.push_back(found);
+  }
+}
+
+}  // namespace
+
+std::uint64_t Unwrapped::face_of(Index triangle) const {
+  if (triangle == kNone || face_of_triangle.empty()) return element_or_none(triangle);
+  return static_cast<std::uint64_t>(face_of_triangle[triangle]);
+}
+
+Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& options, bool islands,
+                         double hard_angle, const Work& work) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  const Work reading = work.named("read");
+  LoadedSurface surface = read_surface(header, reading);
+  AtlasInput input = atlas_input(header, surface, islands, reading);
+  input.cuts.hard_angle = radians(hard_angle);
+  AtlasOptions with_polygons = options;
+  with_polygons.admit.polygons = surface.face_of_triangle;
+
+  Unwrapped result;
+  result.atlas = unwrap(input, with_polygons, work);
+  Atlas& atlas = result.atlas;
+  const std::vector<Index> uv_of_corner = uvs_of_corners(surface, atlas);
+  if (follow_corners(surface, uv_of_corner, atlas)) {
+    judge_atlas(0, options.float32, work.aside(), atlas);
+  }
+  split_vertices(surface, uv_of_corner, result);
+
+  result.vertices = header.vertex_count;
+  result.faces = header.face_count;
+  result.chart_of_face.assign(header.face_count, kNone);
+  result.triangles = std::move(surface.triangulation.triangles);
+  for (Index t = 0; t < size_of(result.triangles); ++t) {
+    Index& chart = result.chart_of_face[surface.face_of(t)];
+    if (chart == kNone) chart = atlas.chart_of_face[t];
+    Triangle& triangle = result.triangles[t];
+    if (atlas.reversed[t]) std::swap(triangle[1], triangle[2]);
+  }
+  result.face_of_triangle = std::move(surface.face_of_triangle);
+  result.seconds = wall_seconds() - wall;
+  result.cpu_seconds = cpu_seconds() - cpu;
+  result.peak_memory_bytes = peak_memory_bytes();
+  return result;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,96 @@
+#include "atlas/open.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "admit/fill.h"
+#include "base/error.h"
+#include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
+#include "cut/open_minimal.h"
+#include "mesh/split_fans.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+namespace {
+
+// Where the stages end in the progress.
+constexpr double kParted = 0.2, kFilled = 0.3, kOpened = 0.7;
+
+/// The surface with what is given cut, but for the inside of polygons.
+SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, std::span<const Index> polygons,
+                  const Work& work) {
+  const EdgeMarks marks = given_marks(admitted, cuts, work.part(0, 0.5));
+  std::vector<Index> twin = admitted.surface.twin;
+  const auto polygon = [&](Index h) { return polygons[admitted.input_face[h / 3]]; };
+  for (Index h = 0; h < size_of(twin); ++h) {
+    if (!marks[h] || twin[h] == kNone) continue;
+    if (polygons.empty() || polygon(h) != polygon(admitted.surface.twin[h])) twin[h] = kNone;
+  }
+  return split_fans(admitted.surface.positions, admitted.surface.faces, twin, work.part(0.5, 1));
+}
+
+/// The edges that are not to be cut: between the triangles of one polygon, and the spokes of fans
+/// over holes but for one each, by which a path may reach the centre.
+EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
+                       std::span<const Index> polygons) {
+  const Surface& surface = filled.surface;
+  if (polygons.empty() && filled.filled_loops == 0) return {};
+  EdgeMarks locked(surface.twin.size(), false);
+  if (!polygons.empty()) {
+    const auto polygon = [&](Index h) { return polygons[admitted.input_face[h / 3]]; };
+    for (Index h = 0; h < 3 * filled.real_faces; ++h) {
+      const Index twin = surface.twin[h];
+      if (twin == kNone || twin >= 3 * filled.real_faces) continue;
+      if (polygon(h) == polygon(twin)) locked[h] = true;
+    }
+  }
+  for (Index v = filled.real_vertices; v < surface.vertex_count(); ++v) {
+    const Index first = surface.outgoing[v];
+    surface.for_each_outgoing(v, [&](Index h) {
+      if (h != first) mark_edge(surface, h, locked);
+    });
+  }
+  return locked;
+}
+
+}  // namespace
+
+OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
+                           std::span<const Index> polygons, const Work& work) {
+  SplitSurface parted;
+  Topology topology;
+  if (cuts.none()) {
+    parted.surface = admitted.surface;
+    topology = admitted.topology;
+  } else {
+    parted = part(admitted, cuts, polygons, work.part(0, kParted));
+    topology = topology_of(parted.surface, work);
+  }
+  const auto input = [&](Index v) { return parted.vertex.empty() ? v : parted.vertex[v]; };
+  const FilledSurface filled =
+      fill_holes(std::move(parted.surface), topology, fill_limit, work.part(kParted, kFilled));
+  if (filled.filled_loops > 0) topology = topology_of(filled.surface, work);
+
+  const EdgeMarks marks =
+      open_minimal(filled.surface, topology, locked_edges(filled, admitted, polygons),
+                   work.part(kFilled, kOpened));
+  CutSurface cut = cut_into_charts(filled.surface, marks, work.part(kOpened, 1));
+  if (!cut.non_disks.empty()) {
+    throw Error(BELTRAMI_E_INTERNAL, "a chart of the cut surface is no disk, please report it");
+  }
+  OpenedSurface opened;
+  opened.filled_holes = filled.filled_loops;
+  for (Chart& chart : cut.charts) {
+    const auto first_virtual =
+        std::lower_bound(chart.input_face.begin(), chart.input_face.end(), filled.real_faces);
+    const auto real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
+    for (Index& v : chart.input_vertex) v = v < filled.real_vertices ? input(v) : kNone;
+    opened.charts.push_back({std::move(chart), real_faces});
+  }
+  return opened;
+}
+
+}  // namespace beltrami

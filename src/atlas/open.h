@@ -1,0 +1,34 @@
+// An admitted surface -> charts: parted where the input asks for it, holes filled, opened where it
+// must be.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "admit/admit.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/given.h"
+#include "mesh/chart.h"
+
+namespace beltrami {
+
+/// A disk of the surface, and which of it is virtual.
+struct AtlasChart {
+  Chart chart;           ///< of vertices and faces of the surface, the virtual ones at the end
+  Index real_faces = 0;  ///< the first ones
+};
+
+struct OpenedSurface {
+  std::vector<AtlasChart> charts;  ///< by their least face
+  Index filled_holes = 0;
+};
+
+/// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
+/// the root of their component's area, and cuts what is no disk then along a short cut graph.
+/// `polygons`: per face of the input the polygon that it is a part of, which no cut divides; or
+/// none.
+OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
+                           std::span<const Index> polygons, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,19 @@
+// Where charts lie in the plane, in the numbers that are delivered.
+#pragma once
+
+#include <vector>
+
+#include "atlas/map_charts.h"
+#include "atlas/open.h"
+#include "base/work.h"
+
+namespace beltrami {
+
+/// Lays the maps out without overlap, in the numbers to be delivered: x stands for x * 2^-exponent,
+/// the exponent being what is returned. That is `exponent`, or with `unit_square` the one that
+/// brings all of them into [0, 1]^2. A single map stays where it is, but for that. A map that
+/// rounding would fold is mended, and its outcome says where it cannot be.
+int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_square, bool float32,
+               std::vector<MappedChart>& maps, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,89 @@
+#include "cut/given.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/interrupt.h"
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 16384;
+
+using Edge = std::array<Index, 2>;  // the lesser end first
+
+Edge edge_between(Index a, Index b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// The given edges between welded vertices, in order.
+std::vector<Edge> sorted_edges(const Admitted& admitted, const GivenCuts& cuts) {
+  std::vector<Edge> edges;
+  for (const auto& [a, b] : cuts.edges) {
+    edges.push_back(edge_between(admitted.welded(a), admitted.welded(b)));
+  }
+  sort_interruptibly(edges.begin(), edges.end(), std::less<>());
+  return edges;
+}
+
+Vec3 normal_of(const Surface& surface, Index face) {
+  const auto [a, b, c] = surface.faces[face];
+  const Vec3& p = surface.positions[a];
+  return (surface.positions[b] - p).cross(surface.positions[c] - p);
+}
+
+/// Whether the normals of the faces on both sides of an edge turn by more than the angle.
+bool is_hard(const Surface& surface, Index halfedge, double cosine) {
+  const Vec3 one = normal_of(surface, halfedge / 3),
+             other = normal_of(surface, surface.twin[halfedge] / 3);
+  return one.dot(other) < cosine * std::sqrt(one.squaredNorm() * other.squaredNorm());
+}
+
+}  // namespace
+
+EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Work& work) {
+  const Surface& surface = admitted.surface;
+  const std::vector<Edge> edges = sorted_edges(admitted, cuts);
+  const bool by_angle = cuts.hard_angle < std::numbers::pi;
+  const double cosine = std::cos(cuts.hard_angle);
+  const auto input_vertex = [&](Index v) { return admitted.input_vertex[v]; };
+  /// The UV of the corner that a half-edge starts from.
+  const auto uv = [&](Index h) {
+    const Index face = h / 3;
+    return cuts.corner_uvs[3 * static_cast<std::size_t>(admitted.input_face[face]) +
+                           static_cast<std::size_t>(admitted.input_corner(face, h % 3))];
+  };
+  const auto is_given = [&](Index h, Index twin) {
+    if (!edges.empty() && std::binary_search(edges.begin(), edges.end(),
+                                             edge_between(input_vertex(surface.origin(h)),
+                                                          input_vertex(surface.target(h))))) {
+      return true;
+    }
+    if (!cuts.labels.empty() &&
+        cuts.labels[admitted.input_face[h / 3]] != cuts.labels[admitted.input_face[twin / 3]]) {
+      return true;
+    }
+    if (!cuts.corner_uvs.empty() &&
+        (uv(h) != uv(Surface::next(twin)) || uv(Surface::next(h)) != uv(twin))) {
+      return true;
+    }
+    return by_angle && is_hard(surface, h, cosine);
+  };
+  // Bytes, for neighbouring bits cannot be written side by side.
+  std::vector<std::uint8_t> given(surface.twin.size(), 0);
+  parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto h = static_cast<Index>(begin); h < end; ++h) {
+      const Index twin = surface.twin[h];
+      given[h] = twin != kNone && h < twin && is_given(h, twin) ? 1 : 0;
+    }
+  });
+  EdgeMarks marks(surface.twin.size(), false);
+  for (Index h = 0; h < size_of(surface.twin); ++h) {
+    if (given[h] != 0) mark_edge(surface, h, marks);
+  }
+  return marks;
+}
+
+}  // namespace beltrami
