@@ -1,4 +1,6 @@
 // The program `beltrami`: the command line.
+#include <beltrami/beltrami.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -26,6 +28,36 @@ constexpr const char* kKept =
     "where\n"
     "the format can hold them; a line says what is not kept.";
 
+constexpr const char* kAnyMesh =
+    "IN is any mesh: closed or open, in one piece or thousands, soups and broken files too. It is\n"
+    "cut into charts, each is flattened, and the whole atlas is proven to be injective. Every\n"
+    "corner of every face gets its UV.";
+
+CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
+  CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
+  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
+  options.add_to(*command);
+  command
+      ->add_option("--seams", arguments.seams,
+                   "Edges to cut: a text of pairs of vertex numbers, counted from 0")
+      ->type_name("FILE");
+  command
+      ->add_option("--labels", arguments.labels,
+                   "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
+                   "or a property of the faces of a PLY file")
+      ->type_name("NAME");
+  command->add_flag("--triangulate", arguments.triangulate,
+                    "Write the triangles that were computed on, in the orientation in which their\n"
+                    "UVs are positive");
+  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
+      ->type_name("FILE.png");
+  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->footer(std::string(kAnyMesh) + "\n\n" + kKept + "\n\n" + kExitCodes);
+  return command;
+}
+
 CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("flatten", "Flatten a disk-like triangle mesh to UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
@@ -38,7 +70,8 @@ CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& optio
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  command->footer(std::string(kKept) + "\n\n" + kExitCodes);
+  command->footer(std::string("IN is one disk; unwrap takes any mesh.\n\n") + kKept + "\n\n" +
+                  kExitCodes);
   return command;
 }
 
@@ -48,6 +81,8 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   command->add_flag("--float32", arguments.float32, "Judge the UVs rounded to single precision");
   command->add_flag("--weld", arguments.weld,
                     "Judge vertices at one place and with one UV (to the last bit) as one");
+  command->add_flag("--mirrored", arguments.mirrored,
+                    "Take charts of an atlas that are mirrored as a whole for their mirror images");
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
@@ -57,14 +92,16 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Injective, low-distortion flattening of disk-like triangle meshes", "beltrami");
+  CLI::App app("Injective, low-distortion UVs: atlases of any mesh, and maps of disks", "beltrami");
   app.set_version_flag("--version", beltrami_build_info());
   app.require_subcommand(1);
   app.footer(kExitCodes);
-  Options options;
+  Options of_flatten(BELTRAMI_CALL_RUN), of_unwrap(BELTRAMI_CALL_UNWRAP);
   FlattenArguments flatten;
+  UnwrapArguments unwrap;
   CheckArguments check;
-  const CLI::App* flatten_app = add_flatten(app, flatten, options);
+  const CLI::App* unwrap_app = add_unwrap(app, unwrap, of_unwrap);
+  const CLI::App* flatten_app = add_flatten(app, flatten, of_flatten);
   add_check(app, check);
   try {
     app.parse(argc, argv);
@@ -75,7 +112,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }
-  return flatten_app->parsed() ? flatten_command(flatten, options) : check_command(check);
+  if (unwrap_app->parsed()) return unwrap_command(unwrap, of_unwrap);
+  return flatten_app->parsed() ? flatten_command(flatten, of_flatten) : check_command(check);
 }
 
 /// Before the static objects of CLI11, which need memory, are made.

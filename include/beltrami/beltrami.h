@@ -667,7 +667,7 @@ BELTRAMI_API beltrami_status beltrami_get_atlas_stage(beltrami_context* context,
  * triangles that disagree in orientation with their chart are turned over, for a winding that
  * changes is no fold. `allow_mirrored`: 1 takes charts that are negative as a whole for their
  * mirror images. `pairs`: NULL or room for `capacity` pairs of faces that overlap; those that are
- * not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE, or an error with
+ * not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE. Errors, with
  * out->error_element set: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, CANCELLED,
  * OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_check_atlas(const beltrami_surface* surface,

@@ -38,6 +38,24 @@ double seconds_so_far() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - kProgramStart).count();
 }
 
+Context make_context() {
+  beltrami_context* raw = nullptr;
+  const beltrami_status status = beltrami_create(&raw);
+  if (status < 0) throw Failure(status, beltrami_status_advice(status));
+  return {raw, &beltrami_destroy};
+}
+
+std::vector<double> face_energies(const TriangleView& triangles) {
+  const beltrami_mesh mesh = view_of(triangles);
+  const beltrami_buffer uvs = uv_view(triangles);
+  beltrami_energy energy{};
+  energy.struct_size = sizeof energy;
+  std::vector<double> energies(triangles.face_count());
+  const beltrami_status status = beltrami_measure(&mesh, &uvs, &energy, energies.data());
+  require_ok(status, "the picture", "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+  return energies;
+}
+
 beltrami_mesh view_of(const TriangleView& triangles) {
   beltrami_mesh mesh{};
   mesh.struct_size = sizeof mesh;

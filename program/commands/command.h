@@ -4,6 +4,7 @@
 #include <beltrami/beltrami.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,17 +22,35 @@ struct FlattenArguments {
   bool quiet = false;
 };
 
+struct UnwrapArguments {
+  std::string input, output;
+  std::string seams, labels;    ///< a path, and what labels faces; or ""
+  std::string report, picture;  ///< paths, or "" for none
+  bool triangulate = false;     ///< write the triangles that were computed on
+  bool quiet = false;
+};
+
 struct CheckArguments {
   std::string input;
   std::string report, picture;  ///< paths, or "" for none
   bool float32 = false;         ///< judge the UVs rounded to single precision
   bool weld = false;            ///< vertices at one place and with one UV count as one
+  bool mirrored = false;        ///< charts that are mirrored as a whole are no fault
   bool quiet = false;
 };
 
 /// The commands: the exit code. They print the summary, or one line on stderr.
 int flatten_command(const FlattenArguments& arguments, Options& options);
+int unwrap_command(const UnwrapArguments& arguments, Options& options);
 int check_command(const CheckArguments& arguments);
+
+using Context = std::unique_ptr<beltrami_context, void (*)(beltrami_context*)>;
+
+/// Throws Failure.
+Context make_context();
+
+/// The symmetric Dirichlet energy of each triangle. Throws std::bad_alloc, or Failure.
+std::vector<double> face_energies(const TriangleView& triangles);
 
 /// The arrays as the library takes them; what `triangles` views must outlive it.
 beltrami_mesh view_of(const TriangleView& triangles);

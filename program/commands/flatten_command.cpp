@@ -16,13 +16,10 @@
 namespace beltrami::cli {
 namespace {
 
-using Context = std::unique_ptr<beltrami_context, void (*)(beltrami_context*)>;
-
-Context make_context() {
-  beltrami_context* raw = nullptr;
-  const beltrami_status status = beltrami_create(&raw);
-  if (status < 0) throw Failure(status, beltrami_status_advice(status));
-  return {raw, &beltrami_destroy};
+/// What takes a mesh that is no disk.
+const char* advice_to_unwrap(beltrami_status status) {
+  const bool is_no_disk = status <= BELTRAMI_E_REPEATED_VERTEX && status >= BELTRAMI_E_GENUS;
+  return is_no_disk ? " (or give it to beltrami unwrap, which takes any mesh)" : "";
 }
 
 void note_options(const FlattenArguments& arguments, const Options& options, Report& report) {
@@ -73,7 +70,9 @@ class Flattening {
     report_.set_input(file_, *surface_);
     const beltrami_mesh mesh = view_of(surface_->view());
     const beltrami_status status = beltrami_set_mesh(context_.get(), &mesh);
-    require_ok_mesh(status, arguments_.input, beltrami_error_message(context_.get()),
+    const std::string message =
+        beltrami_error_message(context_.get()) + std::string(advice_to_unwrap(status));
+    require_ok_mesh(status, arguments_.input, message.c_str(),
                     beltrami_error_element_kind(context_.get()),
                     beltrami_error_element(context_.get()), file_, *surface_);
     clock.finish();

@@ -121,11 +121,12 @@ std::string parse_option(const std::string& text, Option& option) {
   return "'" + text + "' is not one of " + joined_choices(option, ", ");
 }
 
-Options::Options() {
+Options::Options(std::int32_t call) {
   for (std::int32_t key = 0;; ++key) {
     Option option;
     option.info.struct_size = sizeof option.info;
     if (beltrami_option_describe(key, &option.info) != BELTRAMI_OK) break;
+    if ((option.info.calls & call) == 0) continue;
     option.integer = static_cast<std::int64_t>(option.info.default_value);
     option.real = option.info.default_value;
     if (option.is_thread_count()) {

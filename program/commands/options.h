@@ -34,8 +34,9 @@ struct Option {
 
 class Options {
  public:
-  /// Every option of the library at its default, threads at the cores that the process may use.
-  Options();
+  /// Every option of the library that `call` takes (a BELTRAMI_CALL_ number) at its default,
+  /// threads at the cores that the process may use.
+  explicit Options(std::int32_t call);
   /// The command line refers to the options.
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;

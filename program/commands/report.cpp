@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #if !defined(_WIN32)
 #include <sys/resource.h>
@@ -74,7 +75,29 @@ Json options_json(const Report& report) {
   return options;
 }
 
+Json overlap_json(const beltrami_atlas_certificate& found) {
+  if (found.first_overlap[0] == BELTRAMI_NO_ELEMENT) return nullptr;
+  return {found.first_overlap[0], found.first_overlap[1]};
+}
+
+Json atlas_injective_json(const Report& report) {
+  const beltrami_atlas_certificate& found = *report.atlas_certificate;
+  return {{"result", found.injective != 0},
+          {"positive", found.positive},
+          {"negative", found.negative},
+          {"degenerate", found.degenerate},
+          {"excepted", found.excepted},
+          {"mirrored_charts", found.mirrored_charts},
+          {"mirrored_faces", found.mirrored_faces},
+          {"overlaps", found.overlaps},
+          {"first_overlap", overlap_json(found)},
+          {"first_bad_face", element(found.first_bad_face)},
+          {"touching_places", found.touching_places},
+          {"float32", optional(report.float32_injective)}};
+}
+
 Json injective_json(const Report& report) {
+  if (report.atlas_certificate) return atlas_injective_json(report);
   if (!report.certificate) return nullptr;
   const beltrami_certificate& found = *report.certificate;
   return {{"result", found.injective != 0},
@@ -86,7 +109,53 @@ Json injective_json(const Report& report) {
           {"float32", optional(report.float32_injective)}};
 }
 
+Json admitted_json(const Report& report) {
+  if (!report.atlas) return nullptr;
+  const beltrami_atlas& found = *report.atlas;
+  return {{"area", number(found.area)},
+          {"triangles", found.triangles},
+          {"unused_vertices", found.unused_vertices},
+          {"welded_vertices", found.welded_vertices},
+          {"repeated_faces", found.repeated_faces},
+          {"faces_without_area", found.faces_without_area},
+          {"copies", found.copies},
+          {"crowded_edges", found.crowded_edges},
+          {"one_sided_edges", found.one_sided_edges},
+          {"split_vertices", found.split_vertices},
+          {"reversed_faces", found.reversed_faces},
+          {"components", found.components},
+          {"closed_components", found.closed_components},
+          {"holes", found.holes},
+          {"filled_holes", found.filled_holes}};
+}
+
+Json failed_charts_json(const Report& report) {
+  if (!report.atlas) return nullptr;
+  Json charts = Json::array();
+  for (const auto& [index, chart] : report.failed_charts) {
+    charts.push_back(
+        {{"chart", index},
+         {"first_face", chart.first_face},
+         {"triangles", chart.triangles},
+         {"status", beltrami_status_name(chart.status)},
+         {"error", chart.error < 0 ? Json(beltrami_status_name(chart.error)) : Json(nullptr)}});
+  }
+  return charts;
+}
+
+Json atlas_energy_json(const beltrami_atlas& found) {
+  return {{"symmetric_dirichlet", number(found.symmetric_dirichlet)},
+          {"p99", number(found.p99)},
+          {"max", number(found.max)},
+          {"left_out", found.left_out}};
+}
+
+double seam_over_root_area(const beltrami_atlas& atlas) {
+  return atlas.seam_length / std::sqrt(atlas.area);
+}
+
 Json energy_json(const Report& report) {
+  if (report.atlas) return atlas_energy_json(*report.atlas);
   if (!report.energy) return nullptr;
   const beltrami_energy& found = *report.energy;
   return {{"symmetric_dirichlet", number(found.symmetric_dirichlet)},
@@ -136,15 +205,19 @@ std::string library_version() {
   text += line;
 }
 
+void append_yes(const Report& report, std::string& text) {
+  append(text, "injective  yes%s\n",
+         !report.float32_injective   ? ""
+         : *report.float32_injective ? " (also when rounded to float32)"
+         : report.float32_possible.value_or(false)
+             ? " (NOT when rounded to float32: give --float32 for that)"
+             : " (NOT when rounded to float32: keep the UVs in double precision)");
+}
+
 void append_verdict(const Report& report, std::string& text) {
   const beltrami_certificate& found = *report.certificate;
   if (found.injective) {
-    append(text, "injective  yes%s\n",
-           !report.float32_injective   ? ""
-           : *report.float32_injective ? " (also when rounded to float32)"
-           : report.float32_possible.value_or(false)
-               ? " (NOT when rounded to float32: flatten with --float32 for that)"
-               : " (NOT when rounded to float32: keep the UVs in double precision)");
+    append_yes(report, text);
     return;
   }
   append(text, "injective  NO: %llu flipped, %llu of zero area, %llu boundary crossings",
@@ -153,6 +226,53 @@ void append_verdict(const Report& report, std::string& text) {
          static_cast<unsigned long long>(found.boundary_crossings));
   if (found.first_bad_face != BELTRAMI_NO_ELEMENT) {
     append(text, "; first bad face %llu", static_cast<unsigned long long>(found.first_bad_face));
+  }
+  text += "\n";
+}
+
+void append_atlas(const beltrami_atlas& atlas, std::string& text) {
+  append(text, "charts     %llu, seams of %.4g root areas\n",
+         static_cast<unsigned long long>(atlas.charts), seam_over_root_area(atlas));
+  append(text, "energy     %.6g mean, %.6g at the 99th percentile, %.6g max (2 is isometric)\n",
+         atlas.symmetric_dirichlet, atlas.p99, atlas.max);
+}
+
+/// What had to be done to the input, where that is anything.
+void append_admitted(const beltrami_atlas& atlas, std::string& text) {
+  const std::pair<std::uint64_t, const char*> counts[] = {
+      {atlas.welded_vertices, "vertices welded"},
+      {atlas.unused_vertices, "vertices unused"},
+      {atlas.repeated_faces, "faces with a vertex twice"},
+      {atlas.faces_without_area, "faces without area"},
+      {atlas.copies, "copies of faces"},
+      {atlas.crowded_edges, "edges of three faces or more"},
+      {atlas.one_sided_edges, "edges of a one-sided surface"},
+      {atlas.split_vertices, "vertices split"},
+      {atlas.reversed_faces, "faces turned over"},
+      {atlas.filled_holes, "holes filled"}};
+  std::string line;
+  for (const auto& [count, what] : counts) {
+    if (count > 0) line += (line.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  }
+  if (!line.empty()) text += "admitted   " + line + "\n";
+}
+
+void append_atlas_verdict(const Report& report, std::string& text) {
+  const beltrami_atlas_certificate& found = *report.atlas_certificate;
+  if (found.injective != 0) {
+    append_yes(report, text);
+    return;
+  }
+  append(text, "injective  NO: %llu flipped, %llu of zero area, %llu overlaps",
+         static_cast<unsigned long long>(found.negative),
+         static_cast<unsigned long long>(found.degenerate),
+         static_cast<unsigned long long>(found.overlaps));
+  if (found.first_bad_face != BELTRAMI_NO_ELEMENT) {
+    append(text, "; first bad face %llu", static_cast<unsigned long long>(found.first_bad_face));
+  } else if (found.first_overlap[0] != BELTRAMI_NO_ELEMENT) {
+    append(text, "; faces %llu and %llu overlap",
+           static_cast<unsigned long long>(found.first_overlap[0]),
+           static_cast<unsigned long long>(found.first_overlap[1]));
   }
   text += "\n";
 }
@@ -193,6 +313,13 @@ std::string to_json(const Report& report) {
       {"element", element_json(report)},
       {"input", input_json(report)},
       {"options", options_json(report)},
+      {"admitted", admitted_json(report)},
+      {"charts", report.atlas ? Json(report.atlas->charts) : Json(nullptr)},
+      {"failed_charts", failed_charts_json(report)},
+      {"uv_vertices", report.atlas ? Json(report.atlas->uv_vertices) : Json(nullptr)},
+      {"seam_over_root_area",
+       report.atlas ? number(seam_over_root_area(*report.atlas)) : Json(nullptr)},
+      {"utilisation", report.atlas ? number(report.atlas->utilisation) : Json(nullptr)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
       {"coarse_faces", optional(report.coarse_faces)},
@@ -232,9 +359,19 @@ std::string to_summary(const Report& report, const std::string& written) {
     append(text, "energy     %.6g mean, %.6g max (symmetric Dirichlet; 2 is isometric)\n",
            report.energy->symmetric_dirichlet, report.energy->max);
   }
+  if (report.atlas) {
+    append_admitted(*report.atlas, text);
+    append_atlas(*report.atlas, text);
+  }
   if (report.certificate) append_verdict(report, text);
+  if (report.atlas_certificate) append_atlas_verdict(report, text);
+  if (!report.failed_charts.empty()) {
+    append(text, "note       %zu charts failed, the first at face %llu (counted from 0)\n",
+           report.failed_charts.size(),
+           static_cast<unsigned long long>(report.failed_charts.front().chart.first_face));
+  }
   if (report.status == "BELTRAMI_NOT_INJECTIVE_FLOAT32") {
-    append(text, "note       injective in double precision only: flatten without --float32\n");
+    append(text, "note       injective in double precision only: leave out --float32\n");
   }
   if (report.result && report.result->degenerate_faces > 0) {
     append(text, "note       %llu faces have no area, the first is %llu (counted from 0)\n",

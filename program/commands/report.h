@@ -32,6 +32,12 @@ struct StageTime {
 using OptionValues =
     std::vector<std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>>;
 
+/// A chart that is not as it was promised.
+struct FailedChart {
+  std::uint64_t index = 0;
+  beltrami_chart chart{};
+};
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -52,6 +58,9 @@ struct Report {
   std::optional<beltrami_energy> energy;
   std::optional<std::uint64_t> coarse_faces, flips_before_repair;
   std::optional<beltrami_result> result;
+  std::optional<beltrami_atlas> atlas;
+  std::optional<beltrami_atlas_certificate> atlas_certificate;
+  std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
@@ -61,6 +70,10 @@ struct Report {
 
   /// Counts of what was read, and of the triangles that it was cut into.
   void set_input(const MeshFile& file, const Surface& surface);
+  bool injective() const {
+    return atlas_certificate ? atlas_certificate->injective != 0
+                             : certificate && certificate->injective != 0;
+  }
   void set_failure(const Failure& failure);
 };
 

@@ -59,6 +59,26 @@ void require_writable_format(const std::string& path) {
   throw Failure(path + ": results are written as OBJ or PLY: use the extension .obj or .ply");
 }
 
+void unite_corner_uvs(MeshFile& mesh) {
+  const auto& [values, of_corner] = mesh.corner_uvs;
+  const std::vector<std::uint32_t>& vertices = mesh.polygons.corners();
+  std::vector<double> uvs(2 * mesh.vertex_count(), 0.0);
+  std::vector<bool> known(mesh.vertex_count(), false);
+  for (std::size_t c = 0; c < vertices.size(); ++c) {
+    const double* uv = &values[2 * std::size_t{of_corner[c]}];
+    double* of_vertex = &uvs[2 * std::size_t{vertices[c]}];
+    // Written so that NaN is no second UV: the library refuses it with its face.
+    if (known[vertices[c]] && (uv[0] < of_vertex[0] || uv[0] > of_vertex[0] ||
+                               uv[1] < of_vertex[1] || uv[1] > of_vertex[1])) {
+      return;
+    }
+    std::copy(uv, uv + 2, of_vertex);
+    known[vertices[c]] = true;
+  }
+  mesh.uvs = std::move(uvs);
+  mesh.corner_uvs = {};
+}
+
 MeshFile read_mesh(const std::string& path, Content content) {
   MeshFile mesh = read_text(path, content);
   mesh.path = path;

@@ -32,6 +32,12 @@ struct CornerNormals {
   std::vector<std::uint32_t> of_corner;  ///< kNoNormal for none; empty where no corner has one
 };
 
+/// UVs of corners, where a vertex has several.
+struct CornerUvs {
+  std::vector<double> values;            ///< u v each
+  std::vector<std::uint32_t> of_corner;  ///< empty where vertices have the UVs
+};
+
 /// A statement of an OBJ file that holds for, or stands between, the faces: a group, a material.
 struct Statement {
   std::uint64_t polygon = 0;  ///< it stands before this one
@@ -44,6 +50,7 @@ struct MeshFile {
   std::vector<double> positions;     ///< x y z per vertex, in file order
   Polygons polygons;                 ///< in file order
   std::vector<double> uvs;           ///< u v per vertex; empty where not asked for
+  CornerUvs corner_uvs;              ///< instead of these
   bool single_uvs = false;           ///< single precision holds them: PLY stores them so
   std::uint64_t welded_corners = 0;  ///< STL: corners that fell together with an earlier one
 
@@ -65,8 +72,8 @@ enum class MeshFormat { kObj, kOff, kPly, kStl };
 /// Which parts of a file a command needs.
 enum class Content {
   kSurface,  ///< all but UVs, which a run replaces
-  kUvs       ///< positions, polygons and one UV per vertex, and nothing else: a file without UVs,
-             ///< or with several for one vertex, fails
+  kUvs,      ///< positions, polygons and UVs, and nothing else: a file without UVs fails
+  kAll       ///< both
 };
 
 /// The format that the extension of `path` names, in any case. Throws Failure for others.
@@ -88,10 +95,17 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
 /// Receives the bytes of a file in order.
 using Sink = std::function<void(std::string_view)>;
 
-/// Writes `mesh` with its UVs (one per vertex) in the format that `path` names, and of the rest
+/// Writes `mesh` with its UVs in the format that `path` names, and of the rest
 /// what that format can hold. Numbers in text have the fewest digits (at most 17) that read back to
 /// the same bits.
 void write_mesh(const MeshFile& mesh, const std::string& path, const Sink& sink);
+
+/// Gives `mesh` the triangles that its polygons were cut into, as three corners each, in any order
+/// of the corners. What belongs to faces and corners goes with them.
+void cut_faces(MeshFile& mesh, const std::vector<std::uint32_t>& corners);
+
+/// Makes UVs of corners such of vertices where all corners of each vertex agree.
+void unite_corner_uvs(MeshFile& mesh);
 
 /// Gives `mesh` other faces, triangles on the same vertices. What belonged to the old ones goes,
 /// and is said in not_kept.

@@ -29,15 +29,15 @@ class ObjReader {
     if (mesh_.positions.empty()) throw Failure(path_ + ": no vertices: is this an OBJ file?");
     if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
     require_forward_references();
-    if (content_ == Content::kUvs) {
-      resolve_uvs();
-    } else {
-      finish_attributes();
-    }
+    if (wants_uvs()) resolve_uvs();
+    if (wants_attributes()) finish_attributes();
     return std::move(mesh_);
   }
 
  private:
+  bool wants_uvs() const { return content_ != Content::kSurface; }
+  bool wants_attributes() const { return content_ != Content::kUvs; }
+
   void read_statement() {
     cursor_.skip_blanks();
     if (cursor_.at_line_end()) return cursor_.skip_line();
@@ -48,8 +48,8 @@ class ObjReader {
     } else if (keyword == "f" || keyword == "fo") {
       read_face();
     } else if (keyword == "vt") {
-      if (content_ == Content::kUvs) read_texture();
-    } else if (content_ == Content::kSurface) {
+      if (wants_uvs()) read_texture();
+    } else if (wants_attributes()) {
       return read_other(keyword, begin);
     } else {
       require_text(keyword);
@@ -64,7 +64,7 @@ class ObjReader {
 
   void read_vertex() {
     for (int k = 0; k < 3; ++k) mesh_.positions.push_back(cursor_.number("a coordinate"));
-    if (content_ != Content::kSurface) return;
+    if (!wants_attributes()) return;
     unknown_numbers_ |= extra_.read(cursor_, mesh_.vertex_count() - 1);
   }
 
@@ -157,7 +157,7 @@ class ObjReader {
       cursor_.advance();
       if (names_number()) {
         const std::int64_t number = cursor_.integer("a texture number");
-        if (content_ == Content::kUvs) {
+        if (wants_uvs()) {
           texture = resolve(number, textures_.size() / 2, "texture coordinate");
         }
       }
@@ -166,9 +166,9 @@ class ObjReader {
         if (names_number()) normal = read_normal_number();
       }
     }
-    if (content_ == Content::kUvs) {
-      corner_textures_.push_back(texture);
-    } else if (normal != kNoNormal || !mesh_.normals.of_corner.empty()) {
+    if (wants_uvs()) corner_textures_.push_back(texture);
+    if (!wants_attributes()) return;
+    if (normal != kNoNormal || !mesh_.normals.of_corner.empty()) {
       mesh_.normals.of_corner.resize(mesh_.polygons.corners().size() - 1, kNoNormal);
       mesh_.normals.of_corner.push_back(normal);
     }
@@ -268,34 +268,15 @@ class ObjReader {
       return;
     }
     if (!named) throw Failure(path_ + ": no texture coordinates: faces need the form v/vt");
-    mesh_.uvs.assign(2 * mesh_.vertex_count(), 0.0);
-    std::vector<bool> known(mesh_.vertex_count(), false);
-    for (std::size_t i = 0; i < corner_textures_.size(); ++i) assign_uv(i, known);
-  }
-
-  void assign_uv(std::size_t corner, std::vector<bool>& known) {
-    const std::uint32_t vertex = mesh_.polygons.corners()[corner];
-    const std::uint32_t texture = corner_textures_[corner];
-    if (texture == kNoTexture) {
-      const std::uint64_t face = mesh_.polygons.of_corner(corner);
+    for (std::size_t i = 0; i < corner_textures_.size(); ++i) {
+      if (corner_textures_[i] != kNoTexture) continue;
+      const std::uint64_t face = mesh_.polygons.of_corner(i);
       at_face(face).fail(
           "face " + std::to_string(face) + " (counted from 0) has no texture coordinates",
           BELTRAMI_ELEMENT_FACE, face);
     }
-    const double u = textures_[2 * std::size_t{texture}];
-    const double v = textures_[2 * std::size_t{texture} + 1];
-    double* uv = &mesh_.uvs[2 * std::size_t{vertex}];
-    // Negated so that NaN passes: the library refuses it with its vertex.
-    if (known[vertex] && (uv[0] < u || uv[0] > u || uv[1] < v || uv[1] > v)) {
-      at_face(mesh_.polygons.of_corner(corner))
-          .fail("vertex " + std::to_string(vertex) +
-                    " (counted from 0) has two different texture coordinates: cut "
-                    "the mesh along its seams first",
-                BELTRAMI_ELEMENT_VERTEX, vertex);
-    }
-    uv[0] = u;
-    uv[1] = v;
-    known[vertex] = true;
+    mesh_.corner_uvs = {std::move(textures_), std::move(corner_textures_)};
+    unite_corner_uvs(mesh_);
   }
 
   std::string_view text_;

@@ -113,7 +113,7 @@ class OffVertices {
 }  // namespace
 
 MeshFile read_off(std::string_view text, const std::string& path, Content content) {
-  if (content == Content::kUvs) {
+  if (content != Content::kSurface) {
     throw Failure(path + ": OFF files carry no texture coordinates: use OBJ or PLY");
   }
   TextCursor cursor(text, path);

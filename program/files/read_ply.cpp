@@ -89,6 +89,7 @@ class PlyReader {
     }
     if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
     require_indices();
+    if (!mesh_.corner_uvs.of_corner.empty()) unite_corner_uvs(mesh_);
     mesh_.comments = std::move(header_.comments);
     return std::move(mesh_);
   }
@@ -105,10 +106,18 @@ class PlyReader {
     return element ? element->count : 0;
   }
 
+  bool wants_uvs() const { return content_ != Content::kSurface; }
+  /// Whether UVs are those of corners: with both, these are the ones that a texture was made for.
+  bool corners_have_uvs() const {
+    const PlyElement* faces = header_.find("face");
+    return faces != nullptr && faces->find_list("texcoord") != nullptr &&
+           count_of("tristrips") == 0;
+  }
+
   /// A column for the property, where columns are kept.
   Target keep(const PlyProperty& property, std::vector<Column>& columns) const {
     Target target{&property, -1, -1};
-    if (content_ != Content::kSurface) return target;
+    if (content_ == Content::kUvs) return target;
     target.column = static_cast<int>(columns.size());
     columns.emplace_back(property.name, property.type, property.count_type.has_value());
     return target;
@@ -125,10 +134,10 @@ class PlyReader {
       replaced.insert(replaced.end(), pair.begin(), pair.end());
       if (names[3].empty()) std::copy(pair.begin(), pair.end(), names.begin() + 3);
     }
-    if (content_ == Content::kUvs && names[3].empty()) {
+    if (wants_uvs() && !corners_have_uvs() && names[3].empty()) {
       throw Failure(path_ +
                     ": no texture coordinates: vertices need the properties s and t, u and v, or "
-                    "texture_u and texture_v");
+                    "texture_u and texture_v, or faces the list texcoord");
     }
     std::vector<Target> targets;
     for (const PlyProperty& property : element.properties) {
@@ -154,7 +163,7 @@ class PlyReader {
         read_value(target, element, i, mesh_.vertex_columns, row.data());
       }
       mesh_.positions.insert(mesh_.positions.end(), row.begin(), row.begin() + 3);
-      if (content_ == Content::kUvs) {
+      if (wants_uvs() && !corners_have_uvs()) {
         mesh_.uvs.insert(mesh_.uvs.end(), row.begin() + 3, row.end());
       }
     }
@@ -172,9 +181,10 @@ class PlyReader {
     const PlyProperty& corners = corner_property(element);
     // Strips become faces without properties: then there is no column for all of the faces.
     const bool with_columns = count_of("tristrips") == 0;
+    const PlyProperty* textures = element.find_list("texcoord");
     std::vector<Target> targets;
     for (const PlyProperty& property : element.properties) {
-      // Texture coordinates of corners are replaced by those of vertices.
+      // UVs are replaced, or read for themselves.
       const bool skipped = property.name == "vertex_indices" || property.name == "vertex_index" ||
                            property.name == "texcoord";
       if (skipped || !with_columns) {
@@ -190,10 +200,33 @@ class PlyReader {
       for (const Target& target : targets) {
         if (target.property == &corners) {
           read_face(corners, element, i);
+        } else if (wants_uvs() && with_columns && target.property == textures) {
+          read_corner_uvs(*textures, element, i);
         } else {
           read_value(target, element, i, mesh_.face_columns, nullptr);
         }
       }
+      if (wants_uvs() && with_columns && textures != nullptr) require_corner_uvs(i);
+    }
+  }
+
+  /// The corners of a face may come before their UVs or after them.
+  void require_corner_uvs(std::uint64_t face) const {
+    const std::size_t corners = mesh_.polygons.corners().size();
+    if (mesh_.corner_uvs.values.size() == 2 * corners) return;
+    throw Failure(values_.place(path_) + "face " + std::to_string(face) +
+                      " (counted from 0) needs two values in its list texcoord for each corner",
+                  BELTRAMI_ELEMENT_FACE, face);
+  }
+
+  void read_corner_uvs(const PlyProperty& property, const PlyElement& element, std::uint64_t item) {
+    CornerUvs& uvs = mesh_.corner_uvs;
+    const std::uint64_t count = read_list_size(property, element, item);
+    for (std::uint64_t k = 0; k < count; ++k) {
+      uvs.values.push_back(next(property.type, element, item));
+    }
+    for (std::uint64_t k = 0; k < count / 2; ++k) {
+      uvs.of_corner.push_back(static_cast<std::uint32_t>(uvs.of_corner.size()));
     }
   }
 

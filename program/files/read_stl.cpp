@@ -133,7 +133,7 @@ class TextReader {
 }  // namespace
 
 MeshFile read_stl(std::string_view text, const std::string& path, Content content) {
-  if (content == Content::kUvs) {
+  if (content != Content::kSurface) {
     throw Failure(path + ": STL files carry no texture coordinates: use OBJ or PLY");
   }
   MeshFile mesh;

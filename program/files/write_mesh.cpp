@@ -1,5 +1,8 @@
 #include "files/write_mesh.h"
 
+#include <algorithm>
+
+#include "files/column.h"
 #include "files/polygons.h"
 
 namespace beltrami::cli {
@@ -12,6 +15,44 @@ void write_mesh(const MeshFile& mesh, const std::string& path, const Sink& sink)
     write_obj(mesh, out);
   }
   out.flush();
+}
+
+namespace {
+
+/// The items of a column at these places.
+Column picked(const Column& column, const std::vector<std::uint64_t>& places) {
+  Column result(column.name(), column.type(), column.is_list());
+  for (const std::uint64_t place : places) {
+    for (std::uint64_t i = column.begin(place); i < column.end(place); ++i) {
+      result.append(column[i]);
+    }
+    if (column.is_list()) result.end_list();
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> picked(const std::vector<std::uint32_t>& values,
+                                  const std::vector<std::uint32_t>& places) {
+  std::vector<std::uint32_t> result;
+  if (values.empty()) return result;
+  for (const std::uint32_t place : places) result.push_back(values[place]);
+  return result;
+}
+
+}  // namespace
+
+void cut_faces(MeshFile& mesh, const std::vector<std::uint32_t>& corners) {
+  std::vector<std::uint64_t> face_of_triangle;
+  std::vector<std::uint64_t> first(mesh.polygons.size() + 1, corners.size() / 3);
+  for (std::uint64_t i = 0; i < corners.size(); i += 3) {
+    face_of_triangle.push_back(mesh.polygons.of_corner(corners[i]));
+    first[face_of_triangle.back()] = std::min(first[face_of_triangle.back()], i / 3);
+  }
+  mesh.normals.of_corner = picked(mesh.normals.of_corner, corners);
+  mesh.corner_uvs.of_corner = picked(mesh.corner_uvs.of_corner, corners);
+  for (Column& column : mesh.face_columns) column = picked(column, face_of_triangle);
+  for (Statement& statement : mesh.statements) statement.polygon = first[statement.polygon];
+  mesh.polygons = Polygons(picked(mesh.polygons.corners(), corners));
 }
 
 void replace_faces(MeshFile& mesh, std::vector<std::uint32_t> corners) {

@@ -1,4 +1,4 @@
-// OBJ with one vt per vertex.
+// OBJ with one vt per vertex, or those of corners.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,11 +67,13 @@ void write_vertices(const MeshFile& mesh, Writer& out) {
 }
 
 void write_uvs(const MeshFile& mesh, Writer& out) {
-  for (std::size_t i = 0; i < mesh.uvs.size(); i += 2) {
+  const std::vector<double>& uvs =
+      mesh.corner_uvs.of_corner.empty() ? mesh.uvs : mesh.corner_uvs.values;
+  for (std::size_t i = 0; i < uvs.size(); i += 2) {
     out.text("vt ");
-    out.number(mesh.uvs[i]);
+    out.number(uvs[i]);
     out.text(" ");
-    out.number(mesh.uvs[i + 1]);
+    out.number(uvs[i + 1]);
     out.text("\n");
   }
 }
@@ -97,13 +99,14 @@ void write_normals(const MeshFile& mesh, const std::vector<const Column*>& colum
 
 void write_face(const MeshFile& mesh, std::uint64_t face, bool vertex_normals, Writer& out) {
   const std::vector<std::uint32_t>& of_corner = mesh.normals.of_corner;
+  const std::vector<std::uint32_t>& uv_of_corner = mesh.corner_uvs.of_corner;
   out.text("f");
   for (std::uint64_t c = mesh.polygons.begin(face); c < mesh.polygons.end(face); ++c) {
     const std::uint64_t number = std::uint64_t{mesh.polygons.corners()[c]} + 1;
     out.text(" ");
     out.number(number);
     out.text("/");
-    out.number(number);
+    out.number(uv_of_corner.empty() ? number : std::uint64_t{uv_of_corner[c]} + 1);
     const std::uint64_t normal = vertex_normals              ? number
                                  : of_corner.empty()         ? 0
                                  : of_corner[c] == kNoNormal ? 0
@@ -121,13 +124,26 @@ bool is_line(const Statement& statement) {
   return keyword == "l" || keyword == "p";
 }
 
+/// A line of vertices, without the UVs that they have where each has one.
+std::string without_uvs(const std::string& line) {
+  std::string text;
+  bool in_uv = false;
+  for (const char c : line) {
+    in_uv = c == '/' || (in_uv && c != ' ');
+    if (!in_uv) text += c;
+  }
+  return text;
+}
+
 }  // namespace
 
 void write_obj(const MeshFile& mesh, Writer& out) {
-  out.text("# UVs by beltrami: one vt per vertex, in vertex order\n");
+  const bool per_vertex = mesh.corner_uvs.of_corner.empty();
+  out.text(per_vertex ? "# UVs by beltrami: one vt per vertex, in vertex order\n"
+                      : "# UVs by beltrami\n");
   auto next = mesh.statements.begin();
   const auto write_statement = [&] {
-    out.text(next->text);
+    out.text(per_vertex || !is_line(*next) ? next->text : without_uvs(next->text));
     out.text("\n");
     ++next;
   };

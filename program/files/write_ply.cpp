@@ -1,5 +1,6 @@
 // Binary PLY with one UV per vertex, as the properties s and t: the names that Blender and most
-// other readers take for UVs of vertices.
+// other readers take for UVs of vertices; or with those of corners, as the list texcoord of faces,
+// as MeshLab and what follows it has them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -91,6 +92,21 @@ void write_count(Scalar type, std::uint64_t count, Writer& out) {
   }
 }
 
+/// `count`: the type of a list's count, or "".
+void declare_property(std::string_view count, std::string_view type, std::string_view name,
+                      Writer& out) {
+  out.text("property ");
+  if (!count.empty()) {
+    out.text("list ");
+    out.text(count);
+    out.text(" ");
+  }
+  out.text(type);
+  out.text(" ");
+  out.text(name);
+  out.text("\n");
+}
+
 /// Columns as they stand in the file, with the types of their counts.
 class ColumnWriter {
  public:
@@ -103,16 +119,8 @@ class ColumnWriter {
 
   void declare(Writer& out) const {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      out.text("property ");
-      if (columns_[k]->is_list()) {
-        out.text("list ");
-        out.text(name_of(count_types_[k]));
-        out.text(" ");
-      }
-      out.text(name_of(columns_[k]->type()));
-      out.text(" ");
-      out.text(columns_[k]->name());
-      out.text("\n");
+      declare_property(columns_[k]->is_list() ? name_of(count_types_[k]) : "",
+                       name_of(columns_[k]->type()), columns_[k]->name(), out);
     }
   }
 
@@ -144,35 +152,52 @@ void declare_element(std::string_view name, std::uint64_t count, Writer& out) {
   out.text("\n");
 }
 
-Scalar corner_count_type(const Polygons& polygons) {
+/// Of a list with so many values for each corner.
+Scalar corner_count_type(const Polygons& polygons, std::uint64_t values) {
   std::uint64_t most = 3;
   for (std::uint64_t i = 0; i < polygons.size() && !polygons.all_triangles(); ++i) {
     most = std::max(most, polygons.end(i) - polygons.begin(i));
   }
-  return most <= std::numeric_limits<std::uint8_t>::max() ? Scalar::kU8 : Scalar::kU32;
+  return values * most <= std::numeric_limits<std::uint8_t>::max() ? Scalar::kU8 : Scalar::kU32;
+}
+
+bool has_corner_uvs(const MeshFile& mesh) {
+  return !mesh.corner_uvs.of_corner.empty();
+}
+
+void write_uv(const MeshFile& mesh, double value, Writer& out) {
+  if (mesh.single_uvs) {
+    out.binary(static_cast<float>(value));
+  } else {
+    out.binary(value);
+  }
 }
 
 void write_vertices(const MeshFile& mesh, const ColumnWriter& columns, Writer& out) {
   for (std::uint64_t i = 0; i < mesh.vertex_count(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) out.binary(mesh.positions[3 * i + k]);
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double w = mesh.uvs[2 * i + k];
-      if (mesh.single_uvs) {
-        out.binary(static_cast<float>(w));
-      } else {
-        out.binary(w);
-      }
+    if (has_corner_uvs(mesh)) {
+      columns.write(i, out);
+      continue;
     }
+    for (std::size_t k = 0; k < 2; ++k) write_uv(mesh, mesh.uvs[2 * i + k], out);
     columns.write(i, out);
   }
 }
 
-void write_faces(const MeshFile& mesh, Scalar count_type, const ColumnWriter& columns,
-                 Writer& out) {
+void write_faces(const MeshFile& mesh, Scalar count_type, Scalar uv_count_type,
+                 const ColumnWriter& columns, Writer& out) {
   for (std::uint64_t i = 0; i < mesh.polygons.size(); ++i) {
     const auto corners = mesh.polygons[i];
     write_count(count_type, corners.size(), out);
     for (const std::uint32_t vertex : corners) out.binary(static_cast<std::int32_t>(vertex));
+    if (has_corner_uvs(mesh)) {
+      write_count(uv_count_type, 2 * corners.size(), out);
+      for (std::uint64_t c = mesh.polygons.begin(i); c < mesh.polygons.end(i); ++c) {
+        const std::size_t at = 2 * std::size_t{mesh.corner_uvs.of_corner[c]};
+        for (std::size_t k = 0; k < 2; ++k) write_uv(mesh, mesh.corner_uvs.values[at + k], out);
+      }
+    }
     columns.write(i, out);
   }
 }
@@ -215,14 +240,16 @@ void write_ply(const MeshFile& mesh, Writer& out) {
   }
   declare_element("vertex", mesh.vertex_count(), out);
   out.text("property double x\nproperty double y\nproperty double z\n");
-  out.text(mesh.single_uvs ? "property float s\nproperty float t\n"
-                           : "property double s\nproperty double t\n");
+  const std::string_view number = mesh.single_uvs ? "float" : "double";
+  for (const std::string_view name : {"s", "t"}) {
+    if (!has_corner_uvs(mesh)) declare_property("", number, name, out);
+  }
   of_vertices.declare(out);
   declare_element("face", mesh.polygons.size(), out);
-  const Scalar count_type = corner_count_type(mesh.polygons);
-  out.text("property list ");
-  out.text(name_of(count_type));
-  out.text(" int vertex_indices\n");
+  const Scalar count_type = corner_count_type(mesh.polygons, 1);
+  const Scalar uv_count_type = corner_count_type(mesh.polygons, 2);
+  declare_property(name_of(count_type), "int", "vertex_indices", out);
+  if (has_corner_uvs(mesh)) declare_property(name_of(uv_count_type), number, "texcoord", out);
   of_faces.declare(out);
   for (std::size_t i = 0; i < mesh.tables.size(); ++i) {
     declare_element(mesh.tables[i].name, mesh.tables[i].count, out);
@@ -231,7 +258,7 @@ void write_ply(const MeshFile& mesh, Writer& out) {
   out.text("end_header\n");
 
   write_vertices(mesh, of_vertices, out);
-  write_faces(mesh, count_type, of_faces, out);
+  write_faces(mesh, count_type, uv_count_type, of_faces, out);
   for (std::size_t i = 0; i < mesh.tables.size(); ++i) {
     for (std::uint64_t k = 0; k < mesh.tables[i].count; ++k) of_tables[i].write(k, out);
   }

@@ -124,7 +124,7 @@ beltrami_status beltrami_triangulate(const beltrami_surface* surface, void* out,
     const beltrami_surface header = beltrami::read_surface_header(surface);
     const beltrami::InterruptScope interruptible({nullptr, header.cancel, {}});
     const beltrami::LoadedSurface loaded =
-        beltrami::read_surface_to_check(header, beltrami::Work(beltrami::kThreads));
+        beltrami::read_surface_to_triangulate(header, beltrami::Work(beltrami::kThreads));
     beltrami::write_integers(beltrami::flat(loaded.triangulation.triangles), 3, out, type, stride);
     if (repeating != nullptr) {
       *repeating = beltrami::element_or_none(loaded.triangulation.first_repeating);

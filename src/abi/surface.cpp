@@ -116,7 +116,11 @@ void triangulate(LoadedSurface& surface, const Work& work) {
   }
 }
 
-LoadedSurface read(const beltrami_surface& header, bool needs_positions, const Work& work) {
+enum class Positions { kAny, kFinite };
+
+/// With the positions that are given, or zeros.
+LoadedSurface read(const beltrami_surface& header, bool needs_positions, Positions positions,
+                   const Work& work) {
   LoadedSurface surface;
   surface.vertex_count = static_cast<Index>(header.vertex_count);
   surface.polygons = read_polygons(header, work);
@@ -128,7 +132,9 @@ LoadedSurface read(const beltrami_surface& header, bool needs_positions, const W
       surface.positions[v] = {numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]};
     }
   }
-  require_finite_where_used(surface.polygons, surface.positions);
+  if (positions == Positions::kFinite) {
+    require_finite_where_used(surface.polygons, surface.positions);
+  }
   triangulate(surface, work);
   return surface;
 }
@@ -204,11 +210,15 @@ beltrami_surface read_surface_header(const beltrami_surface* theirs) {
 }
 
 LoadedSurface read_surface(const beltrami_surface& header, const Work& work) {
-  return read(header, true, work);
+  return read(header, true, Positions::kFinite, work);
 }
 
 LoadedSurface read_surface_to_check(const beltrami_surface& header, const Work& work) {
-  return read(header, is_given(header.face_sizes), work);
+  return read(header, is_given(header.face_sizes), Positions::kFinite, work);
+}
+
+LoadedSurface read_surface_to_triangulate(const beltrami_surface& header, const Work& work) {
+  return read(header, is_given(header.face_sizes), Positions::kAny, work);
 }
 
 std::vector<Triangle> triangles_of(const LoadedSurface& surface) {

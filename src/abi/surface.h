@@ -32,9 +32,11 @@ beltrami_surface read_surface_header(const beltrami_surface* theirs);
 /// NON_FINITE with the vertex. `header` has passed read_surface_header.
 LoadedSurface read_surface(const beltrami_surface& header, const Work& work);
 
-/// The same where only the indices are looked at, and the faces are triangles or not: positions may
-/// be missing, and are zero then.
+/// The same, where positions may be missing if all faces are triangles: they are zero then.
 LoadedSurface read_surface_to_check(const beltrami_surface& header, const Work& work);
+
+/// The same, where they need not be finite.
+LoadedSurface read_surface_to_triangulate(const beltrami_surface& header, const Work& work);
 
 /// Three vertices per triangle.
 std::vector<Triangle> triangles_of(const LoadedSurface& surface);

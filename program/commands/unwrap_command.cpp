@@ -1,0 +1,238 @@
+// beltrami unwrap: read any mesh, cut it, flatten its charts, write, report.
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands/command.h"
+#include "commands/options.h"
+#include "commands/progress_bar.h"
+#include "commands/report.h"
+#include "files/atomic_file.h"
+#include "files/face_labels.h"
+#include "files/mesh_file.h"
+#include "files/point_numbers.h"
+#include "files/split_mesh.h"
+#include "files/surface.h"
+#include "files/surface_view.h"
+#include "picture/picture.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace {
+
+/// A summary names the first of them; more would bury the rest of a report.
+constexpr std::size_t kMostFailedCharts = 1000;
+
+void note_options(const UnwrapArguments& arguments, const Options& options, Report& report) {
+  report.options = options.values();
+  report.options.emplace_back("seams", arguments.seams);
+  report.options.emplace_back("labels", arguments.labels);
+  report.options.emplace_back("triangulate", arguments.triangulate);
+  report.threads = options.integer(BELTRAMI_OPTION_THREADS);
+}
+
+class Unwrapping {
+ public:
+  Unwrapping(const UnwrapArguments& arguments, Options& options, Report& report)
+      : arguments_(arguments),
+        options_(options),
+        report_(report),
+        bar_(!arguments.quiet),
+        context_(make_context()) {}
+
+  int run() {
+    require_files();
+    options_.apply_to(context_.get());
+    read();
+    {
+      const CancelOnInterrupt guard(context_.get());
+      unwrap();
+    }
+    fetch_report();
+    fetch_uvs();
+    return write_files();
+  }
+
+ private:
+  /// Everything about files that can be told before the work.
+  void require_files() const {
+    format_of(arguments_.input);
+    require_writable_format(arguments_.output);
+    require_distinct({arguments_.input, arguments_.seams, arguments_.report, arguments_.picture});
+    require_distinct({arguments_.output, arguments_.seams, arguments_.report, arguments_.picture});
+    const std::vector<std::string> written = {arguments_.output, arguments_.report,
+                                              arguments_.picture};
+    if (!arguments_.quiet) require_apart_from_stdout(written);
+    for (const std::string& path : written) {
+      if (!path.empty()) require_writable(path);
+    }
+  }
+
+  void read() {
+    bar_.show(0, "read");
+    StageClock clock(report_, "read");
+    const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
+    file_ = read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface);
+    if (!arguments_.labels.empty()) labels_ = face_labels(file_, arguments_.labels);
+    if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
+    report_.vertices = file_.vertex_count();
+    report_.faces = file_.polygons.size();
+    clock.finish();
+  }
+
+  void unwrap() {
+    // A signal from before the guard has cancelled nothing yet.
+    throw_if_interrupted();
+    const SurfaceView view(file_);
+    beltrami_surface surface = view.surface();
+    if (!labels_.empty()) surface.face_labels = {labels_.data(), 0, BELTRAMI_U64, 0};
+    if (!seams_.empty()) surface.seams = {seams_.data(), 0, BELTRAMI_U32, 0};
+    surface.seam_count = seams_.size() / 2;
+    const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
+      static_cast<ProgressBar*>(bar)->show(fraction, stage);
+      return interrupted();
+    };
+    const beltrami_status status = beltrami_unwrap(context_.get(), &surface, progress, &bar_);
+    require(status);
+    report_.status = beltrami_status_name(status);
+  }
+
+  void fetch_report() {
+    beltrami_context* context = context_.get();
+    beltrami_atlas atlas{};
+    atlas.struct_size = sizeof atlas;
+    require(beltrami_get_atlas(context, &atlas));
+    report_.atlas = atlas;
+    report_.triangles = atlas.triangles;
+    report_.area = atlas.area;
+    report_.unreferenced_vertices = atlas.unused_vertices;
+    report_.welded_vertices = file_.welded_corners + atlas.welded_vertices;
+    // What is written reads back to these very doubles, so this is the verdict on the file.
+    report_.atlas_certificate = certificate(BELTRAMI_F64);
+    report_.float32_injective = certificate(BELTRAMI_F32).injective != 0;
+    for (std::uint64_t i = 0; i < atlas.charts; ++i) {
+      beltrami_chart chart{};
+      chart.struct_size = sizeof chart;
+      require(beltrami_get_chart(context, i, &chart));
+      if (chart.status <= BELTRAMI_NOT_CONVERGED) continue;
+      if (report_.failed_charts.size() < kMostFailedCharts) {
+        report_.failed_charts.push_back({i, chart});
+      }
+    }
+    const std::int32_t stages = beltrami_atlas_stage_count(context);
+    for (std::int32_t i = 0; i < stages; ++i) {
+      beltrami_stage stage{};
+      stage.struct_size = sizeof stage;
+      require(beltrami_get_atlas_stage(context, i, &stage));
+      report_.stages.push_back({stage.name, stage.seconds, stage.cpu_seconds, stage.iterations});
+    }
+  }
+
+  beltrami_atlas_certificate certificate(std::int32_t type) const {
+    beltrami_atlas_certificate found{};
+    found.struct_size = sizeof found;
+    require(beltrami_get_atlas_certificate(context_.get(), type, &found));
+    return found;
+  }
+
+  void fetch_uvs() {
+    const std::size_t corners = file_.polygons.corners().size();
+    std::vector<double> uvs(2 * corners);
+    require(beltrami_get_corner_uvs(context_.get(), uvs.data(), BELTRAMI_F64, 0));
+    PointNumbers<2> points;
+    file_.corner_uvs.of_corner.clear();
+    file_.corner_uvs.of_corner.reserve(corners);
+    for (std::size_t c = 0; c < corners; ++c) {
+      file_.corner_uvs.of_corner.push_back(points.number({uvs[2 * c], uvs[2 * c + 1]}));
+    }
+    file_.corner_uvs.values = points.take_coordinates();
+    file_.uvs.clear();
+    file_.single_uvs = options_.integer(BELTRAMI_OPTION_FLOAT32) != 0;
+    triangles_.resize(3 * report_.atlas->triangles);
+    require(beltrami_get_triangles(context_.get(), triangles_.data(), BELTRAMI_U32, 0));
+    if (arguments_.triangulate) {
+      cut_faces(file_, triangles_);
+      for (std::size_t c = 0; c < triangles_.size(); ++c) {
+        triangles_[c] = static_cast<std::uint32_t>(c);
+      }
+    }
+    report_.not_kept = not_kept(file_, arguments_.output);
+  }
+
+  /// All files are complete on the disk before the first of them replaces anything. Returns the
+  /// exit code.
+  int write_files() {
+    bar_.show(1, "write");
+    StageClock clock(report_, "write");
+    AtomicFile output(arguments_.output);
+    write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
+      throw_if_interrupted();
+      output.write(bytes);
+    });
+    output.close();
+    clock.finish();
+
+    std::optional<AtomicFile> picture, report;
+    if (!arguments_.picture.empty()) write_picture(picture.emplace(arguments_.picture));
+    report_.seconds = seconds_so_far();
+    if (!arguments_.report.empty()) {
+      report.emplace(arguments_.report).write(to_json(report_));
+      report->close();
+    }
+    std::string note, summary;
+    if (!arguments_.quiet) {
+      note = to_note(report_, arguments_.output);
+      summary = to_summary(report_, arguments_.output);
+    }
+    bar_.clear();
+    throw_if_interrupted();
+    // From here on nothing needs memory: with something replaced, it must not run out.
+    output.commit();
+    if (picture) picture->commit();
+    if (report) report->commit();
+    remark(note);
+    return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
+  }
+
+  void write_picture(AtomicFile& file) {
+    bar_.show(1, "picture");
+    StageClock clock(report_, "picture");
+    const SplitMesh split(file_, triangles_);
+    file.write(encode_png(render_picture(split.view(), face_energies(split.view()))));
+    file.close();
+    clock.finish();
+  }
+
+  void require(beltrami_status status) const {
+    require_ok(status, arguments_.input, beltrami_error_message(context_.get()),
+               beltrami_error_element_kind(context_.get()), beltrami_error_element(context_.get()));
+  }
+
+  const UnwrapArguments& arguments_;
+  Options& options_;
+  Report& report_;
+  ProgressBar bar_;
+  Context context_;
+  MeshFile file_;
+  std::vector<std::uint64_t> labels_;
+  std::vector<std::uint32_t> seams_;
+  std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
+};
+
+}  // namespace
+
+int unwrap_command(const UnwrapArguments& arguments, Options& options) {
+  Report report;
+  report.command = "unwrap";
+  report.input_path = arguments.input;
+  note_options(arguments, options, report);
+  return run_guarded(report, arguments.report,
+                     {arguments.input, arguments.output, arguments.seams, arguments.picture},
+                     [&] { return Unwrapping(arguments, options, report).run(); });
+}
+
+}  // namespace beltrami::cli

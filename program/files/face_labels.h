@@ -1,0 +1,20 @@
+// What a file says of its faces, as numbers: where these differ, seams may run.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files/mesh_file.h"
+
+namespace beltrami::cli {
+
+/// One number per face: "materials", "groups" or "objects" of an OBJ file, or the face property of
+/// this name of a PLY file. Throws Failure where the file has no such thing.
+std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name);
+
+/// Pairs of vertex numbers, counted from 0, from a text file: anything but digits parts them.
+/// Throws Failure for an odd count of numbers and for those that are no vertex of the file.
+std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file);
+
+}  // namespace beltrami::cli
