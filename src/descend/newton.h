@@ -8,6 +8,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "descend/contact.h"
+#include "descend/newton_loop.h"
 #include "energy/energy.h"
 #include "mesh/rest_shape.h"
 
@@ -17,10 +18,7 @@ struct NewtonOptions {
   Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
-  /// SLIM steps at the start, and again whenever a step is blocked by nearly singular faces: five
-  /// save a third of all steps on ordinary meshes, and on hard ones make the difference between 75
-  /// steps and none that helps. 0: composite majorization alone.
-  int proxy_steps = 5;
+  int proxy_steps = newton::kProxySteps;  ///< 0: composite majorization alone
   /// Keeps the boundary from touching itself: its barrier joins the energy, a share of it that
   /// falls with the energy, and steps end before the first touch. The boundary must be simple at
   /// the start. Null: it may cross itself.

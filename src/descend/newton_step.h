@@ -18,6 +18,7 @@
 #include "descend/assembly.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
+#include "descend/newton_loop.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/rest_shape.h"
@@ -27,14 +28,6 @@ namespace beltrami {
 /// Energies are compared relative to their value, but not to less than this: the least symmetric
 /// ARAP energy is 0.
 inline constexpr double kLeastEnergy = 0.01;
-
-/// What a step did.
-struct NewtonStep {
-  double length = 0;     ///< share of the Newton step taken; 0: no representable decrease
-  double energy = 0;     ///< mean energy after it
-  double gain = 0;       ///< what it took from the objective: the mean energy and the barrier
-  double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model
-};
 
 /// Newton's method on the mean of a density over `faces`, weighted by rest area, and on demand on a
 /// barrier that keeps the boundary from touching itself. A Density has value(s1, s2), model(s1, s2)
@@ -83,13 +76,6 @@ class NewtonStepper {
 
  private:
   static constexpr std::int64_t kGrain = 8192;
-  static constexpr double kSingularShare = 0.8;  // of the way to the first singular face
-  static constexpr double kArmijo = 1e-4;        // sufficient share of the predicted decrease
-  static constexpr double kNoGain = 1e-14;       // relative predicted decrease within the roundoff
-  static constexpr double kShift = 1e-13;        // of the diagonal: see factorize
-  static constexpr double kLargestShift = 1e-3;
-  static constexpr int kMaxHalvings = 40;
-
   static constexpr double kJammed = 0.25;  // of a step, below which what touches first is stuck
   static constexpr double kFreed = 0.2;    // of the reach, beyond which it is no more
   static constexpr double kPatternMargin = 1.3;  // of the reach, up to which pairs have entries
@@ -149,7 +135,7 @@ template <class Density>
 bool NewtonStepper<Density>::factorize() {
   SparseMatrix& matrix = hessian_.matrix();
   const Eigen::VectorXd diagonal = matrix.diagonal();
-  for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
+  for (double shift = newton::kShift; shift <= newton::kLargestShift; shift *= 1e2) {
     for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
       matrix.valuePtr()[matrix.outerIndexPtr()[c]] = diagonal[c] * (1 + shift);
     }
@@ -195,7 +181,7 @@ template <class Density>
 double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
                                                  const std::vector<Vec2>& direction,
                                                  double length) {
-  double limit = length / kSingularShare;
+  double limit = length / newton::kSingularShare;
   const std::vector<Touch> touches = contact_->touches(uvs, direction, limit, kJammed * length);
   for (const Contact& c : contacts_) {
     if (share_of_reach(c, uvs) > kFreed) stuck_.erase({c.vertex, c.from});
@@ -204,7 +190,7 @@ double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
   for (const Touch& touch : touches) {
     if (touch.time < kJammed * length) stuck_.insert({touch.vertex, touch.from});
   }
-  return kSingularShare * limit;
+  return newton::kSingularShare * limit;
 }
 
 template <class Density>
@@ -269,7 +255,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   }
   const Eigen::VectorXd flat = solver_->solve(-gradient_);
   result.predicted = -gradient_.dot(flat);
-  if (!(result.predicted > kNoGain * std::max(energy, kLeastEnergy))) return result;
+  if (!(result.predicted > newton::kNoGain * std::max(energy, kLeastEnergy))) return result;
 
   std::vector<Vec2> direction(uvs.size(), Vec2::Zero());
   for (Index v = 0; v < size_of(uvs); ++v) {
@@ -277,7 +263,8 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   }
   double length = 1;
   if (Density::kBarrier) {
-    length = std::min(length, kSingularShare * first_singular_step(faces_, uvs, direction, work_));
+    length = std::min(length,
+                      newton::kSingularShare * first_singular_step(faces_, uvs, direction, work_));
   }
   const auto pressure = [&](const std::vector<Vec2>& map, const std::vector<Contact>& contacts) {
     return contact_ ? strength() * contact_energy(contacts, map) : 0.0;
@@ -286,7 +273,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   if (!(length > 0)) return result;
   const double before = energy + pressure(uvs, touching);
   std::vector<Vec2> trial(uvs.size());
-  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+  for (int halving = 0; halving < newton::kMaxHalvings; ++halving, length *= 0.5) {
     for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
     const double trial_energy = mean_energy(trial);
     if (!(trial_energy < before)) continue;
@@ -296,7 +283,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
       touching = contact_->find(trial, neighbours);
     }
     const double after = trial_energy + pressure(trial, touching);
-    if (after < before && after <= before - kArmijo * length * result.predicted &&
+    if (after < before && after <= before - newton::kArmijo * length * result.predicted &&
         (!contact_ || contact_->is_simple(trial))) {
       uvs.swap(trial);
       neighbours_ = std::move(neighbours);

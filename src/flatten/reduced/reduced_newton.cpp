@@ -5,30 +5,21 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 #include "base/parallel.h"
 #include "descend/assembly.h"
 #include "descend/line_search.h"
+#include "descend/newton_loop.h"
 #include "exact/crossings.h"
 #include "ring/ring_faces.h"
 
 namespace beltrami {
 namespace {
 
-constexpr double kFlippedEnergy =
-    100;  // of a sample that is left out: a bad face, not an infinite one
-constexpr double kSingularShare = 0.8;  // of the way to the first singular face
-constexpr double kArmijo = 1e-4;        // sufficient share of the predicted decrease
-constexpr double kNoGain = 1e-14;       // relative predicted decrease within the roundoff
-constexpr double kShift = 1e-13;        // of the diagonal: translations and rotations cost nothing
-constexpr double kLargestShift = 1e-3;
-constexpr int kMaxHalvings = 60;
-constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
-constexpr int kPatience = 5;       // short steps with little gain before it ends
-constexpr int kProxySteps = 5;     // of SLIM at first: they save a third of the steps
-constexpr double kBlockedStep = 0.02;
-constexpr Eigen::Index kTile = 32;  // columns of the Hessian that are formed together
+/// Of a sample that is left out: a bad face, not an infinite one.
+constexpr double kFlippedEnergy = 100;
+/// Columns of the Hessian that are formed together.
+constexpr Eigen::Index kTile = 32;
 
 /// Samples and scaffold as loose faces on one list of points. Point 0 is the origin, where every
 /// sample has its corner 0; then come the other corners of the samples, the meta vertices, and the
@@ -56,8 +47,8 @@ class Descent {
   }
 
   double sample_energy() const { return sample_energy_; }
-  /// One step; returns the share of the Newton step taken, and whether little more was to gain.
-  std::pair<double, bool> step(bool proxy, double tolerance);
+  /// One step, by the model of the energy or of its proxy. Its energies are of the samples alone.
+  NewtonStep step(bool proxy);
 
  private:
   Index sample_count() const { return size_of(problem_.rest); }
@@ -259,9 +250,9 @@ void Descent::assemble(const LooseFaces& loose, const std::vector<FaceModel>& mo
 /// roundoff. Empty where none makes the system definite.
 std::vector<Vec2> Descent::solve() {
   const Eigen::VectorXd diagonal = hessian_.diagonal();
-  const double floor = diagonal.maxCoeff() * kShift;
+  const double floor = diagonal.maxCoeff() * newton::kShift;
   std::vector<Vec2> direction;
-  for (double shift = kShift; shift <= kLargestShift; shift *= 1e2) {
+  for (double shift = newton::kShift; shift <= newton::kLargestShift; shift *= 1e2) {
     hessian_.diagonal() = diagonal * (1 + shift) + Eigen::VectorXd::Constant(2 * metas_, floor);
     const Eigen::LLT<DenseMatrix, Eigen::Lower> factor(hessian_);
     if (factor.info() != Eigen::Success) continue;
@@ -273,7 +264,7 @@ std::vector<Vec2> Descent::solve() {
   return direction;
 }
 
-std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
+NewtonStep Descent::step(bool proxy) {
   const LooseFaces loose = gather();
   const double before = energy(loose, loose.points);
   with_density(problem_.energy, [&]<class Density>(Density density) {
@@ -281,12 +272,15 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
              proxy ? model_faces(loose, typename Density::Proxy{}) : model_faces(loose, density));
   });
   const std::vector<Vec2> direction = solve();
-  if (direction.empty()) return {0.0, false};
-  double predicted = 0;
-  for (Index m = 0; m < metas_; ++m) {
-    predicted -= gradient_[m] * direction[m].x() + gradient_[metas_ + m] * direction[m].y();
+  NewtonStep result;
+  if (direction.empty()) {
+    result.predicted = std::numeric_limits<double>::infinity();
+    return result;
   }
-  if (!(predicted > kNoGain * before)) return {0.0, true};
+  for (Index m = 0; m < metas_; ++m) {
+    result.predicted -= gradient_[m] * direction[m].x() + gradient_[metas_ + m] * direction[m].y();
+  }
+  if (!(result.predicted > newton::kNoGain * before)) return result;
 
   const DenseMatrix edge_direction = edges_of(direction);
   std::vector<Vec2> point_direction(loose.points.size(), Vec2::Zero());
@@ -294,22 +288,27 @@ std::pair<double, bool> Descent::step(bool proxy, double tolerance) {
     point_direction[1 + e] = edge_direction.row(e).transpose();
   }
   std::copy(direction.begin(), direction.end(), point_direction.begin() + first_meta());
-  double length = std::min(
-      1.0, kSingularShare * first_singular_step(loose.faces, loose.points, point_direction, work_));
+  double length =
+      std::min(1.0, newton::kSingularShare *
+                        first_singular_step(loose.faces, loose.points, point_direction, work_));
   std::vector<Vec2> trial(loose.points.size()), places(metas_);
-  for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
+  for (int halving = 0; halving < newton::kMaxHalvings; ++halving, length *= 0.5) {
     for (std::size_t p = 0; p < trial.size(); ++p) {
       trial[p] = loose.points[p] + length * point_direction[p];
     }
-    if (!(energy(loose, trial) <= before - kArmijo * length * predicted)) continue;
+    if (!(energy(loose, trial) <= before - newton::kArmijo * length * result.predicted)) continue;
     for (Index m = 0; m < metas_; ++m) places[m] = trial[first_meta() + m];
     if (scaffold_ && !is_simple(loop_, places)) continue;
     x_ = places;
     edges_ += length * edge_direction;
+    result.gain = sample_energy_;
     activate();
-    return {length, false};
+    result.gain -= sample_energy_;
+    result.energy = sample_energy_;
+    result.length = length;
+    break;
   }
-  return {0.0, predicted <= tolerance * before};
+  return result;
 }
 
 }  // namespace
@@ -319,24 +318,15 @@ ReducedDescent minimise_reduced(const ReducedProblem& problem, bool scaffold, do
   Descent descent(problem, scaffold, x, work);
   ReducedDescent result;
   result.energies.push_back(descent.sample_energy());
-  int proxy_steps = kProxySteps, little_gain = 0;
-  for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
-    if (work.out_of_time()) break;
-    work.report(iteration / (iteration + 12.0));
-    const double before = result.energies.back();
-    const bool proxy = proxy_steps > 0;
-    const auto [length, exhausted] = descent.step(proxy, tolerance);
-    if (length > 0) result.energies.push_back(descent.sample_energy());
-    if (!proxy && length == 0) {
-      result.converged = exhausted;
-      break;
-    }
-    if (proxy) proxy_steps = length > 0 ? proxy_steps - 1 : 0;
-    if (!proxy && length < kBlockedStep) proxy_steps = kProxySteps;
-    const bool little = before - result.energies.back() <= tolerance * before;
-    little_gain = little ? little_gain + 1 : 0;
-    result.converged = (little && !proxy && length >= kFullStep) || little_gain >= kPatience;
-  }
+  // The samples stand for the map no better than to some percent: the last 1e-5 is not worth
+  // waiting for.
+  const NewtonRun run = {.tolerance = tolerance,
+                         .max_iterations = max_iterations,
+                         .comparable = [](double energy) { return energy; },
+                         .impatient = true};
+  const auto step = [&](bool proxy, double) { return descent.step(proxy); };
+  const auto never = [](const NewtonStep&, double) { return false; };
+  result.converged = run_newton(run, work, result.energies, step, never);
   return result;
 }
 
