@@ -13,8 +13,6 @@
 #include "atlas/atlas.h"
 #include "base/error.h"
 #include "base/types.h"
-#include "chart/chart_map.h"
-#include "exact/atlas_certificate.h"
 
 namespace beltrami {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "abi/buffers.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/types.h"
 #include "mesh/locality.h"
 #include "mesh/surface.h"
@@ -22,40 +21,6 @@ void fail_in_input_numbers(const beltrami_mesh& mesh, const InputDisk& input,
     positions[static_cast<std::size_t>(input.original[i])] = used_positions[i];
   }
   build_disk(std::move(positions), read_faces(mesh, work), work);
-}
-
-/// Calls body(i) for i in [0, count), side by side.
-template <class Body>
-void for_each(const Work& work, std::size_t count, const Body& body) {
-  constexpr std::int64_t kGrain = 16384;
-  parallel_for(work, static_cast<std::int64_t>(count), kGrain,
-               [&](std::int64_t begin, std::int64_t end) {
-                 for (std::int64_t i = begin; i < end; ++i) body(static_cast<std::size_t>(i));
-               });
-}
-
-/// The items of `order`, one after the other.
-template <class Item>
-std::vector<Item> arranged(const std::vector<Item>& items, const std::vector<Index>& order,
-                           const Work& work) {
-  std::vector<Item> result;
-  parallel_assign(work, result, order.size());
-  for_each(work, order.size(), [&](std::size_t i) { result[i] = items[order[i]]; });
-  return result;
-}
-
-/// Renumbers vertices and faces by where they are. Precondition: finite positions.
-void arrange(const std::vector<Vec3>& positions, InputDisk& input, std::vector<Triangle>& faces,
-             const Work& work) {
-  const std::vector<Index> order = along_hilbert_curve(positions, work);
-  std::vector<Index> place(order.size());
-  for_each(work, order.size(), [&](std::size_t i) { place[order[i]] = static_cast<Index>(i); });
-  for_each(work, faces.size(), [&](std::size_t f) {
-    for (Index& v : faces[f]) v = place[v];
-  });
-  input.original = arranged(input.original, order, work);
-  input.original_face = by_least_vertex(size_of(order), faces, work);
-  faces = arranged(faces, input.original_face, work);
 }
 
 }  // namespace
@@ -76,7 +41,9 @@ InputDisk read_disk(const beltrami_mesh& mesh, const Work& work) {
   try {
     validate_indices(size_of(positions), triangles.faces, RepeatedVertices::kRefused, work);
     validate_positions(positions, work);
-    arrange(positions, input, triangles.faces, work);
+    Arrangement arranged = arrange(positions, triangles.faces, work);
+    input.original = in_order(input.original, arranged.vertices, work);
+    input.original_face = std::move(arranged.faces);
     positions = read_positions(mesh, input.original, work);
     input.disk = build_disk(std::move(positions), std::move(triangles.faces), work);
   } catch (const Error& error) {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/error.h"
 #include "base/types.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"

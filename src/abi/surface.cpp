@@ -10,7 +10,6 @@
 #include "abi/buffers.h"
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/parallel.h"
 
 namespace beltrami {
 namespace {

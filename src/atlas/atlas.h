@@ -22,8 +22,8 @@ namespace beltrami {
 struct AtlasInput {
   std::vector<Vec3> positions;
   std::vector<Triangle> faces;
-  GivenCuts cuts;
-  std::vector<double> densities;  ///< per face: lengths in the plane per length on the surface
+  GivenCuts cuts = {};
+  std::vector<double> densities = {};  ///< per face: lengths in the plane per length on the surface
 };
 
 struct AtlasOptions {

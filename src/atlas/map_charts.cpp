@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "chart/memory_estimate.h"
 #include "descend/flat_start.h"
+#include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/rest_shape.h"
@@ -24,39 +25,14 @@ constexpr Index kLargeChart = 20'000;
 /// Charts of so few faces unfold without distortion, and cannot overlap.
 constexpr Index kFewFaces = 2;
 
-/// A disk with its vertices numbered by where they are.
-struct ArrangedDisk {
-  DiskMesh disk;
-  std::vector<Index> order;  ///< per vertex: that of the chart
-};
-
-ArrangedDisk arrange(const DiskMesh& mesh, const Work& work) {
-  ArrangedDisk arranged{{}, along_hilbert_curve(mesh.positions, work)};
-  const std::vector<Index>& order = arranged.order;
-  std::vector<Vec3> positions(order.size());
-  std::vector<Index> place(order.size());
-  for (Index i = 0; i < size_of(order); ++i) {
-    positions[i] = mesh.positions[order[i]];
-    place[order[i]] = i;
-  }
-  std::vector<Triangle> faces = mesh.faces;
-  for (Triangle& face : faces) {
-    for (Index& v : face) v = place[v];
-  }
-  std::vector<Triangle> sorted;
-  sorted.reserve(faces.size());
-  for (const Index f : by_least_vertex(size_of(order), faces, work)) sorted.push_back(faces[f]);
-  arranged.disk = build_disk(std::move(positions), std::move(sorted), work);
-  return arranged;
-}
-
 MappedChart flattened(const Chart& chart, const ChartOptions& options, const Work& work) {
-  ArrangedDisk arranged = arrange(chart.mesh, work);
-  DiskMesh& disk = arranged.disk;
+  std::vector<Triangle> faces = chart.mesh.faces;
+  const std::vector<Index> order = arrange(chart.mesh.positions, faces, work).vertices;
+  DiskMesh disk = build_disk(in_order(chart.mesh.positions, order, work), std::move(faces), work);
   const Normalisation frame = normalise(disk.positions, disk.faces, work);
   const Flattening result = flatten(disk, frame, options, work);
   MappedChart map{std::vector<Vec2>(result.uvs.size()), result.status};
-  for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[arranged.order[i]] = result.uvs[i];
+  for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[order[i]] = result.uvs[i];
   return map;
 }
 

@@ -6,6 +6,10 @@
 
 #include "atlas/rows.h"
 #include "base/parallel.h"
+#include "base/types.h"
+#include "chart/flattening.h"
+#include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
 #include "repair/rounding.h"
 
 namespace beltrami {

@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

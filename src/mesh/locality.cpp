@@ -101,4 +101,22 @@ std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangl
   return sorted;
 }
 
+Arrangement arrange(const std::vector<Vec3>& positions, std::vector<Triangle>& faces,
+                    const Work& work) {
+  Arrangement arranged{along_hilbert_curve(positions, work), {}};
+  std::vector<Index> place;
+  parallel_assign(work, place, positions.size());
+  parallel_for(work, size_of(place), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) place[arranged.vertices[i]] = i;
+  });
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (Index& v : faces[f]) v = place[v];
+    }
+  });
+  arranged.faces = by_least_vertex(size_of(positions), faces, work);
+  faces = in_order(faces, arranged.faces, work);
+  return arranged;
+}
+
 }  // namespace beltrami

@@ -1,8 +1,10 @@
 // Numbering vertices and faces by where they are, so that neighbours lie close in memory.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
 
@@ -17,5 +19,29 @@ std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, const Wo
 /// the same one keep their order. Precondition: indices in [0, vertex_count).
 std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces,
                                    const Work& work);
+
+/// The items that `order` names, one after the other.
+template <class Item>
+std::vector<Item> in_order(const std::vector<Item>& items, const std::vector<Index>& order,
+                           const Work& work) {
+  std::vector<Item> result;
+  parallel_assign(work, result, order.size());
+  constexpr std::int64_t kGrain = 16384;
+  parallel_for(work, size_of(order), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) result[i] = items[order[i]];
+  });
+  return result;
+}
+
+/// A new numbering of a mesh.
+struct Arrangement {
+  std::vector<Index> vertices;  ///< per vertex: its number before
+  std::vector<Index> faces;     ///< per face: likewise
+};
+
+/// Numbers vertices along a Hilbert curve and faces by their least vertex; `faces` is renumbered.
+/// Preconditions: finite positions, indices in range.
+Arrangement arrange(const std::vector<Vec3>& positions, std::vector<Triangle>& faces,
+                    const Work& work);
 
 }  // namespace beltrami

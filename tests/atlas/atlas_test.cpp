@@ -85,21 +85,11 @@ void expect_same_bits(const Atlas& a, const Atlas& b) {
 /// What flattening gives where the mesh is one disk, numbered by where its vertices are: one place
 /// per vertex.
 std::vector<Vec2> bits_of_the_disk_pipeline(const TriangleList& mesh) {
-  const std::vector<Index> order = along_hilbert_curve(mesh.positions, Work());
-  std::vector<Vec3> positions;
-  std::vector<Index> place(order.size());
-  for (const Index v : order) {
-    place[v] = size_of(positions);
-    positions.push_back(mesh.positions[v]);
-  }
-  std::vector<Triangle> faces = mesh.faces, sorted;
-  for (Triangle& face : faces) {
-    for (Index& v : face) v = place[v];
-  }
-  for (const Index f : by_least_vertex(size_of(order), faces, Work())) sorted.push_back(faces[f]);
-  const Flattening flattened = disks::run({positions, sorted});
-  std::vector<Vec2> uvs;
-  for (const Index v : place) uvs.push_back(flattened.uvs[v]);
+  std::vector<Triangle> faces = mesh.faces;
+  const std::vector<Index> order = arrange(mesh.positions, faces, Work()).vertices;
+  const Flattening flattened = disks::run({in_order(mesh.positions, order, Work()), faces});
+  std::vector<Vec2> uvs(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) uvs[order[i]] = flattened.uvs[i];
   return uvs;
 }
 

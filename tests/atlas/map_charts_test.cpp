@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exact/certificate.h"
+#include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/meshes.h"
@@ -37,7 +38,7 @@ void expect_injective(const AtlasChart& part, const MappedChart& map) {
 
 TEST(MapCharts, KeepsAFailureToItsChart) {
   const std::vector<AtlasChart> charts = {chart_of(meshes::bumps(6, 6)), hopeless(),
-                                     chart_of(meshes::triangle())};
+                                          chart_of(meshes::triangle())};
   for (const int threads : {1, 2}) {
     const std::vector<MappedChart> maps = map_charts(charts, {}, Work(threads));
     ASSERT_EQ(maps.size(), 3);

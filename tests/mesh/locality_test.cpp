@@ -67,6 +67,23 @@ TEST(HilbertCurve, TakesPointsThatCoincideAndTheEndsOfTheRange) {
 TEST(ByLeastVertex, SortsAndKeepsTheOrderOfTies) {
   const std::vector<Triangle> faces = {{5, 3, 4}, {2, 0, 1}, {3, 1, 2}, {0, 4, 1}};
   EXPECT_EQ(by_least_vertex(6, faces, Work(1)), (std::vector<Index>{1, 3, 2, 0}));
+  EXPECT_EQ(in_order(faces, {3, 0}, Work(1)), (std::vector<Triangle>{faces[3], faces[0]}));
+}
+
+TEST(Arrange, NumbersNeighboursNextToEachOtherWhateverTheThreads) {
+  const TriangleList mesh = meshes::grid(40, 40);
+  std::vector<Triangle> faces = mesh.faces;
+  const Arrangement arranged = arrange(mesh.positions, faces, Work(1));
+  EXPECT_TRUE(is_permutation_of_indices(arranged.vertices));
+  EXPECT_TRUE(is_permutation_of_indices(arranged.faces));
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(arranged.vertices[faces[f][k]], mesh.faces[arranged.faces[f]][k]);
+    }
+  }
+  std::vector<Triangle> same = mesh.faces;
+  EXPECT_EQ(arrange(mesh.positions, same, Work(3)).faces, arranged.faces);
+  EXPECT_EQ(same, faces);
 }
 
 TEST(VertexSums, AreThoseOfALoopWhateverTheOrderAndTheThreads) {

@@ -81,26 +81,26 @@ class Mutator {
 
   void damage(std::string& text) {
     const std::size_t at = below(text.size()), length = below(1 + text.size() - at) % 40;
-    static const std::vector<std::string> kPieces = {"-1",
-                                                     "0",
-                                                     "4294967295",
-                                                     "2147483647",
-                                                     "-9223372036854775808",
-                                                     "99999999999999999999",
-                                                     "1e999",
-                                                     "nan",
-                                                     "0.5",
-                                                     "\n",
-                                                     " ",
-                                                     "/",
-                                                     "//",
-                                                     "\\\n",
-                                                     "#",
-                                                     std::string(1, '\0'),
-                                                     "list uchar int ",
-                                                     "element vertex 9\n",
-                                                     "property float x\n",
-                                                     "\xff\xff\xff\xff"};
+    static const std::vector<std::string> pieces = {"-1",
+                                                    "0",
+                                                    "4294967295",
+                                                    "2147483647",
+                                                    "-9223372036854775808",
+                                                    "99999999999999999999",
+                                                    "1e999",
+                                                    "nan",
+                                                    "0.5",
+                                                    "\n",
+                                                    " ",
+                                                    "/",
+                                                    "//",
+                                                    "\\\n",
+                                                    "#",
+                                                    std::string(1, '\0'),
+                                                    "list uchar int ",
+                                                    "element vertex 9\n",
+                                                    "property float x\n",
+                                                    "\xff\xff\xff\xff"};
     switch (below(6)) {
       case 0:
         if (!text.empty()) text[at] = static_cast<char>(random_());
@@ -117,11 +117,11 @@ class Mutator {
       case 4: {  // a number or a word becomes another one
         const std::size_t end = text.find_first_of(" \n/", at);
         text.replace(at, end == std::string::npos ? length : end - at,
-                     kPieces[below(kPieces.size())]);
+                     pieces[below(pieces.size())]);
         break;
       }
       default:
-        text.insert(at, kPieces[below(kPieces.size())]);
+        text.insert(at, pieces[below(pieces.size())]);
     }
   }
 

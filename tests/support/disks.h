@@ -93,8 +93,9 @@ inline meshes::TriangleList dumbbell(Index n) {
 inline meshes::TriangleList tube(Index rings, Index sectors, double height) {
   meshes::TriangleList mesh = meshes::cap(rings, sectors, 1);
   for (Index v = 1; v < size_of(mesh.positions); ++v) {
-    const double azimuth = 2 * std::numbers::pi * ((v - 1) % sectors) / sectors;
-    const double depth = height * (1 + (v - 1) / sectors);
+    const Index ring = (v - 1) / sectors, sector = (v - 1) % sectors;
+    const double azimuth = 2 * std::numbers::pi * sector / sectors;
+    const double depth = height * (1 + ring);
     mesh.positions[v] = {portable::cos(azimuth), portable::sin(azimuth), -depth};
   }
   return mesh;
