@@ -1,6 +1,7 @@
 // beltrami check: judge the UVs that a file carries.
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <optional>
 
 #include "commands/command.h"
@@ -8,7 +9,10 @@
 #include "commands/report.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
+#include "files/split_mesh.h"
 #include "files/surface.h"
+#include "files/surface_view.h"
+#include "files/triangulate.h"
 #include "files/vector3.h"
 #include "picture/picture.h"
 #include "process/failure.h"
@@ -82,24 +86,78 @@ class Check {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     file_ = read_mesh(arguments_.input, Content::kUvs);
-    if (arguments_.float32) round_to_float32(file_.uvs);
-    surface_.emplace(file_, arguments_.weld);
-    report_.set_input(file_, *surface_);
+    if (arguments_.float32) {
+      round_to_float32(file_.uvs);
+      round_to_float32(file_.corner_uvs.values);
+    }
+    if (file_.corner_uvs.of_corner.empty()) {
+      surface_.emplace(file_, arguments_.weld);
+      report_.set_input(file_, *surface_);
+    } else {
+      split();
+    }
     report_.unreferenced_vertices = unreferenced_vertices(file_);
-    report_.area = area_of(surface_->view());
+    report_.area = area_of(triangles());
     clock.finish();
+  }
+
+  /// What is no disk, or has several UVs at a vertex, is an atlas.
+  void split() {
+    surface_.reset();
+    corners_ = triangle_corners(file_);
+    split_.emplace(file_, corners_);
+    report_.vertices = file_.vertex_count();
+    report_.faces = file_.polygons.size();
+    report_.triangles = corners_.size() / 3;
+    report_.welded_vertices = file_.welded_corners;
+  }
+
+  TriangleView triangles() const { return surface_ ? surface_->view() : split_->view(); }
+  std::uint64_t face_of(std::uint64_t triangle) const {
+    if (triangle == BELTRAMI_NO_ELEMENT) return triangle;
+    return surface_ ? surface_->face_of(triangle)
+                    : file_.polygons.of_corner(corners_[3 * triangle]);
   }
 
   void judge() {
     throw_if_interrupted();
     bar_.show(0.2, "check");
     StageClock clock(report_, "check");
+    if (!surface_ || !judge_disk()) judge_atlas();
+    clock.finish();
+  }
+
+  void judge_atlas() {
+    if (surface_) split();
+    const SurfaceView view(file_);
+    beltrami_surface surface = view.surface();
+    beltrami_atlas_certificate found{};
+    found.struct_size = sizeof found;
+    const beltrami_status status =
+        beltrami_check_atlas(&surface, arguments_.mirrored, &found, nullptr, 0);
+    require_ok(status, arguments_.input, "", found.error_element_kind, found.error_element);
+    report_.atlas_certificate = found;
+    report_.status = beltrami_status_name(status);
+    const std::vector<double> uvs(
+        static_cast<const double*>(surface.corner_uvs.data),
+        static_cast<const double*>(surface.corner_uvs.data) + 2 * surface.corner_count);
+    const std::vector<float> rounded(uvs.begin(), uvs.end());
+    surface.corner_uvs = {rounded.data(), 0, BELTRAMI_F32, 0};
+    const beltrami_status single =
+        beltrami_check_atlas(&surface, arguments_.mirrored, &found, nullptr, 0);
+    if (single == BELTRAMI_E_OUT_OF_MEMORY) throw std::bad_alloc();
+    report_.float32_injective = single == BELTRAMI_OK;
+  }
+
+  /// False where the mesh is no disk.
+  bool judge_disk() {
     const TriangleView triangles = surface_->view();
     const beltrami_mesh mesh = view_of(triangles);
     const beltrami_buffer uvs = uv_view(triangles);
     beltrami_certificate certificate{};
     certificate.struct_size = sizeof certificate;
     const beltrami_status status = beltrami_check_injective(&mesh, &uvs, &certificate);
+    if (status <= BELTRAMI_E_REPEATED_VERTEX && status >= BELTRAMI_E_GENUS) return false;
     require_ok_mesh(status, arguments_.input, "", certificate.error_element_kind,
                     certificate.error_element, file_, *surface_);
     to_face_of(*surface_, certificate.first_bad_face);
@@ -108,14 +166,14 @@ class Check {
     report_.boundary_edges = boundary_edges_of(triangles);
     report_.float32_injective =
         arguments_.float32 ? certificate.injective != 0 : injective_in_float32(triangles);
-    clock.finish();
+    return true;
   }
 
   void measure() {
     throw_if_interrupted();
     bar_.show(0.6, "measure");
     StageClock clock(report_, "measure");
-    const TriangleView triangles = surface_->view();
+    const TriangleView triangles = this->triangles();
     const beltrami_mesh mesh = view_of(triangles);
     const beltrami_buffer uvs = uv_view(triangles);
     beltrami_energy energy{};
@@ -124,7 +182,7 @@ class Check {
     const beltrami_status status = beltrami_measure(
         &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
     require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
-    to_face_of(*surface_, energy.worst_face);
+    energy.worst_face = face_of(energy.worst_face);
     report_.energy = energy;
     clock.finish();
   }
@@ -137,7 +195,7 @@ class Check {
       bar_.show(0.8, "picture");
       StageClock clock(report_, "picture");
       picture.emplace(arguments_.picture)
-          .write(encode_png(render_picture(surface_->view(), face_energies_)));
+          .write(encode_png(render_picture(triangles(), face_energies_)));
       picture->close();
       clock.finish();
     }
@@ -152,15 +210,16 @@ class Check {
     // From here on nothing needs memory: with something replaced, it must not run out.
     if (picture) picture->commit();
     if (report) report->commit();
-    return print(summary, "the summary",
-                 report_.certificate->injective ? kExitInjective : kExitNotInjective);
+    return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
   }
 
   const CheckArguments& arguments_;
   Report& report_;
   ProgressBar bar_;
   MeshFile file_;
-  std::optional<Surface> surface_;  ///< of file_
+  std::optional<Surface> surface_;      ///< of file_, where it is a disk
+  std::optional<SplitMesh> split_;      ///< else
+  std::vector<std::uint32_t> corners_;  ///< of its triangles
   std::vector<double> face_energies_;
 };
 
@@ -170,7 +229,8 @@ int check_command(const CheckArguments& arguments) {
   Report report;
   report.command = "check";
   report.input_path = arguments.input;
-  report.options = {{"float32", arguments.float32}, {"weld", arguments.weld}};
+  report.options = {
+      {"float32", arguments.float32}, {"mirrored", arguments.mirrored}, {"weld", arguments.weld}};
   return run_guarded(report, arguments.report, {arguments.input, arguments.picture},
                      [&] { return Check(arguments, report).run(); });
 }

@@ -21,4 +21,7 @@ namespace beltrami::cli {
 /// cutting would repeat an edge in.
 std::vector<std::uint32_t> triangulate(const MeshFile& mesh);
 
+/// The same as corners of the file's faces, and whatever they name.
+std::vector<std::uint32_t> triangle_corners(const MeshFile& mesh);
+
 }  // namespace beltrami::cli

@@ -254,7 +254,7 @@ const OptionEntry kOptions[] = {
         .summary = "Vertices no further apart, in the mesh's unit of length, count as one; 0 those "
                    "at one place.",
         .minimum = 0,
-        .maximum = 1e300,
+        .maximum = 1e100,
         .get = get<&Options::weld_distance>,
         .set = set<&Options::weld_distance>,
         .calls = BELTRAMI_CALL_UNWRAP,

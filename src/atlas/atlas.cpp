@@ -218,6 +218,9 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
   collector.share();
   atlas.energy = measure_charts(opened.charts, maps, atlas.charts, work);
   atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
+  double area = 0;
+  for (const ChartInfo& chart : atlas.charts) area += chart.area;
+  atlas.seam_over_root_area = atlas.seam_length / std::sqrt(area);
   atlas.utilisation = utilisation_of(atlas);
 }
 

@@ -4,7 +4,6 @@
 
 #include <beltrami/beltrami.h>
 
-#include <cmath>
 #include <vector>
 
 #include "admit/admit.h"
@@ -76,12 +75,11 @@ struct Atlas {
   double area = 0;  ///< of the surface, in the input's unit squared
   AtlasEnergy energy;
   double seam_length = 0;  ///< in the input's unit, each seam once, and no border of the surface
-  double utilisation = 0;  ///< area of the UVs over that of their bounding box
+  double seam_over_root_area = 0;
+  double utilisation = 0;               ///< area of the UVs over that of their bounding box
   AtlasCertificate certificate;         ///< of the numbers delivered
   AtlasCertificate single_certificate;  ///< of the single-precision numbers nearest to them
   std::vector<StageStatistics> stages;  ///< in the order in which they ran
-
-  double seam_over_root_area() const { return seam_length / std::sqrt(area); }
 };
 
 /// Cuts the surface into disks, flattens each and lays them out in rows. A chart that rounding to

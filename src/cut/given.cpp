@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -48,7 +49,7 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
   const Surface& surface = admitted.surface;
   const std::vector<Edge> edges = sorted_edges(admitted, cuts);
   const bool by_angle = cuts.hard_angle < std::numbers::pi;
-  const double cosine = std::cos(cuts.hard_angle);
+  const double cosine = portable::cos(cuts.hard_angle);
   const auto input_vertex = [&](Index v) { return admitted.input_vertex[v]; };
   /// The UV of the corner that a half-edge starts from.
   const auto uv = [&](Index h) {

@@ -24,8 +24,7 @@ std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangl
 template <class Item>
 std::vector<Item> in_order(const std::vector<Item>& items, const std::vector<Index>& order,
                            const Work& work) {
-  std::vector<Item> result;
-  parallel_assign(work, result, order.size());
+  std::vector<Item> result(order.size());
   constexpr std::int64_t kGrain = 16384;
   parallel_for(work, size_of(order), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) result[i] = items[order[i]];

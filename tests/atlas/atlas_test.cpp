@@ -79,7 +79,7 @@ void expect_same_bits(const Atlas& a, const Atlas& b) {
   EXPECT_EQ(a.chart_of_face, b.chart_of_face);
   EXPECT_EQ(a.energy.symmetric_dirichlet, b.energy.symmetric_dirichlet);
   EXPECT_EQ(a.energy.p99, b.energy.p99);
-  EXPECT_EQ(a.seam_over_root_area(), b.seam_over_root_area());
+  EXPECT_EQ(a.seam_over_root_area, b.seam_over_root_area);
 }
 
 /// What flattening gives where the mesh is one disk, numbered by where its vertices are: one place
@@ -121,7 +121,7 @@ TEST(Unwrap, OpensACubeAlongItsSeamOnce) {
   expect_sound(mesh, atlas);
   EXPECT_EQ(atlas.charts.size(), 1);
   // Cut along a path, a disk has twice the edges of the path on its boundary.
-  EXPECT_GE(atlas.seam_over_root_area(), 2 / std::sqrt(6.0) - 1e-12);
+  EXPECT_GE(atlas.seam_over_root_area, 2 / std::sqrt(6.0) - 1e-12);
 }
 
 TEST(Unwrap, OpensATorus) {
@@ -129,7 +129,7 @@ TEST(Unwrap, OpensATorus) {
   const Atlas atlas = unwrapped(mesh);
   expect_sound(mesh, atlas);
   EXPECT_EQ(atlas.charts.size(), 1);
-  EXPECT_GT(atlas.seam_over_root_area(), 0);
+  EXPECT_GT(atlas.seam_over_root_area, 0);
 }
 
 TEST(Unwrap, PartsAMoebiusStripOnce) {
@@ -169,7 +169,7 @@ TEST(Unwrap, LaysComponentsSideBySideAtTheirScale) {
   expect_sound(mesh, atlas);
   EXPECT_EQ(atlas.charts.size(), 2);
   EXPECT_NEAR(atlas.energy.max, 2, 1e-6);  // flat parts keep their size
-  EXPECT_EQ(atlas.seam_over_root_area(), 0);
+  EXPECT_EQ(atlas.seam_over_root_area, 0);
 }
 
 TEST(Unwrap, LeavesADiskAsItStands) {
@@ -297,6 +297,124 @@ TEST(Unwrap, EndsOnRequestWithProgressThatNeverFalls) {
   EXPECT_GT(reports, 5);
   const auto stop = [](double fraction, const char*) { return fraction > 0.3; };
   EXPECT_THROW(unwrap({mesh.positions, mesh.faces}, {}, Work(Limits{}, stop)), Cancelled);
+}
+
+/// A sphere of octahedra split often, with a few small holes.
+TriangleList perforated() {
+  TriangleList mesh = disks::blob(4);
+  for (const Index f : {900, 500, 100}) mesh.faces.erase(mesh.faces.begin() + f);
+  return mesh;
+}
+
+TEST(Unwrap, HolesCostNoSeam) {
+  const TriangleList mesh = perforated();
+  const Atlas atlas = unwrapped(mesh);
+  expect_sound(mesh, atlas);
+  EXPECT_EQ(atlas.charts.size(), 1);
+  EXPECT_EQ(atlas.filled_holes, 3);
+  EXPECT_EQ(atlas.admitted.components, 1);
+  const Atlas joined = unwrapped(mesh, {.fill_limit = 0});
+  expect_sound(mesh, joined);
+  EXPECT_EQ(joined.filled_holes, 0);
+  EXPECT_GT(joined.seam_length, 0);
+}
+
+TEST(Unwrap, CutsWhereItIsTold) {
+  AtlasInput input{meshes::cube().positions, meshes::cube().faces};
+  input.cuts.hard_angle = 1;
+  const Atlas atlas = unwrap(input, {}, Work(1));
+  expect_sound(meshes::cube(), atlas);
+  EXPECT_EQ(atlas.charts.size(), 6);
+  EXPECT_NEAR(atlas.energy.max, 2, 1e-9);
+  EXPECT_NEAR(atlas.seam_length, 12, 1e-9);
+}
+
+TEST(Unwrap, OpensWhatTheGivenCutsLeaveClosed) {
+  // A ring of faces around the cube parts it into two disks; a single edge parts nothing.
+  AtlasInput input{meshes::cube().positions, meshes::cube().faces};
+  for (Index f = 0; f < 12; ++f) input.cuts.labels.push_back(f < 2 ? 1 : 0);
+  const Atlas two = unwrap(input, {}, Work(1));
+  expect_sound(meshes::cube(), two);
+  EXPECT_EQ(two.charts.size(), 2);
+  input.cuts = {};
+  input.cuts.edges = {{0, 1}};
+  const Atlas one = unwrap(input, {}, Work(1));
+  expect_sound(meshes::cube(), one);
+  EXPECT_EQ(one.charts.size(), 1);
+}
+
+TEST(Unwrap, DensitiesScaleChartsAndAreNoDistortion) {
+  const TriangleList mesh = meshes::soup(meshes::cube());
+  AtlasInput input{mesh.positions, mesh.faces};
+  input.cuts.hard_angle = 1;
+  for (Index f = 0; f < 12; ++f) input.densities.push_back(f < 2 ? 3 : 1);
+  const Atlas atlas = unwrap(input, {}, Work(1));
+  expect_sound(mesh, atlas);
+  EXPECT_NEAR(atlas.energy.max, 2, 1e-9);
+  for (const ChartInfo& chart : atlas.charts) {
+    const double width = chart.box.sizes().maxCoeff();
+    EXPECT_EQ(chart.density, chart.first_face < 2 ? 3 : 1);
+    EXPECT_GE(width, chart.density * (1 - 1e-9));
+    EXPECT_LE(width, chart.density * (std::sqrt(2.0) + 1e-9));
+  }
+}
+
+TEST(Unwrap, CopiesShareUvsOnDemand) {
+  TriangleList mesh = meshes::grid(4, 4);
+  const std::vector<Triangle> front = mesh.faces;
+  for (const auto& [a, b, c] : front) mesh.faces.push_back({a, c, b});
+  const Atlas apart = unwrapped(mesh);
+  expect_sound(mesh, apart);
+  EXPECT_EQ(apart.charts.size(), 2);
+  AtlasOptions options;
+  options.admit.share_copies = true;
+  const Atlas shared = unwrapped(mesh, options);
+  EXPECT_EQ(shared.outcome, Outcome::kOk);
+  EXPECT_EQ(shared.charts.size(), 1);
+  EXPECT_EQ(shared.admitted.copies, size_of(front));
+  for (std::size_t f = 0; f < front.size(); ++f) {
+    const Triangle &first = shared.faces[f], &copy = shared.faces[f + front.size()];
+    EXPECT_EQ(copy, (Triangle{first[0], first[2], first[1]}));
+    EXPECT_TRUE(shared.excepted[f + front.size()]);
+  }
+}
+
+TEST(Unwrap, FitsTheUnitSquareByAPowerOfTwo) {
+  const TriangleList mesh = zoo();
+  const Atlas atlas = unwrapped(mesh, {.unit_square = true});
+  const Atlas usual = unwrapped(mesh);
+  EXPECT_TRUE(atlas.certificate.injective());
+  double greatest = 0;
+  for (const Vec2& w : atlas.uvs) {
+    EXPECT_GE(w.minCoeff(), 0);
+    greatest = std::max(greatest, w.maxCoeff());
+  }
+  EXPECT_LE(greatest, 1);
+  EXPECT_GT(greatest, 0.5);
+  EXPECT_EQ(atlas.charts.size(), usual.charts.size());
+  EXPECT_NEAR(atlas.energy.symmetric_dirichlet, usual.energy.symmetric_dirichlet, 1e-6);
+}
+
+TEST(Unwrap, NoSeamRunsThroughAPolygon) {
+  // Grids and cubes are quads cut in two: faces 2 i and 2 i + 1 are one polygon.
+  for (const TriangleList& mesh :
+       {meshes::cube(), meshes::torus(8), meshes::moebius(9), meshes::soup(meshes::cube())}) {
+    std::vector<Index> polygons;
+    for (Index f = 0; f < size_of(mesh.faces); ++f) polygons.push_back(f / 2);
+    AtlasOptions options;
+    options.admit.polygons = polygons;
+    const Atlas atlas = unwrapped(mesh, options);
+    expect_sound(mesh, atlas);
+    for (std::size_t f = 0; f + 1 < mesh.faces.size(); f += 2) {
+      std::vector<Index> common;
+      for (const Index a : atlas.faces[f]) {
+        for (const Index b : atlas.faces[f + 1]) {
+          if (a == b) common.push_back(a);
+        }
+      }
+      EXPECT_EQ(common.size(), 2) << f;
+    }
+  }
 }
 
 }  // namespace

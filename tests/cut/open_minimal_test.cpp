@@ -119,32 +119,28 @@ TEST(OpenMinimal, JoinsLoopsByShortPaths) {
   EXPECT_LT(cut_length(sheet.surface, sheet.marks), 1.2);
 }
 
-TEST(OpenMinimal, FilledLoopsCostNoCut) {
-  const Work work(1);
-  const TriangleList mesh = meshes::annulus(9);
-  const Surface surface = build_surface(mesh.positions, mesh.faces, work);
-  const Topology topology = topology_of(surface, work);
-  const EdgeMarks marks = open_minimal(surface, topology, {false, true}, work);
-  EXPECT_EQ(marked_edges(surface, marks), 0);
+/// The diagonals of the quads that grids of quads were cut along.
+EdgeMarks diagonals(const Surface& surface) {
+  EdgeMarks locked(surface.twin.size(), false);
+  for (Index h = 0; h < size_of(surface.twin); ++h) {
+    const Index twin = surface.twin[h];
+    if (twin != kNone && h / 6 == twin / 6) mark_edge(surface, h, locked);
+  }
+  return locked;
 }
 
-TEST(OpenMinimal, AFilledLoopOpensAsIfAFaceWereThere) {
+TEST(OpenMinimal, CutsNoLockedEdge) {
   const Work work(1);
-  TriangleList mesh = meshes::torus(8);
-  const Triangle face = mesh.faces[50];
-  mesh.faces.erase(mesh.faces.begin() + 50);
-  const Surface holed = build_surface(mesh.positions, mesh.faces, work);
-  const EdgeMarks marks = open_minimal(holed, topology_of(holed, work), {true}, work);
-  // With the face, the same marks leave one disk.
-  mesh.faces.push_back(face);
-  const Surface closed = build_surface(mesh.positions, mesh.faces, work);
-  EdgeMarks closed_marks(closed.twin.size(), false);
-  for (Index h = 0; h < size_of(marks); ++h) {
-    if (marks[h]) mark_edge(closed, h, closed_marks);
+  for (const TriangleList& mesh : {meshes::torus(8), meshes::annulus(9), meshes::cube()}) {
+    const Surface surface = build_surface(mesh.positions, mesh.faces, work);
+    const EdgeMarks locked = diagonals(surface);
+    ASSERT_GT(marked_edges(surface, locked), 0);
+    const EdgeMarks marks = open_minimal(surface, topology_of(surface, work), locked, work);
+    for (std::size_t h = 0; h < marks.size(); ++h) EXPECT_FALSE(marks[h] && locked[h]);
+    const CutSurface cut = cut_into_charts(surface, marks, work);
+    EXPECT_TRUE(cut.non_disks.empty());
+    EXPECT_EQ(cut.charts.size(), 1u);
   }
-  const CutSurface cut = cut_into_charts(closed, closed_marks, work);
-  EXPECT_TRUE(cut.non_disks.empty());
-  EXPECT_EQ(cut.charts.size(), 1u);
 }
 
 TEST(OpenMinimal, OpensWhateverIsAdmitted) {

@@ -96,20 +96,30 @@ TEST(Check, ReadsTheNamesThatPlyWritersUse) {
   }
 }
 
-TEST(Check, RefusesWhatItCannotJudge) {
+TEST(Check, JudgesWhatIsNoDiskAsAnAtlas) {
   const TemporaryDirectory directory;
   const std::string seam =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\n"
       "f 1/1 2/2 3/3\nf 1/1 3/5 4/4\n";
+  const std::string parts =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 5 0\n"
+      "vt 6 0\nvt 5 1\nf 1/1 2/2 3/3\nf 4/4 5/5 6/6\n";
+  EXPECT_EQ(run({"check", directory.file("in.obj", parts)}).exit_code, 0);
+  EXPECT_EQ(run({"check", directory.file("in.obj", seam)}).exit_code, 3) << "the two overlap";
+  // The second part is mirrored.
+  std::string mirrored = parts;
+  mirrored.replace(mirrored.find("vt 6 0"), 6, "vt 4 0");
+  const std::string in = directory.file("in.obj", mirrored);
+  EXPECT_EQ(run({"check", in}).exit_code, 3);
+  EXPECT_EQ(run({"check", in, "--mirrored"}).exit_code, 0);
+}
+
+TEST(Check, RefusesWhatItCannotJudge) {
+  const TemporaryDirectory directory;
   const std::string nan_uv = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt nan 1\nf 1/1 2/2 3/3\n";
-  for (const auto& [what, text, word] :
-       {std::tuple<std::string, std::string, std::string>{"seam", seam, "vertex 2"},
-        {"no UVs", kSquare, "no texture coordinates"},
-        {"NaN", nan_uv, "vertex 2"},
-        {"two components",
-         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 5 0\n"
-         "vt 6 0\nvt 5 1\nf 1/1 2/2 3/3\nf 4/4 5/5 6/6\n",
-         "face 1"}}) {
+  for (const auto& [what, text, word] : {std::tuple<std::string, std::string, std::string>{
+                                             "no UVs", kSquare, "no texture coordinates"},
+                                         {"NaN", nan_uv, "vertex 2"}}) {
     const std::string in = directory.file("in.obj", text);
     const Outcome outcome = run({"check", in});
     EXPECT_EQ(outcome.exit_code, 2) << what;

@@ -133,13 +133,14 @@ TEST(ReadObjUvs, FollowsTheFacesTextureNumbers) {
   EXPECT_EQ(mesh.uvs, (Numbers{1, 0, 0.5, 0, 0, 1, 0, 0})) << "unused vertices get (0, 0)";
 }
 
-TEST(ReadObjUvs, TakesEqualCopiesButNoSeams) {
+TEST(ReadObjUvs, GivesVerticesOneUvWhereTheirCornersAgree) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
   EXPECT_EQ(obj(square + "vt 1 1\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n", Content::kUvs).uvs,
             (Numbers{0, 0, 1, 0, 1, 1, 0, 1}));
-  EXPECT_EQ(obj_error(square + "vt 1 2\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n", Content::kUvs),
-            "a.obj: line 11: vertex 2 (counted from 0) has two different texture coordinates: cut "
-            "the mesh along its seams first");
+  const MeshFile seam = obj(square + "vt 1 2\nf 1/1 2/2 3/3\nf 1/1 3/5 4/4\n", Content::kUvs);
+  EXPECT_TRUE(seam.uvs.empty());
+  EXPECT_EQ(seam.corner_uvs.of_corner, (std::vector<std::uint32_t>{0, 1, 2, 0, 4, 3}));
+  EXPECT_EQ(seam.corner_uvs.values, (Numbers{0, 0, 1, 0, 1, 1, 0, 1, 1, 2}));
 }
 
 TEST(ReadObjUvs, RefusesMissingTextureNumbers) {
@@ -311,7 +312,9 @@ TEST(ReadPly, SaysWhere) {
             "a.ply: line 4: unknown property type 'quad'");
   EXPECT_EQ(ply_error("garbage"),
             "a.ply: line 1: this is not a PLY file: it does not begin with 'ply'");
-  EXPECT_NE(ply_error(binary_ply(false), Content::kUvs).find("no texture coordinates"),
+  std::string without_uvs = binary_ply(false);
+  without_uvs.replace(without_uvs.find("texcoord"), 8, "nonsense");
+  EXPECT_NE(ply_error(without_uvs, Content::kUvs).find("no texture coordinates"),
             std::string::npos);
 }
 

@@ -68,7 +68,7 @@ TEST(ParseOption, TakesNamedChoices) {
 
 TEST(Options, HaveTheLibrarysDefaults) {
   Report report;
-  report.options = Options().values();
+  report.options = Options(BELTRAMI_CALL_RUN).values();
   const auto json = nlohmann::json::parse(to_json(report))["options"];
   EXPECT_EQ(json["method"], "beltrami");
   EXPECT_EQ(json["unit-square"], false);
@@ -79,15 +79,15 @@ TEST(Options, HaveTheLibrarysDefaults) {
 TEST(Options, UseAllCoresThatTheProcessMayUseUnlessTold) {
   cpu_set_t before;
   ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
-  EXPECT_EQ(Options().integer(BELTRAMI_OPTION_THREADS), CPU_COUNT(&before));
+  EXPECT_EQ(Options(BELTRAMI_CALL_RUN).integer(BELTRAMI_OPTION_THREADS), CPU_COUNT(&before));
   cpu_set_t one;
   CPU_ZERO(&one);
   for (std::size_t core = 0; CPU_COUNT(&one) == 0; ++core) {
     if (CPU_ISSET(core, &before)) CPU_SET(core, &one);
   }
   ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
-  EXPECT_EQ(Options().integer(BELTRAMI_OPTION_THREADS), 1);
-  EXPECT_FALSE(Options().use_fewer_threads());
+  EXPECT_EQ(Options(BELTRAMI_CALL_RUN).integer(BELTRAMI_OPTION_THREADS), 1);
+  EXPECT_FALSE(Options(BELTRAMI_CALL_RUN).use_fewer_threads());
   sched_setaffinity(0, sizeof before, &before);
 }
 #endif

@@ -1,0 +1,77 @@
+// Polygons into triangles: their corners, every one, whatever they name.
+#include "admit/triangulate.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/work.h"
+
+namespace beltrami {
+namespace {
+
+/// n - 2 triangles for n corners, of that face alone, and every corner in one.
+void expect_complete(const Polygons& polygons, const Triangulation& result) {
+  std::size_t t = 0;
+  for (Index f = 0; f < polygons.count(); ++f) {
+    std::set<Index> seen;
+    for (Index i = 2; i < polygons.end(f) - polygons.begin(f); ++i, ++t) {
+      ASSERT_LT(t, result.triangles.size());
+      for (const Index corner : result.triangles[t]) {
+        EXPECT_TRUE(corner >= polygons.begin(f) && corner < polygons.end(f));
+        seen.insert(corner);
+      }
+    }
+    EXPECT_EQ(size_of(std::vector(seen.begin(), seen.end())), polygons.end(f) - polygons.begin(f));
+  }
+  EXPECT_EQ(t, result.triangles.size());
+}
+
+const std::vector<Vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}};
+
+TEST(TriangulatePolygons, NumbersTrianglesByTheirCorners) {
+  const Polygons polygons{{0, 1, 2, 0, 2, 3}, {}};
+  const Triangulation result = triangulate(kSquare, polygons, Work(1));
+  EXPECT_EQ(result.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(result.first_repeating, kNone);
+}
+
+TEST(TriangulatePolygons, CutsMixedFaces) {
+  const Polygons polygons{{0, 1, 2, 3, 0, 4, 1, 1, 4, 2, 3, 0}, {4, 7, 12}};
+  const Triangulation result = triangulate(kSquare, polygons, Work(1));
+  expect_complete(polygons, result);
+  EXPECT_EQ(result.first_repeating, kNone);
+}
+
+TEST(TriangulatePolygons, SaysWhereAVertexIsNamedTwice) {
+  const Polygons polygons{{0, 1, 2, 3, 0, 1, 0, 2, 3, 2}, {4, 10}};
+  const Triangulation result = triangulate(kSquare, polygons, Work(1));
+  expect_complete(polygons, result);
+  EXPECT_EQ(result.first_repeating, 1);
+}
+
+TEST(TriangulatePolygons, RepeatsAnEdgeOnlyWhereThereIsNoOtherWay) {
+  // Both diagonals of the square are edges of triangles.
+  const Polygons crossed{{0, 1, 2, 3, 0, 2, 4, 1, 3, 4}, {4, 7, 10}};
+  const Triangulation result = triangulate(kSquare, crossed, Work(1));
+  expect_complete(crossed, result);
+  EXPECT_EQ(result.first_repeating, 0);
+  const Polygons one{{0, 1, 2, 3, 0, 2, 4}, {4, 7}};
+  const Triangulation free = triangulate(kSquare, one, Work(1));
+  EXPECT_EQ(free.first_repeating, kNone);
+  std::map<std::pair<Index, Index>, int> edges;
+  for (const Triangle& triangle : free.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Index a = one.corners[triangle[k]], b = one.corners[triangle[next_corner(k)]];
+      EXPECT_EQ(++edges[std::minmax(a, b)] <= 2, true);
+    }
+  }
+  EXPECT_EQ((edges[{0, 2}]), 1);
+}
+
+}  // namespace
+}  // namespace beltrami

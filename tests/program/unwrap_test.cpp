@@ -1,0 +1,143 @@
+// beltrami unwrap, end to end.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "files/mesh_file.h"
+#include "files/polygons.h"
+#include "run_program.h"
+#include "temporary_directory.h"
+#include "tiny_meshes.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A cube of quads in two materials.
+const std::string kCube =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+    "usemtl red\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nusemtl blue\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+TEST(Unwrap, TakesAClosedMeshAndKeepsItsPolygons) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"out.obj", "out.ply"}) {
+    const std::string in = directory.file("in.obj", kCube), out = directory.path(name);
+    const std::string report = directory.path("report.json");
+    const Outcome outcome = run({"unwrap", in, out, "--report", report});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("injective  yes"), std::string::npos) << outcome.out;
+    EXPECT_EQ(run({"check", out}).exit_code, 0);
+    const MeshFile before = read_mesh(in, Content::kSurface), after = read_mesh(out, Content::kUvs);
+    EXPECT_EQ(before.positions, after.positions);
+    EXPECT_EQ(before.polygons.corners(), after.polygons.corners());
+    EXPECT_EQ(after.polygons.size(), 6u);
+    EXPECT_EQ(after.corner_uvs.of_corner.size(), 24u);
+    const Json json = Json::parse(directory.read("report.json"));
+    EXPECT_EQ(json["command"], "unwrap");
+    EXPECT_EQ(json["charts"], 1);
+    EXPECT_EQ(json["injective"]["result"], true);
+    EXPECT_EQ(json["injective"]["overlaps"], 0);
+    EXPECT_NEAR(json["admitted"]["area"].get<double>(), 6, 1e-12);
+    EXPECT_EQ(json["admitted"]["triangles"], 12);
+    EXPECT_GE(json["energy"]["symmetric_dirichlet"], 2);
+    EXPECT_GT(json["utilisation"], 0);
+  }
+}
+
+TEST(Unwrap, WritesTheTrianglesOnDemand) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  ASSERT_EQ(run({"unwrap", in, out, "--triangulate"}).exit_code, 0);
+  const MeshFile after = read_mesh(out, Content::kAll);
+  EXPECT_EQ(after.polygons.size(), 12u);
+  EXPECT_TRUE(after.polygons.all_triangles());
+  ASSERT_EQ(after.statements.size(), 3u);
+  EXPECT_EQ(after.statements[1].polygon, 0u);
+  EXPECT_EQ(after.statements[2].text, "usemtl blue");
+  EXPECT_EQ(after.statements[2].polygon, 6u);
+  EXPECT_EQ(run({"check", out}).exit_code, 0);
+}
+
+TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const auto charts = [&](const std::string& mesh, std::vector<std::string> arguments) {
+    const std::vector<std::string> first = {"unwrap", mesh, out, "--report",
+                                            directory.path("r.json")};
+    arguments.insert(arguments.begin(), first.begin(), first.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return Json::parse(directory.read("r.json"))["charts"].get<int>();
+  };
+  EXPECT_EQ(charts(in, {"--labels", "materials"}), 2);
+  EXPECT_EQ(charts(in, {"--seams", directory.file("seams", "0 2\n2 3\n3 1\n1 0\n")}), 2);
+  EXPECT_EQ(charts(in, {"--hard-angle", "45"}), 6);
+  const std::string islands = directory.path("islands.obj");
+  ASSERT_EQ(run({"unwrap", in, islands, "--hard-angle", "45"}).exit_code, 0);
+  EXPECT_EQ(charts(islands, {"--cut", "islands"}), 6);
+  EXPECT_EQ(charts(islands, {}), 1);
+}
+
+TEST(Unwrap, SaysWhatIsWrong) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const auto error = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "unwrap");
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.err_lines(), 1);
+    EXPECT_EQ(directory.read("out.obj"), "") << "nothing is written";
+    return outcome.err;
+  };
+  EXPECT_NE(error({in, out, "--labels", "colour"}).find("faces have no property 'colour'"),
+            std::string::npos);
+  EXPECT_NE(error({in, out, "--labels", "groups"}).find("has no groups"), std::string::npos);
+  EXPECT_NE(error({in, out, "--seams", directory.file("s", "0 8")}).find("no vertex 8"),
+            std::string::npos);
+  EXPECT_NE(error({in, out, "--seams", directory.file("s", "0 1 2")}).find("pairs"),
+            std::string::npos);
+  EXPECT_NE(error({in, out, "--cut", "islands"}).find("no texture coordinates"), std::string::npos);
+  EXPECT_NE(error({in, directory.path("out.stl")}).find("OBJ or PLY"), std::string::npos);
+  const std::string flat = directory.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  EXPECT_NE(error({flat, out}).find("no area"), std::string::npos);
+}
+
+TEST(Unwrap, IsWhatFlattenSaysForAMeshThatIsNoDisk) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kTetrahedron), out = directory.path("out.obj");
+  const Outcome refused = run({"flatten", in, out});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("beltrami unwrap"), std::string::npos) << refused.err;
+  EXPECT_EQ(run({"unwrap", in, out}).exit_code, 0);
+}
+
+TEST(Unwrap, GivesADiskTheBitsOfFlatten) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(6));
+  const std::string one = directory.path("one.obj"), other = directory.path("other.obj");
+  ASSERT_EQ(run({"flatten", in, one}).exit_code, 0);
+  ASSERT_EQ(run({"unwrap", in, other}).exit_code, 0);
+  EXPECT_EQ(read_mesh(one, Content::kUvs).uvs, read_mesh(other, Content::kUvs).uvs);
+}
+
+TEST(Unwrap, CheckListsWhatOverlaps) {
+  const TemporaryDirectory directory;
+  // Two squares of a bent strip on each other, with UVs of their own.
+  const std::string in = directory.file(
+      "in.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "f 1/1 2/2 3/3 4/4\nf 2/1 5/2 6/3 3/4\n");
+  const std::string report = directory.path("r.json");
+  const Outcome outcome = run({"check", in, "--report", report});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["injective"]["result"], false);
+  EXPECT_GE(json["injective"]["overlaps"], 1);
+  EXPECT_EQ(json["injective"]["first_overlap"], (Json{0, 1}));
+  EXPECT_NE(outcome.out.find("faces 0 and 1 overlap"), std::string::npos) << outcome.out;
+}
+
+}  // namespace
+}  // namespace beltrami::cli
