@@ -99,7 +99,7 @@ TEST(Check, ReadsTheNamesThatPlyWritersUse) {
 TEST(Check, JudgesWhatIsNoDiskAsAnAtlas) {
   const TemporaryDirectory directory;
   const std::string seam =
-      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\n"
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 4\n"
       "f 1/1 2/2 3/3\nf 1/1 3/5 4/4\n";
   const std::string parts =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 5 0\n"
