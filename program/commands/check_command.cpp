@@ -86,6 +86,7 @@ class Check {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     file_ = read_mesh(arguments_.input, Content::kUvs);
+    require_whole(file_);
     if (arguments_.float32) {
       round_to_float32(file_.uvs);
       round_to_float32(file_.corner_uvs.values);

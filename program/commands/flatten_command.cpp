@@ -66,6 +66,7 @@ class Flattening {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     file_ = read_mesh(arguments_.input, Content::kSurface);
+    require_whole(file_);
     surface_.emplace(file_, arguments_.weld);
     report_.set_input(file_, *surface_);
     const beltrami_mesh mesh = view_of(surface_->view());

@@ -77,6 +77,9 @@ class Unwrapping {
     StageClock clock(report_, "read");
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
     file_ = read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface);
+    if (!file_.truncated.empty()) {
+      file_.not_kept.push_back("what is missing of the input (" + file_.truncated + ")");
+    }
     if (!arguments_.labels.empty()) labels_ = face_labels(file_, arguments_.labels);
     if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
     report_.vertices = file_.vertex_count();

@@ -24,6 +24,12 @@ void normalise_text(std::string& text) {
   if (lone_returns) std::replace(text.begin(), text.end(), '\r', '\n');
 }
 
+/// Whether this is a surface of the Montreal Neurological Institute: "P" and five numbers, where
+/// Wavefront's "p" would have vertices that are yet to come.
+bool is_mni(std::string_view text) {
+  return text.substr(0, 2) == "P ";
+}
+
 /// The reader of the format, on the text of the file.
 MeshFile read_text(const std::string& path, Content content) {
   const MeshFormat format = format_of(path);
@@ -32,7 +38,7 @@ MeshFile read_text(const std::string& path, Content content) {
   if (format == MeshFormat::kObj || format == MeshFormat::kOff) normalise_text(text);
   switch (format) {
     case MeshFormat::kObj:
-      return read_obj(text, path, content);
+      return is_mni(text) ? read_mni(text, path, content) : read_obj(text, path, content);
     case MeshFormat::kOff:
       return read_off(text, path, content);
     case MeshFormat::kPly:
@@ -77,6 +83,10 @@ void unite_corner_uvs(MeshFile& mesh) {
   }
   mesh.uvs = std::move(uvs);
   mesh.corner_uvs = {};
+}
+
+void require_whole(const MeshFile& mesh) {
+  if (!mesh.truncated.empty()) throw Failure(mesh.path + ": " + mesh.truncated);
 }
 
 MeshFile read_mesh(const std::string& path, Content content) {

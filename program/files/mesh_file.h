@@ -1,4 +1,4 @@
-// Meshes in files: OBJ, OFF, PLY and STL.
+// Meshes in files: OBJ, OFF, PLY and STL; and MNI objects, which have the extension of OBJ.
 //
 // The readers and writers are our own because four things are the point of this program that
 // general mesh libraries do not give: doubles that are correctly rounded in both directions
@@ -63,6 +63,7 @@ struct MeshFile {
   std::vector<Table> tables;          ///< other elements of a PLY file
   std::vector<std::string> comments;  ///< of a PLY header, whole lines
   std::vector<std::string> not_kept;  ///< what the reader passed over, in words
+  std::string truncated;  ///< "" or how the file ends amid its faces: these are left out
 
   std::uint64_t vertex_count() const { return positions.size() / 3; }
 };
@@ -82,14 +83,19 @@ MeshFormat format_of(const std::string& path);
 /// Throws Failure unless `path` has the extension of a format that can hold UVs: OBJ or PLY.
 void require_writable_format(const std::string& path);
 
-/// Reads `path`. Throws Failure for anything unreadable or truncated, and for indices out of range;
-/// std::bad_alloc. Face and vertex numbers in messages count from 0.
+/// Reads `path`. Throws Failure for anything unreadable, and for indices out of range;
+/// std::bad_alloc. A PLY file that ends amid its faces is read as far as it goes: see `truncated`.
+/// Face and vertex numbers in messages count from 0.
 MeshFile read_mesh(const std::string& path, Content content);
+
+/// Throws Failure for a file that ends amid its faces.
+void require_whole(const MeshFile& mesh);
 
 /// The readers behind read_mesh: `text` is the whole file, `path` is for messages.
 MeshFile read_obj(std::string_view text, const std::string& path, Content content);
 MeshFile read_off(std::string_view text, const std::string& path, Content content);
 MeshFile read_ply(std::string_view text, const std::string& path, Content content);
+MeshFile read_mni(std::string_view text, const std::string& path, Content content);
 MeshFile read_stl(std::string_view text, const std::string& path, Content content);
 
 /// Receives the bytes of a file in order.

@@ -21,6 +21,7 @@ class Polygons {
   void add_corner(std::uint32_t vertex) { corners_.push_back(vertex); }
   /// Corners of the polygon that is being added.
   std::uint64_t open_corners() const { return corners_.size() - open_; }
+  void drop_open_corners() { corners_.resize(open_); }
   /// The corners added since the last call are a polygon.
   void end_polygon() {
     if (ends_.empty() && open_corners() != 3) {

@@ -19,6 +19,44 @@ constexpr std::array<std::string_view, 14> kKept = {
     "g",   "o",        "s",        "usemtl", "mtllib",     "usemap",    "maplib",
     "lod", "c_interp", "d_interp", "bevel",  "shadow_obj", "trace_obj", "mg"};
 
+/// Bytes that follow the first one of a character in UTF-8; -1 for what begins none.
+int bytes_after(unsigned char first) {
+  if (first < 0x80) return 0;
+  if (first >= 0xC2 && first < 0xE0) return 1;
+  if (first >= 0xE0 && first < 0xF0) return 2;
+  return first >= 0xF0 && first < 0xF5 ? 3 : -1;
+}
+
+bool is_utf8(std::string_view text) {
+  int expected = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (expected > 0) {
+      if ((byte & 0xC0) != 0x80) return false;
+      --expected;
+    } else {
+      expected = bytes_after(byte);
+      if (expected < 0) return false;
+    }
+  }
+  return expected == 0;
+}
+
+/// Each byte as the character that it is in Latin-1.
+std::string from_latin1(std::string_view text) {
+  std::string utf8;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      utf8 += c;
+    } else {
+      utf8 += static_cast<char>(0xC0 | byte >> 6);
+      utf8 += static_cast<char>(0x80 | (byte & 0x3F));
+    }
+  }
+  return utf8;
+}
+
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::string& path, Content content)
@@ -95,6 +133,11 @@ class ObjReader {
       std::string line(begin, cursor_.position());
       // A backslash at the end would continue the line into the next one.
       line.erase(line.find_last_not_of(" \t\r\n\\") + 1);
+      // Readers that decode text would refuse the whole file.
+      if (!is_utf8(line)) {
+        line = from_latin1(line);
+        other_encoding_ = true;
+      }
       mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
       return;
     } else {
@@ -230,6 +273,9 @@ class ObjReader {
   }
 
   void finish_attributes() {
+    if (other_encoding_) {
+      mesh_.not_kept.emplace_back("the encoding of names (Latin-1 becomes UTF-8)");
+    }
     CornerNormals& normals = mesh_.normals;
     for (const std::uint32_t normal : normals.of_corner) {
       bad_normals_ |= normal != kNoNormal && normal >= normals.values.size() / 3;
@@ -286,6 +332,7 @@ class ObjReader {
   MeshFile mesh_;
   ExtraNumbers extra_;                          ///< after the coordinates of vertices
   bool unknown_numbers_ = false;                ///< something else stands behind those
+  bool other_encoding_ = false;                 ///< a name is no UTF-8
   bool bad_normals_ = false;                    ///< a normal is no number, or not there
   std::vector<double> textures_;                ///< u v per vt statement
   std::vector<std::uint32_t> corner_textures_;  ///< one per corner, kNoTexture for none

@@ -64,6 +64,17 @@ std::string short_number(double value) {
 constexpr std::array<std::array<std::string_view, 2>, 3> kUvNames = {
     {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}};
 
+/// A file that ends too early.
+class Truncation : public Failure {
+ public:
+  Truncation(const std::string& path, const std::string& where)
+      : Failure(path + ": " + where), where_(where) {}
+  const std::string& where() const { return where_; }
+
+ private:
+  std::string where_;
+};
+
 class PlyReader {
  public:
   PlyReader(std::string_view text, const std::string& path, Content content)
@@ -80,7 +91,8 @@ class PlyReader {
       if (element.name == "vertex") {
         read_vertices(element);
       } else if (element.name == "face") {
-        if (element.count > 0) read_faces(element);
+        if (element.count > 0) read_faces_there_are(element);
+        if (!mesh_.truncated.empty()) break;
       } else if (element.name == "tristrips") {
         if (element.count > 0) read_strips(element);
       } else {
@@ -175,6 +187,17 @@ class PlyReader {
     if (!corners) corners = element.find_list("vertex_index");
     if (!corners) throw Failure(path_ + ": faces without the list property vertex_indices");
     return *corners;
+  }
+
+  /// Faces that have corners alone are whole up to where the file ends.
+  void read_faces_there_are(const PlyElement& element) {
+    try {
+      read_faces(element);
+    } catch (const Truncation& end) {
+      mesh_.polygons.drop_open_corners();
+      if (element.properties.size() > 1 || mesh_.polygons.empty()) throw;
+      mesh_.truncated = end.where();
+    }
   }
 
   void read_faces(const PlyElement& element) {
@@ -322,8 +345,9 @@ class PlyReader {
   double next(Scalar type, const PlyElement& element, std::uint64_t item) {
     double value = 0;
     if (!values_.next(type, value)) {
-      throw Failure(path_ + ": the file is truncated: it ends in " + element.name + " " +
-                    std::to_string(item) + " (counted from 0) of " + std::to_string(element.count));
+      throw Truncation(path_, "the file is truncated: it ends in " + element.name + " " +
+                                  std::to_string(item) + " (counted from 0) of " +
+                                  std::to_string(element.count));
     }
     return value;
   }

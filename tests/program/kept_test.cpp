@@ -38,6 +38,16 @@ TEST(KeptInObj, EverythingButTextureCoordinates) {
   EXPECT_EQ(not_kept(obj(kRichObj), "a.obj"), Words{});
 }
 
+TEST(KeptInObj, NamesInAnotherEncodingBecomeUtf8) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const MeshFile latin = obj(mesh + "usemtl gr\xfcn\nf 1 2 3\n");
+  EXPECT_EQ(latin.statements[0].text, "usemtl gr\xc3\xbcn");
+  EXPECT_EQ(not_kept(latin, "a.obj"), Words{"the encoding of names (Latin-1 becomes UTF-8)"});
+  const MeshFile utf8 = obj(mesh + "usemtl gr\xc3\xbcn \xe2\x82\xac\nf 1 2 3\n");
+  EXPECT_EQ(utf8.statements[0].text, "usemtl gr\xc3\xbcn \xe2\x82\xac");
+  EXPECT_EQ(not_kept(utf8, "a.obj"), Words{});
+}
+
 TEST(KeptInObj, WhateverTheOrderAndTheNumbering) {
   // Objects one after another, numbers backwards, earlier texture coordinates, comments.
   const std::string text =

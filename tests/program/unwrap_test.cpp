@@ -104,6 +104,38 @@ TEST(Unwrap, SaysWhatIsWrong) {
   EXPECT_NE(error({flat, out}).find("no area"), std::string::npos);
 }
 
+TEST(Unwrap, TakesWhatThereIsOfAFileThatEndsAmidItsFaces) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0.25\n0 1 0\n3 0 1 2\n3 0 2");
+  const std::string out = directory.path("out.obj");
+  const Outcome outcome = run({"unwrap", in, out});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("it ends in face 1 (counted from 0) of 3"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(read_mesh(out, Content::kUvs).polygons.size(), 1u);
+  EXPECT_EQ(run({"flatten", in, out}).exit_code, 2);
+}
+
+TEST(Unwrap, ReadsMniObjects) {
+  const TemporaryDirectory directory;
+  const std::string head =
+      "P 0.3 0.3 0.4 10 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\n0 0 1\n0 0 1\n0 0 1\n0 0 1\n\n2\n"
+      "0 1 1 1 1\n\n3 6\n\n";
+  const std::string out = directory.path("out.ply");
+  EXPECT_EQ(run({"unwrap", directory.file("a.obj", head + "0 1 2 0 2 3\n"), out}).exit_code, 0);
+  const MeshFile mesh = read_mesh(out, Content::kAll);
+  EXPECT_EQ(mesh.polygons.corners(), (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  ASSERT_EQ(mesh.vertex_columns.size(), 3u);
+  EXPECT_EQ(mesh.vertex_columns[2][3], 1);
+  for (const char* bad : {"0 1 2 0 2 4\n", "0 1 2 0 2\n", "0 1 2 x\n"}) {
+    EXPECT_EQ(run({"unwrap", directory.file("a.obj", head + bad), out}).exit_code, 2) << bad;
+  }
+}
+
 TEST(Unwrap, IsWhatFlattenSaysForAMeshThatIsNoDisk) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kTetrahedron), out = directory.path("out.obj");
