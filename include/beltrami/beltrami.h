@@ -667,9 +667,8 @@ BELTRAMI_API beltrami_status beltrami_get_atlas_stage(beltrami_context* context,
  * triangles that disagree in orientation with their chart are turned over, for a winding that
  * changes is no fold. `allow_mirrored`: 1 takes charts that are negative as a whole for their
  * mirror images. `pairs`: NULL or room for `capacity` pairs of faces that overlap; those that are
- * not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE. Errors, with
- * out->error_element set: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, CANCELLED,
- * OUT_OF_MEMORY. */
+ * not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE. Errors: INVALID_ARGUMENT,
+ * EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, CANCELLED, OUT_OF_MEMORY, with out->error_element set. */
 BELTRAMI_API beltrami_status beltrami_check_atlas(const beltrami_surface* surface,
                                                   int32_t allow_mirrored,
                                                   beltrami_atlas_certificate* out, uint64_t* pairs,

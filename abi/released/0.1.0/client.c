@@ -32,6 +32,10 @@ static uint32_t triangles[FACES + 1][3];
 static double uvs[VERTICES + 1][2];
 static double energies[FACES + 1];
 static double distortions[FACES + 1][4];
+static double corner_uvs[3 * FACES + 1][2];
+static double uv_vertices[3 * FACES + 1][2];
+static uint32_t uv_faces[FACES + 1][3];
+static uint64_t numbers[3 * FACES + 1];
 
 static int untouched(const unsigned char* canary) {
   int i;
@@ -199,6 +203,86 @@ static void check_without_a_context(void) {
   REQUIRE(distortions[0][2] == energies[0] && distortions[FACES][0] == -7);
 }
 
+static beltrami_surface describe_surface(void) {
+  beltrami_surface surface;
+  memset(&surface, 0, sizeof surface);
+  surface.struct_size = sizeof surface;
+  surface.vertex_count = VERTICES;
+  surface.face_count = FACES;
+  surface.positions.data = positions;
+  surface.positions.type = BELTRAMI_F32;
+  surface.indices.data = indices;
+  surface.indices.type = BELTRAMI_U32;
+  return surface;
+}
+
+static void read_atlas(beltrami_context* context) {
+  GUARDED(beltrami_atlas) atlas;
+  GUARDED(beltrami_chart) chart;
+  GUARDED(beltrami_atlas_certificate) certificate;
+  GUARDED(beltrami_stage) stage;
+  uint64_t i;
+  ARM(atlas);
+  ARM(chart);
+  ARM(certificate);
+  ARM(stage);
+  REQUIRE(beltrami_get_atlas(context, &atlas.value) == BELTRAMI_OK);
+  ALIVE(atlas);
+  REQUIRE(atlas.value.status == BELTRAMI_OK && atlas.value.vertices == VERTICES);
+  REQUIRE(atlas.value.triangles == FACES && atlas.value.charts == 1);
+  REQUIRE(atlas.value.uv_vertices == VERTICES && atlas.value.seam_length == 0);
+  REQUIRE(beltrami_get_chart(context, 0, &chart.value) == BELTRAMI_OK);
+  ALIVE(chart);
+  REQUIRE(chart.value.triangles == FACES && chart.value.first_face == 0);
+  REQUIRE(chart.value.error == BELTRAMI_OK && chart.value.box[0] < chart.value.box[2]);
+  REQUIRE(beltrami_get_atlas_certificate(context, BELTRAMI_F64, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1 && certificate.value.positive == FACES);
+  REQUIRE(beltrami_atlas_stage_count(context) > 0);
+  REQUIRE(beltrami_get_atlas_stage(context, 0, &stage.value) == BELTRAMI_OK);
+  ALIVE(stage);
+  REQUIRE(stage.value.name[0] != '\0');
+
+  corner_uvs[3 * FACES][0] = uv_vertices[VERTICES][0] = -7;
+  uv_faces[FACES][0] = triangles[FACES][0] = 7;
+  REQUIRE(beltrami_get_corner_uvs(context, corner_uvs, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_get_uv_vertices(context, uv_vertices, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_get_corner_uv_vertices(context, uv_faces, BELTRAMI_U32, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_get_triangles(context, triangles, BELTRAMI_U32, 0) == BELTRAMI_OK);
+  REQUIRE(corner_uvs[3 * FACES][0] == -7 && uv_vertices[VERTICES][0] == -7);
+  REQUIRE(uv_faces[FACES][0] == 7 && triangles[FACES][0] == 7);
+  for (i = 0; i < 3 * FACES; ++i) {
+    REQUIRE(corner_uvs[i][0] == uv_vertices[uv_faces[i / 3][i % 3]][0]);
+  }
+  numbers[VERTICES] = 7;
+  REQUIRE(beltrami_get_uv_vertex_origins(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[VERTICES] == 7 && numbers[uv_faces[3][1]] == indices[3][1]);
+  numbers[FACES] = 7;
+  REQUIRE(beltrami_get_face_charts(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[FACES] == 7 && numbers[0] == 0);
+}
+
+static void unwrap(beltrami_context* context) {
+  GUARDED(beltrami_atlas_certificate) certificate;
+  beltrami_surface surface = describe_surface();
+  uint64_t repeating = 7, pairs[3] = {7, 7, 7};
+  int calls = 0;
+  triangles[FACES][0] = 7;
+  REQUIRE(beltrami_triangulate(&surface, triangles, BELTRAMI_U32, 0, &repeating) == BELTRAMI_OK);
+  REQUIRE(triangles[FACES][0] == 7 && triangles[0][1] == 1 && repeating == BELTRAMI_NO_ELEMENT);
+  REQUIRE(beltrami_unwrap(context, &surface, count_calls, &calls) == BELTRAMI_OK);
+  REQUIRE(calls > 0);
+  read_atlas(context);
+
+  surface.corner_uvs.data = corner_uvs;
+  surface.corner_uvs.type = BELTRAMI_F64;
+  ARM(certificate);
+  REQUIRE(beltrami_check_atlas(&surface, 0, &certificate.value, pairs, 1) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1 && certificate.value.overlaps == 0);
+  REQUIRE(pairs[0] == BELTRAMI_NO_ELEMENT && pairs[2] == 7);
+}
+
 int main(void) {
   beltrami_context* context = NULL;
   ask_the_library();
@@ -209,6 +293,7 @@ int main(void) {
   fail_with_an_element(context);
   flatten(context);
   read_results(context);
+  unwrap(context);
   beltrami_destroy(context);
   check_without_a_context();
   return EXIT_SUCCESS;

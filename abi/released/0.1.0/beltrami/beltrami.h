@@ -1,4 +1,5 @@
-/* beltrami: injective, low-distortion flattening of disk-like triangle meshes.
+/* beltrami: injective, low-distortion flattening of triangle meshes: of disks (beltrami_run), and
+ * of any surface as an atlas (beltrami_unwrap).
  *
  * The C interface of the library, its only public header.
  *
@@ -165,7 +166,32 @@ enum {
   BELTRAMI_OPTION_TIME_LIMIT = 11,        /* float: wall seconds of iterations; 0: any */
   BELTRAMI_OPTION_FLOAT32 = 12,           /* int: 1 delivers single-precision numbers */
   BELTRAMI_OPTION_DELAUNAY = 13,          /* choice: 1 flattens on intrinsic Delaunay faces */
-  BELTRAMI_OPTION_MEMORY_LIMIT = 14       /* int: bytes that a run is to stay within; 0: any */
+  BELTRAMI_OPTION_MEMORY_LIMIT = 14,      /* int: bytes that a run is to stay within; 0: any */
+  /* Of beltrami_unwrap alone; beltrami_run takes no notice of them. */
+  BELTRAMI_OPTION_CUT = 15,           /* choice: BELTRAMI_CUT_ */
+  BELTRAMI_OPTION_HARD_ANGLE = 16,    /* float: degrees; sharper edges are seams; 180: none */
+  BELTRAMI_OPTION_WELD = 17,          /* choice: BELTRAMI_WELD_ */
+  BELTRAMI_OPTION_WELD_DISTANCE = 18, /* float: welds vertices this close, in the mesh's unit */
+  BELTRAMI_OPTION_FILL_HOLES = 19,    /* float: longest boundary of a hole that costs no seam */
+  BELTRAMI_OPTION_SHARE_COPIES = 20   /* int: 1 gives copies of a face the UVs of the first */
+};
+
+/* What is cut beside the seams that come with a surface. */
+enum {
+  BELTRAMI_CUT_FORCE_SIGNED_ = -1,
+  /* Nothing but a short cut graph where a piece is no disk. */
+  BELTRAMI_CUT_MINIMAL = 0,
+  /* Also where the corner UVs of the surface part: its charts stay what they are. */
+  BELTRAMI_CUT_ISLANDS = 1
+};
+
+/* Whether vertices at one place are one. */
+enum {
+  BELTRAMI_WELD_FORCE_SIGNED_ = -1,
+  /* Yes; but a surface that is one disk as it stands stays so. */
+  BELTRAMI_WELD_AUTO = 0,
+  BELTRAMI_WELD_ON = 1,
+  BELTRAMI_WELD_OFF = 2
 };
 
 enum {
@@ -227,6 +253,13 @@ enum {
   BELTRAMI_TYPE_CHOICE = 2 /* beltrami_set_int with one of the named values */
 };
 
+/* What an option is for. */
+enum {
+  BELTRAMI_CALL_FORCE_SIGNED_ = -1,
+  BELTRAMI_CALL_RUN = 1,   /* beltrami_run */
+  BELTRAMI_CALL_UNWRAP = 2 /* beltrami_unwrap */
+};
+
 typedef struct beltrami_option_info {
   uint32_t struct_size;
   int32_t key;      /* BELTRAMI_OPTION_ */
@@ -237,6 +270,8 @@ typedef struct beltrami_option_info {
   double default_value;
   const char* name;    /* "coarse-faces": the flag of the program, static */
   const char* summary; /* one sentence, static */
+  int32_t calls;       /* sum of the BELTRAMI_CALL_ numbers of those that take it */
+  int32_t reserved_2;  /* 0 */
 } beltrami_option_info;
 
 /* Key of the option with this name ("coarse-faces"); -1 for NULL and unknown names. Cannot fail. */
@@ -449,6 +484,195 @@ BELTRAMI_API int32_t beltrami_stage_count(const beltrami_context* context);
  * INVALID_ARGUMENT (also for an index that is none). */
 BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index,
                                                 beltrami_stage* out);
+
+/* ---- Atlases: any surface --------------------------------------------------------------- */
+
+/* Polygons in the caller's memory: any number of components, with holes and handles or without,
+ * closed or open, of any quality. Nothing is refused but indices out of range, numbers that are not
+ * finite, and surfaces without any area: what is not manifold is parted, faces that disagree are
+ * turned, and every corner gets its UV. A corner is one vertex of one face; corners are counted
+ * from 0, face after face. Buffers said to be optional are left out by data NULL. */
+typedef struct beltrami_surface {
+  uint32_t struct_size;
+  uint32_t flags;              /* 0 */
+  uint64_t vertex_count;       /* at most 2^31 - 1 */
+  uint64_t face_count;         /* at most 700,000,000 triangles, polygons counted by theirs */
+  uint64_t corner_count;       /* of all faces; 0 where all are triangles */
+  beltrami_buffer positions;   /* vertex_count items of 3: F32 or F64, in any unit of length */
+  beltrami_buffer indices;     /* the vertex of each corner, U32 or U64: face_count items of 3
+                                * where face_sizes is left out, else corner_count items of 1 */
+  beltrami_buffer face_sizes;  /* optional: face_count items of 1, U32 or U64: corners, 3 or more */
+  beltrami_buffer corner_uvs;  /* optional: an item of 2 per corner, F32 or F64 */
+  beltrami_buffer face_labels; /* optional: face_count items of 1, U32 or U64: materials, groups;
+                                * seams run where they differ */
+  beltrami_buffer densities;   /* optional: face_count items of 1, F32 or F64, above 0: how much
+                                * larger the face is to be in the plane. A chart has the mean */
+  beltrami_buffer seams;       /* optional: seam_count items of 2, U32 or U64: edges to cut, by
+                                * their vertices; pairs that are no edge are ignored */
+  uint64_t seam_count;
+  const int32_t* cancel; /* as in beltrami_mesh */
+} beltrami_surface;
+
+/* Cuts polygons into triangles as every function below does: by ears, the best-shaped first. Writes
+ * items of 3 corners, n - 2 for a face of n corners, those of one face after another: `type` U32 or
+ * U64, `stride` bytes apart (0: packed). `repeating`: NULL or where to put the first face that
+ * names a vertex twice, or that cannot be cut without repeating an edge, or BELTRAMI_NO_ELEMENT.
+ * Errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, CANCELLED, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surface, void* out,
+                                                  int32_t type, uint64_t stride,
+                                                  uint64_t* repeating);
+
+/* Cuts a surface into charts that are disks, flattens each with the options of beltrami_run (but
+ * for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
+ * surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
+ * earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
+ * NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which)
+ * or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE,
+ * ZERO_AREA, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. */
+BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
+                                             const beltrami_surface* surface,
+                                             beltrami_progress progress, void* user);
+
+/* What was made of a surface. Triangles are those of beltrami_triangulate, faces the input's. */
+typedef struct beltrami_atlas {
+  uint32_t struct_size;
+  beltrami_status status; /* what beltrami_unwrap returned */
+  uint64_t vertices;      /* of the input */
+  uint64_t faces;
+  uint64_t corners;
+  uint64_t triangles;
+  uint64_t charts;
+  uint64_t uv_vertices;        /* what a vertex buffer needs: vertices, split along the seams */
+  uint64_t unused_vertices;    /* that no face names */
+  uint64_t welded_vertices;    /* that count as one with a vertex before them */
+  uint64_t repeated_faces;     /* triangles that name a vertex twice: each gets a point */
+  uint64_t faces_without_area; /* others without area (of the largest triangle, or the square of
+                                * their longest edge, 1e-14): each gets a point */
+  uint64_t copies;             /* triangles with the vertices of one before them: each lies in a
+                                * layer of its own, or shares the UVs of the first */
+  uint64_t crowded_edges;      /* of more than two triangles, which part there */
+  uint64_t one_sided_edges;    /* where the sides of a one-sided surface part */
+  uint64_t split_vertices;     /* where fans of faces met in one point only */
+  uint64_t reversed_faces;     /* triangles turned over to agree with most of their component */
+  uint64_t components;
+  uint64_t closed_components; /* without a boundary */
+  uint64_t holes;             /* boundaries but for the first of each component */
+  uint64_t filled_holes;      /* boundaries that cost no seam */
+  uint64_t left_out;          /* triangles that no energy counts: flipped, or without area */
+  double area;                /* of the surface, in its unit squared */
+  double seam_length;         /* on the surface, each seam once, no open border */
+  double utilisation;         /* area of the UVs over that of their bounding box */
+  double symmetric_dirichlet; /* mean over the area, at one scale for all: >= 2 */
+  double p99;                 /* exceeded on 1% of the area at most */
+  double max;
+  double seconds;             /* wall time of the run */
+  double cpu_seconds;         /* of the whole process during the run */
+  uint64_t peak_memory_bytes; /* of the whole process so far */
+} beltrami_atlas;
+
+/* A chart: a connected piece of the surface. */
+typedef struct beltrami_chart {
+  uint32_t struct_size;
+  beltrami_status status; /* OK, NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32 */
+  beltrami_status error;  /* why it has no map but one point, e.g. SOLVER; else OK */
+  int32_t reserved;       /* 0 */
+  uint64_t triangles;
+  uint64_t first_face;        /* of the input, the least */
+  double area;                /* on the surface, in its unit squared */
+  double density;             /* mean of its faces' densities; 1 without */
+  double symmetric_dirichlet; /* as of the atlas */
+  double max;
+  double box[4]; /* of its UVs: least u, least v, greatest u, greatest v */
+} beltrami_chart;
+
+/* The exact verdict on an atlas: every triangle positive, no two with a common inner point, in one
+ * chart or in two. Signs are decided by exact predicates on the very floats given. */
+typedef struct beltrami_atlas_certificate {
+  uint32_t struct_size;
+  int32_t injective; /* 1 or 0 */
+  uint64_t positive; /* triangles of positive, negative, zero area in UV */
+  uint64_t negative;
+  uint64_t degenerate;
+  uint64_t excepted;        /* not judged: without area on the surface, or sharing UVs */
+  uint64_t mirrored_charts; /* all of whose triangles were negative, taken as their mirror images */
+  uint64_t mirrored_faces;  /* triangles in them */
+  uint64_t overlaps;        /* pairs of triangles that overlap, one at least at a seam or border:
+                             * all of them while they are few, else at least so many */
+  uint64_t first_overlap[2];  /* two faces that overlap, or BELTRAMI_NO_ELEMENT */
+  uint64_t first_bad_face;    /* a face that is not positive, or BELTRAMI_NO_ELEMENT */
+  uint64_t touching_places;   /* where borders touch, which is allowed */
+  uint64_t error_element;     /* the element of an error status, or BELTRAMI_NO_ELEMENT */
+  int32_t error_element_kind; /* BELTRAMI_ELEMENT_ */
+  int32_t reserved;           /* 0 */
+} beltrami_atlas_certificate;
+
+/* The functions below fail with INVALID_STATE before the first beltrami_unwrap with a result, and
+ * with INVALID_ARGUMENT for NULL, an unset struct_size, an index out of range, or an odd type or
+ * stride. */
+
+/* Counts, energy and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_atlas(beltrami_context* context, beltrami_atlas* out);
+
+/* Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_chart(beltrami_context* context, uint64_t index,
+                                                beltrami_chart* out);
+
+/* The certificate of the UVs in F64, or with `type` BELTRAMI_F32 of those in F32. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_atlas_certificate(beltrami_context* context, int32_t type,
+                                                            beltrami_atlas_certificate* out);
+
+/* Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes from one corner to the next (0:
+ * packed). F32 is rounded to nearest. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_corner_uvs(beltrami_context* context, void* out,
+                                                     int32_t type, uint64_t stride);
+
+/* Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
+ * buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_corner_uv_vertices(beltrami_context* context, void* out,
+                                                             int32_t type, uint64_t stride);
+
+/* Writes the (u, v) of each UV vertex: `type` F32 or F64. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_uv_vertices(beltrami_context* context, void* out,
+                                                      int32_t type, uint64_t stride);
+
+/* Writes the input vertex that each UV vertex is a copy of: `type` U32 or U64. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_uv_vertex_origins(beltrami_context* context, void* out,
+                                                            int32_t type, uint64_t stride);
+
+/* Writes the chart of each face, all bits set for a face without area: `type` U32 or U64. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_face_charts(beltrami_context* context, void* out,
+                                                      int32_t type, uint64_t stride);
+
+/* Writes the triangles that were computed on, as items of 3 corners in the orientation in which
+ * they are positive: `type` U32 or U64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_triangles(beltrami_context* context, void* out,
+                                                    int32_t type, uint64_t stride);
+
+/* Number of stages of the last beltrami_unwrap; 0 before it. Cannot fail. */
+BELTRAMI_API int32_t beltrami_atlas_stage_count(const beltrami_context* context);
+
+/* Statistics of stage `index` of beltrami_unwrap, in the order in which they ran. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_atlas_stage(beltrami_context* context, int32_t index,
+                                                      beltrami_stage* out);
+
+/* Judges the corner_uvs of a surface, from anywhere: its charts are the triangles joined by edges
+ * with the same UVs on both sides. Triangles without area on the surface are not judged, and
+ * triangles that disagree in orientation with their chart are turned over, for a winding that
+ * changes is no fold. `allow_mirrored`: 1 takes charts that are negative as a whole for their
+ * mirror images. `pairs`: NULL or room for `capacity` pairs of faces that overlap; those that are
+ * not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE. Errors: INVALID_ARGUMENT,
+ * EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, CANCELLED, OUT_OF_MEMORY, with out->error_element set. */
+BELTRAMI_API beltrami_status beltrami_check_atlas(const beltrami_surface* surface,
+                                                  int32_t allow_mirrored,
+                                                  beltrami_atlas_certificate* out, uint64_t* pairs,
+                                                  uint64_t capacity);
 
 /* ---- Checks without a context ----------------------------------------------------------- */
 /* They judge the caller's own arrays, keep nothing and need no run; `mesh->cancel` ends them.

@@ -12,6 +12,8 @@ MethodChoice = Literal["beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation
 EnergyChoice = Literal["symmetric-dirichlet", "symmetric-arap"]
 FlattenChoice = Literal["metric", "dirichlet", "gif", "flim", "bff"]
 InjectivityChoice = Literal["auto", "global", "local"]
+CutChoice = Literal["minimal", "islands"]
+WeldChoice = Literal["auto", "on", "off"]
 
 
 class Options(TypedDict, total=False):
@@ -32,6 +34,12 @@ class Options(TypedDict, total=False):
     float32: bool
     delaunay: bool
     memory_limit: int
+    cut: CutChoice
+    hard_angle: float
+    weld: WeldChoice
+    weld_distance: float
+    fill_holes: float
+    share_copies: bool
 
 
 @dataclass(frozen=True)

@@ -151,59 +151,92 @@ pub const BELTRAMI_OPTION_FLOAT32: _bindgen_ty_3 = 12;
 pub const BELTRAMI_OPTION_DELAUNAY: _bindgen_ty_3 = 13;
 /// int: bytes that a run is to stay within; 0: any
 pub const BELTRAMI_OPTION_MEMORY_LIMIT: _bindgen_ty_3 = 14;
+/// choice: BELTRAMI_CUT_
+pub const BELTRAMI_OPTION_CUT: _bindgen_ty_3 = 15;
+/// float: degrees; sharper edges are seams; 180: none
+pub const BELTRAMI_OPTION_HARD_ANGLE: _bindgen_ty_3 = 16;
+/// choice: BELTRAMI_WELD_
+pub const BELTRAMI_OPTION_WELD: _bindgen_ty_3 = 17;
+/// float: welds vertices this close, in the mesh's unit
+pub const BELTRAMI_OPTION_WELD_DISTANCE: _bindgen_ty_3 = 18;
+/// float: longest boundary of a hole that costs no seam
+pub const BELTRAMI_OPTION_FILL_HOLES: _bindgen_ty_3 = 19;
+/// int: 1 gives copies of a face the UVs of the first
+pub const BELTRAMI_OPTION_SHARE_COPIES: _bindgen_ty_3 = 20;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_4 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_4 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_4 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_4 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_4 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_4 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_4 = 5;
+pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
+/// Nothing but a short cut graph where a piece is no disk.
+pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_4 = 0;
+/// Also where the corner UVs of the surface part: its charts stay what they are.
+pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_4 = 1;
+/// What is cut beside the seams that come with a surface.
 pub type _bindgen_ty_4 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_5 = -1;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_5 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_5 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_5 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_5 = 2;
+/// Whether vertices at one place are one.
+pub type _bindgen_ty_5 = ::core::ffi::c_int;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_6 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_6 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_6 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_6 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_6 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_6 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_6 = 5;
+pub type _bindgen_ty_6 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_7 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_5 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_7 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_5 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_7 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_5 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_7 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_5 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_7 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_5 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_7 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_5 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_6 = -1;
-/// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_6 = 0;
-/// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_6 = 1;
-/// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_6 = 2;
-/// What the optimisation sees to. The certificate always judges global injectivity.
-pub type _bindgen_ty_6 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_7 = -1;
-/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_7 = 0;
-/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_7 = 1;
 pub type _bindgen_ty_7 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_8 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_8 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_8 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_8 = 2;
-/// How an option's value is given.
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_8 = -1;
+/// Global, but for the method CM: that is left as the literature has it, the reference.
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_8 = 0;
+/// No flips, and no part of the boundary may cross another.
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_8 = 1;
+/// No flips; the boundary may overlap itself, at a slightly lower energy.
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_8 = 2;
+/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_8 = ::core::ffi::c_int;
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_9 = -1;
+/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_9 = 0;
+/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_9 = 1;
+pub type _bindgen_ty_9 = ::core::ffi::c_int;
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_10 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_10 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_10 = 2;
+/// How an option's value is given.
+pub type _bindgen_ty_10 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_11 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_11 = 2;
+/// What an option is for.
+pub type _bindgen_ty_11 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -222,13 +255,17 @@ pub struct beltrami_option_info {
     pub name: *const ::core::ffi::c_char,
     /// one sentence, static
     pub summary: *const ::core::ffi::c_char,
+    /// sum of the BELTRAMI_CALL_ numbers of those that take it
+    pub calls: i32,
+    /// 0
+    pub reserved_2: i32,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
     [
         "Size of beltrami_option_info",
-    ][::core::mem::size_of::<beltrami_option_info>() - 56usize];
+    ][::core::mem::size_of::<beltrami_option_info>() - 64usize];
     [
         "Alignment of beltrami_option_info",
     ][::core::mem::align_of::<beltrami_option_info>() - 8usize];
@@ -259,6 +296,12 @@ const _: () = {
     [
         "Offset of field: beltrami_option_info::summary",
     ][::core::mem::offset_of!(beltrami_option_info, summary) - 48usize];
+    [
+        "Offset of field: beltrami_option_info::calls",
+    ][::core::mem::offset_of!(beltrami_option_info, calls) - 56usize];
+    [
+        "Offset of field: beltrami_option_info::reserved_2",
+    ][::core::mem::offset_of!(beltrami_option_info, reserved_2) - 60usize];
 };
 impl Default for beltrami_option_info {
     fn default() -> Self {
@@ -303,13 +346,13 @@ extern "C" {
         value: f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_9 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_9 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_9 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_9 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_9 = 3;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_12 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_12 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_12 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_12 = 3;
 /// Element types of buffers.
-pub type _bindgen_ty_9 = ::core::ffi::c_int;
+pub type _bindgen_ty_12 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -827,6 +870,562 @@ extern "C" {
         context: *mut beltrami_context,
         index: i32,
         out: *mut beltrami_stage,
+    ) -> beltrami_status;
+}
+/** Polygons in the caller's memory: any number of components, with holes and handles or without,
+ closed or open, of any quality. Nothing is refused but indices out of range, numbers that are not
+ finite, and surfaces without any area: what is not manifold is parted, faces that disagree are
+ turned, and every corner gets its UV. A corner is one vertex of one face; corners are counted
+ from 0, face after face. Buffers said to be optional are left out by data NULL.*/
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_surface {
+    pub struct_size: u32,
+    /// 0
+    pub flags: u32,
+    /// at most 2^31 - 1
+    pub vertex_count: u64,
+    /// at most 700,000,000 triangles, polygons counted by theirs
+    pub face_count: u64,
+    /// of all faces; 0 where all are triangles
+    pub corner_count: u64,
+    /// vertex_count items of 3: F32 or F64, in any unit of length
+    pub positions: beltrami_buffer,
+    /** the vertex of each corner, U32 or U64: face_count items of 3
+ where face_sizes is left out, else corner_count items of 1*/
+    pub indices: beltrami_buffer,
+    /// optional: face_count items of 1, U32 or U64: corners, 3 or more
+    pub face_sizes: beltrami_buffer,
+    /// optional: an item of 2 per corner, F32 or F64
+    pub corner_uvs: beltrami_buffer,
+    /** optional: face_count items of 1, U32 or U64: materials, groups;
+ seams run where they differ*/
+    pub face_labels: beltrami_buffer,
+    /** optional: face_count items of 1, F32 or F64, above 0: how much
+ larger the face is to be in the plane. A chart has the mean*/
+    pub densities: beltrami_buffer,
+    /** optional: seam_count items of 2, U32 or U64: edges to cut, by
+ their vertices; pairs that are no edge are ignored*/
+    pub seams: beltrami_buffer,
+    pub seam_count: u64,
+    /// as in beltrami_mesh
+    pub cancel: *const i32,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 216usize];
+    [
+        "Alignment of beltrami_surface",
+    ][::core::mem::align_of::<beltrami_surface>() - 8usize];
+    [
+        "Offset of field: beltrami_surface::struct_size",
+    ][::core::mem::offset_of!(beltrami_surface, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_surface::flags",
+    ][::core::mem::offset_of!(beltrami_surface, flags) - 4usize];
+    [
+        "Offset of field: beltrami_surface::vertex_count",
+    ][::core::mem::offset_of!(beltrami_surface, vertex_count) - 8usize];
+    [
+        "Offset of field: beltrami_surface::face_count",
+    ][::core::mem::offset_of!(beltrami_surface, face_count) - 16usize];
+    [
+        "Offset of field: beltrami_surface::corner_count",
+    ][::core::mem::offset_of!(beltrami_surface, corner_count) - 24usize];
+    [
+        "Offset of field: beltrami_surface::positions",
+    ][::core::mem::offset_of!(beltrami_surface, positions) - 32usize];
+    [
+        "Offset of field: beltrami_surface::indices",
+    ][::core::mem::offset_of!(beltrami_surface, indices) - 56usize];
+    [
+        "Offset of field: beltrami_surface::face_sizes",
+    ][::core::mem::offset_of!(beltrami_surface, face_sizes) - 80usize];
+    [
+        "Offset of field: beltrami_surface::corner_uvs",
+    ][::core::mem::offset_of!(beltrami_surface, corner_uvs) - 104usize];
+    [
+        "Offset of field: beltrami_surface::face_labels",
+    ][::core::mem::offset_of!(beltrami_surface, face_labels) - 128usize];
+    [
+        "Offset of field: beltrami_surface::densities",
+    ][::core::mem::offset_of!(beltrami_surface, densities) - 152usize];
+    [
+        "Offset of field: beltrami_surface::seams",
+    ][::core::mem::offset_of!(beltrami_surface, seams) - 176usize];
+    [
+        "Offset of field: beltrami_surface::seam_count",
+    ][::core::mem::offset_of!(beltrami_surface, seam_count) - 200usize];
+    [
+        "Offset of field: beltrami_surface::cancel",
+    ][::core::mem::offset_of!(beltrami_surface, cancel) - 208usize];
+};
+impl Default for beltrami_surface {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+extern "C" {
+    /** Cuts polygons into triangles as every function below does: by ears, the best-shaped first. Writes
+ items of 3 corners, n - 2 for a face of n corners, those of one face after another: `type` U32 or
+ U64, `stride` bytes apart (0: packed). `repeating`: NULL or where to put the first face that
+ names a vertex twice, or that cannot be cut without repeating an edge, or BELTRAMI_NO_ELEMENT.
+ Errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, CANCELLED, OUT_OF_MEMORY.*/
+    pub fn beltrami_triangulate(
+        surface: *const beltrami_surface,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+        repeating: *mut u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Cuts a surface into charts that are disks, flattens each with the options of beltrami_run (but
+ for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
+ surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
+ earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
+ NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which)
+ or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE,
+ ZERO_AREA, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL.*/
+    pub fn beltrami_unwrap(
+        context: *mut beltrami_context,
+        surface: *const beltrami_surface,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+/// What was made of a surface. Triangles are those of beltrami_triangulate, faces the input's.
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_atlas {
+    pub struct_size: u32,
+    /// what beltrami_unwrap returned
+    pub status: beltrami_status,
+    /// of the input
+    pub vertices: u64,
+    pub faces: u64,
+    pub corners: u64,
+    pub triangles: u64,
+    pub charts: u64,
+    /// what a vertex buffer needs: vertices, split along the seams
+    pub uv_vertices: u64,
+    /// that no face names
+    pub unused_vertices: u64,
+    /// that count as one with a vertex before them
+    pub welded_vertices: u64,
+    /// triangles that name a vertex twice: each gets a point
+    pub repeated_faces: u64,
+    /** others without area (of the largest triangle, or the square of
+ their longest edge, 1e-14): each gets a point*/
+    pub faces_without_area: u64,
+    /** triangles with the vertices of one before them: each lies in a
+ layer of its own, or shares the UVs of the first*/
+    pub copies: u64,
+    /// of more than two triangles, which part there
+    pub crowded_edges: u64,
+    /// where the sides of a one-sided surface part
+    pub one_sided_edges: u64,
+    /// where fans of faces met in one point only
+    pub split_vertices: u64,
+    /// triangles turned over to agree with most of their component
+    pub reversed_faces: u64,
+    pub components: u64,
+    /// without a boundary
+    pub closed_components: u64,
+    /// boundaries but for the first of each component
+    pub holes: u64,
+    /// boundaries that cost no seam
+    pub filled_holes: u64,
+    /// triangles that no energy counts: flipped, or without area
+    pub left_out: u64,
+    /// of the surface, in its unit squared
+    pub area: f64,
+    /// on the surface, each seam once, no open border
+    pub seam_length: f64,
+    /// area of the UVs over that of their bounding box
+    pub utilisation: f64,
+    /// mean over the area, at one scale for all: >= 2
+    pub symmetric_dirichlet: f64,
+    /// exceeded on 1% of the area at most
+    pub p99: f64,
+    pub max: f64,
+    /// wall time of the run
+    pub seconds: f64,
+    /// of the whole process during the run
+    pub cpu_seconds: f64,
+    /// of the whole process so far
+    pub peak_memory_bytes: u64,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 240usize];
+    ["Alignment of beltrami_atlas"][::core::mem::align_of::<beltrami_atlas>() - 8usize];
+    [
+        "Offset of field: beltrami_atlas::struct_size",
+    ][::core::mem::offset_of!(beltrami_atlas, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_atlas::status",
+    ][::core::mem::offset_of!(beltrami_atlas, status) - 4usize];
+    [
+        "Offset of field: beltrami_atlas::vertices",
+    ][::core::mem::offset_of!(beltrami_atlas, vertices) - 8usize];
+    [
+        "Offset of field: beltrami_atlas::faces",
+    ][::core::mem::offset_of!(beltrami_atlas, faces) - 16usize];
+    [
+        "Offset of field: beltrami_atlas::corners",
+    ][::core::mem::offset_of!(beltrami_atlas, corners) - 24usize];
+    [
+        "Offset of field: beltrami_atlas::triangles",
+    ][::core::mem::offset_of!(beltrami_atlas, triangles) - 32usize];
+    [
+        "Offset of field: beltrami_atlas::charts",
+    ][::core::mem::offset_of!(beltrami_atlas, charts) - 40usize];
+    [
+        "Offset of field: beltrami_atlas::uv_vertices",
+    ][::core::mem::offset_of!(beltrami_atlas, uv_vertices) - 48usize];
+    [
+        "Offset of field: beltrami_atlas::unused_vertices",
+    ][::core::mem::offset_of!(beltrami_atlas, unused_vertices) - 56usize];
+    [
+        "Offset of field: beltrami_atlas::welded_vertices",
+    ][::core::mem::offset_of!(beltrami_atlas, welded_vertices) - 64usize];
+    [
+        "Offset of field: beltrami_atlas::repeated_faces",
+    ][::core::mem::offset_of!(beltrami_atlas, repeated_faces) - 72usize];
+    [
+        "Offset of field: beltrami_atlas::faces_without_area",
+    ][::core::mem::offset_of!(beltrami_atlas, faces_without_area) - 80usize];
+    [
+        "Offset of field: beltrami_atlas::copies",
+    ][::core::mem::offset_of!(beltrami_atlas, copies) - 88usize];
+    [
+        "Offset of field: beltrami_atlas::crowded_edges",
+    ][::core::mem::offset_of!(beltrami_atlas, crowded_edges) - 96usize];
+    [
+        "Offset of field: beltrami_atlas::one_sided_edges",
+    ][::core::mem::offset_of!(beltrami_atlas, one_sided_edges) - 104usize];
+    [
+        "Offset of field: beltrami_atlas::split_vertices",
+    ][::core::mem::offset_of!(beltrami_atlas, split_vertices) - 112usize];
+    [
+        "Offset of field: beltrami_atlas::reversed_faces",
+    ][::core::mem::offset_of!(beltrami_atlas, reversed_faces) - 120usize];
+    [
+        "Offset of field: beltrami_atlas::components",
+    ][::core::mem::offset_of!(beltrami_atlas, components) - 128usize];
+    [
+        "Offset of field: beltrami_atlas::closed_components",
+    ][::core::mem::offset_of!(beltrami_atlas, closed_components) - 136usize];
+    [
+        "Offset of field: beltrami_atlas::holes",
+    ][::core::mem::offset_of!(beltrami_atlas, holes) - 144usize];
+    [
+        "Offset of field: beltrami_atlas::filled_holes",
+    ][::core::mem::offset_of!(beltrami_atlas, filled_holes) - 152usize];
+    [
+        "Offset of field: beltrami_atlas::left_out",
+    ][::core::mem::offset_of!(beltrami_atlas, left_out) - 160usize];
+    [
+        "Offset of field: beltrami_atlas::area",
+    ][::core::mem::offset_of!(beltrami_atlas, area) - 168usize];
+    [
+        "Offset of field: beltrami_atlas::seam_length",
+    ][::core::mem::offset_of!(beltrami_atlas, seam_length) - 176usize];
+    [
+        "Offset of field: beltrami_atlas::utilisation",
+    ][::core::mem::offset_of!(beltrami_atlas, utilisation) - 184usize];
+    [
+        "Offset of field: beltrami_atlas::symmetric_dirichlet",
+    ][::core::mem::offset_of!(beltrami_atlas, symmetric_dirichlet) - 192usize];
+    [
+        "Offset of field: beltrami_atlas::p99",
+    ][::core::mem::offset_of!(beltrami_atlas, p99) - 200usize];
+    [
+        "Offset of field: beltrami_atlas::max",
+    ][::core::mem::offset_of!(beltrami_atlas, max) - 208usize];
+    [
+        "Offset of field: beltrami_atlas::seconds",
+    ][::core::mem::offset_of!(beltrami_atlas, seconds) - 216usize];
+    [
+        "Offset of field: beltrami_atlas::cpu_seconds",
+    ][::core::mem::offset_of!(beltrami_atlas, cpu_seconds) - 224usize];
+    [
+        "Offset of field: beltrami_atlas::peak_memory_bytes",
+    ][::core::mem::offset_of!(beltrami_atlas, peak_memory_bytes) - 232usize];
+};
+/// A chart: a connected piece of the surface.
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_chart {
+    pub struct_size: u32,
+    /// OK, NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32
+    pub status: beltrami_status,
+    /// why it has no map but one point, e.g. SOLVER; else OK
+    pub error: beltrami_status,
+    /// 0
+    pub reserved: i32,
+    pub triangles: u64,
+    /// of the input, the least
+    pub first_face: u64,
+    /// on the surface, in its unit squared
+    pub area: f64,
+    /// mean of its faces' densities; 1 without
+    pub density: f64,
+    /// as of the atlas
+    pub symmetric_dirichlet: f64,
+    pub max: f64,
+    /// of its UVs: least u, least v, greatest u, greatest v
+    pub box_: [f64; 4usize],
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_chart"][::core::mem::size_of::<beltrami_chart>() - 96usize];
+    ["Alignment of beltrami_chart"][::core::mem::align_of::<beltrami_chart>() - 8usize];
+    [
+        "Offset of field: beltrami_chart::struct_size",
+    ][::core::mem::offset_of!(beltrami_chart, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_chart::status",
+    ][::core::mem::offset_of!(beltrami_chart, status) - 4usize];
+    [
+        "Offset of field: beltrami_chart::error",
+    ][::core::mem::offset_of!(beltrami_chart, error) - 8usize];
+    [
+        "Offset of field: beltrami_chart::reserved",
+    ][::core::mem::offset_of!(beltrami_chart, reserved) - 12usize];
+    [
+        "Offset of field: beltrami_chart::triangles",
+    ][::core::mem::offset_of!(beltrami_chart, triangles) - 16usize];
+    [
+        "Offset of field: beltrami_chart::first_face",
+    ][::core::mem::offset_of!(beltrami_chart, first_face) - 24usize];
+    [
+        "Offset of field: beltrami_chart::area",
+    ][::core::mem::offset_of!(beltrami_chart, area) - 32usize];
+    [
+        "Offset of field: beltrami_chart::density",
+    ][::core::mem::offset_of!(beltrami_chart, density) - 40usize];
+    [
+        "Offset of field: beltrami_chart::symmetric_dirichlet",
+    ][::core::mem::offset_of!(beltrami_chart, symmetric_dirichlet) - 48usize];
+    [
+        "Offset of field: beltrami_chart::max",
+    ][::core::mem::offset_of!(beltrami_chart, max) - 56usize];
+    [
+        "Offset of field: beltrami_chart::box_",
+    ][::core::mem::offset_of!(beltrami_chart, box_) - 64usize];
+};
+/** The exact verdict on an atlas: every triangle positive, no two with a common inner point, in one
+ chart or in two. Signs are decided by exact predicates on the very floats given.*/
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_atlas_certificate {
+    pub struct_size: u32,
+    /// 1 or 0
+    pub injective: i32,
+    /// triangles of positive, negative, zero area in UV
+    pub positive: u64,
+    pub negative: u64,
+    pub degenerate: u64,
+    /// not judged: without area on the surface, or sharing UVs
+    pub excepted: u64,
+    /// all of whose triangles were negative, taken as their mirror images
+    pub mirrored_charts: u64,
+    /// triangles in them
+    pub mirrored_faces: u64,
+    /** pairs of triangles that overlap, one at least at a seam or border:
+ all of them while they are few, else at least so many*/
+    pub overlaps: u64,
+    /// two faces that overlap, or BELTRAMI_NO_ELEMENT
+    pub first_overlap: [u64; 2usize],
+    /// a face that is not positive, or BELTRAMI_NO_ELEMENT
+    pub first_bad_face: u64,
+    /// where borders touch, which is allowed
+    pub touching_places: u64,
+    /// the element of an error status, or BELTRAMI_NO_ELEMENT
+    pub error_element: u64,
+    /// BELTRAMI_ELEMENT_
+    pub error_element_kind: i32,
+    /// 0
+    pub reserved: i32,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    [
+        "Size of beltrami_atlas_certificate",
+    ][::core::mem::size_of::<beltrami_atlas_certificate>() - 112usize];
+    [
+        "Alignment of beltrami_atlas_certificate",
+    ][::core::mem::align_of::<beltrami_atlas_certificate>() - 8usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::struct_size",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::injective",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, injective) - 4usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::positive",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, positive) - 8usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::negative",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, negative) - 16usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::degenerate",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, degenerate) - 24usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::excepted",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, excepted) - 32usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::mirrored_charts",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, mirrored_charts) - 40usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::mirrored_faces",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, mirrored_faces) - 48usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::overlaps",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, overlaps) - 56usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::first_overlap",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, first_overlap) - 64usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::first_bad_face",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, first_bad_face) - 80usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::touching_places",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, touching_places) - 88usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::error_element",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, error_element) - 96usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::error_element_kind",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, error_element_kind)
+        - 104usize];
+    [
+        "Offset of field: beltrami_atlas_certificate::reserved",
+    ][::core::mem::offset_of!(beltrami_atlas_certificate, reserved) - 108usize];
+};
+extern "C" {
+    /// Counts, energy and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.
+    pub fn beltrami_get_atlas(
+        context: *mut beltrami_context,
+        out: *mut beltrami_atlas,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_get_chart(
+        context: *mut beltrami_context,
+        index: u64,
+        out: *mut beltrami_chart,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** The certificate of the UVs in F64, or with `type` BELTRAMI_F32 of those in F32. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_atlas_certificate(
+        context: *mut beltrami_context,
+        type_: i32,
+        out: *mut beltrami_atlas_certificate,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes from one corner to the next (0:
+ packed). F32 is rounded to nearest. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_corner_uvs(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
+ buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_get_corner_uv_vertices(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the (u, v) of each UV vertex: `type` F32 or F64. Errors: INVALID_STATE,
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_get_uv_vertices(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the input vertex that each UV vertex is a copy of: `type` U32 or U64. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_uv_vertex_origins(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the chart of each face, all bits set for a face without area: `type` U32 or U64. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_face_charts(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the triangles that were computed on, as items of 3 corners in the orientation in which
+ they are positive: `type` U32 or U64. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_triangles(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /// Number of stages of the last beltrami_unwrap; 0 before it. Cannot fail.
+    pub fn beltrami_atlas_stage_count(context: *const beltrami_context) -> i32;
+}
+extern "C" {
+    /** Statistics of stage `index` of beltrami_unwrap, in the order in which they ran. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_atlas_stage(
+        context: *mut beltrami_context,
+        index: i32,
+        out: *mut beltrami_stage,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Judges the corner_uvs of a surface, from anywhere: its charts are the triangles joined by edges
+ with the same UVs on both sides. Triangles without area on the surface are not judged, and
+ triangles that disagree in orientation with their chart are turned over, for a winding that
+ changes is no fold. `allow_mirrored`: 1 takes charts that are negative as a whole for their
+ mirror images. `pairs`: NULL or room for `capacity` pairs of faces that overlap; those that are
+ not used become BELTRAMI_NO_ELEMENT. Returns OK or NOT_INJECTIVE. Errors: INVALID_ARGUMENT,
+ EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, CANCELLED, OUT_OF_MEMORY, with out->error_element set.*/
+    pub fn beltrami_check_atlas(
+        surface: *const beltrami_surface,
+        allow_mirrored: i32,
+        out: *mut beltrami_atlas_certificate,
+        pairs: *mut u64,
+        capacity: u64,
     ) -> beltrami_status;
 }
 extern "C" {

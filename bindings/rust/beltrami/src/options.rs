@@ -250,6 +250,10 @@ impl OptionInfo {
             OptionKind::Int => {
                 format!("give a whole number from {} to {}", self.minimum, self.maximum)
             }
+            // With an exponent where there would be hundreds of zeros.
+            OptionKind::Float if self.maximum > 1e15 => {
+                format!("give a number from {} to {:e}", self.minimum, self.maximum)
+            }
             OptionKind::Float => format!("give a number from {} to {}", self.minimum, self.maximum),
         }
     }

@@ -82,6 +82,31 @@ choice! {
     }
 }
 
+choice! {
+    /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
+    /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
+    /// opened). See [`Options::cut`].
+    Cut {
+        /// Nothing but a short cut graph where a piece is no disk.
+        Minimal = "minimal",
+        /// Also where the corner UVs of the surface part: its charts stay what they are.
+        Islands = "islands",
+    }
+}
+
+choice! {
+    /// Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
+    /// one disk as it stands stays so), on or off. See [`Options::weld`].
+    Weld {
+        /// Yes; but a surface that is one disk as it stands stays so.
+        Auto = "auto",
+        /// On.
+        On = "on",
+        /// Off.
+        Off = "off",
+    }
+}
+
 options! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
     /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
@@ -218,4 +243,58 @@ options! {
     memory_limit(u64) = 14 "memory-limit"
         "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it; 0 sets no limit."
         Int(&[]), 0..=100000000000000.0, default 0;
+
+    /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
+    /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
+    /// opened).
+    ///
+    /// Default: [`Minimal`](Cut::Minimal).
+    cut(Cut) = 15 "cut"
+        "Where seams go beside those that are given: minimal (a short cut graph where a piece is no disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is opened)."
+        Choice(Cut::NAMES), 0..=1, default 0;
+
+    /// Degrees between the normals of two faces above which the edge between them is a seam; 180
+    /// makes none.
+    ///
+    /// From 0 to 180.
+    ///
+    /// Default: 180.
+    hard_angle(f64) = 16 "hard-angle"
+        "Degrees between the normals of two faces above which the edge between them is a seam; 180 makes none."
+        Float(&[]), 0..=180, default 180;
+
+    /// Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
+    /// one disk as it stands stays so), on or off.
+    ///
+    /// Default: [`Auto`](Weld::Auto).
+    weld(Weld) = 17 "weld"
+        "Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is one disk as it stands stays so), on or off."
+        Choice(Weld::NAMES), 0..=2, default 0;
+
+    /// Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
+    ///
+    /// From 0 to 1e300.
+    ///
+    /// Default: 0.
+    weld_distance(f64) = 18 "weld-distance"
+        "Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place."
+        Float(&[]), 0..=1e300, default 0;
+
+    /// Holes whose boundary is no longer than this many roots of their component's area cost no
+    /// seam, larger ones are joined to one; 0 joins all.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: 0.5.
+    fill_holes(f64) = 19 "fill-holes"
+        "Holes whose boundary is no longer than this many roots of their component's area cost no seam, larger ones are joined to one; 0 joins all."
+        Float(&[]), 0..=1000000000, default 0.5;
+
+    /// `true` gives copies of a face, as of double-sided surfaces, the UVs of the first instead of
+    /// a layer of their own.
+    ///
+    /// Default: `false`.
+    share_copies(bool) = 20 "share-copies"
+        "1 gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a layer of their own."
+        Switch(&[]), 0..=1, default 0;
 }
