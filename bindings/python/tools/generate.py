@@ -32,12 +32,18 @@ CLASSES = {
     "beltrami_energy": "Energy",
     "beltrami_result": "Report",
     "beltrami_stage": "Stage",
+    "beltrami_atlas": "AtlasReport",
+    "beltrami_chart": "Chart",
+    "beltrami_atlas_certificate": "AtlasCertificate",
 }
 SUMMARIES = {
     "Certificate": "The exact verdict on a map; true where nothing bad was found.",
     "Energy": "Distortion energies of a map: means over the faces weighted by area in space.",
     "Report": "Counts, area and cost of a run.",
     "Stage": "What one stage of a run took.",
+    "AtlasReport": "What was made of a surface: counts, energy and cost.",
+    "Chart": "A chart of an atlas: a connected piece of the surface.",
+    "AtlasCertificate": "The exact verdict on an atlas; true where it is injective.",
 }
 METHODS = {
     "Certificate": '''
@@ -45,15 +51,56 @@ METHODS = {
         """Whether no face is flipped or without area, and the boundary nowhere crosses itself."""
         return self.negative == self.degenerate == self.boundary_crossings == 0
 ''',
+    "AtlasCertificate": '''
+    def __bool__(self) -> bool:
+        """Whether the atlas is injective."""
+        return self.injective
+''',
 }
-# Fields that serve the C interface only; the status is the result's own.
-LEFT_OUT = {"struct_size", "reserved", "status", "error_element", "error_element_kind"}
+# Fields that serve the C interface only; the status is the result's own, but for that of a chart.
+LEFT_OUT = {"struct_size", "reserved", "error_element", "error_element_kind"}
+WITH_STATUS = {"beltrami_chart"}
 # Comments that speak of C.
 COMMENTS = {
     "1 or 0": "whether the map is proven to be injective",
+    "OK, NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32": (
+        '"BELTRAMI_OK", "BELTRAMI_NOT_CONVERGED", "BELTRAMI_NOT_INJECTIVE" or '
+        '"BELTRAMI_NOT_INJECTIVE_FLOAT32"'
+    ),
+    "why it has no map but one point, e.g. SOLVER; else OK": (
+        'why it has no map but one point, e.g. "BELTRAMI_E_SOLVER"; else "BELTRAMI_OK"'
+    ),
     'static: "simplify", "coarse", "prolong", "flatten", "repair", ...': (
         '"simplify", "coarse", "prolong", "flatten", "repair", ...'
     ),
+}
+# What the header says by the fields before, or nowhere.
+WORDS = {
+    "AtlasReport": {
+        "corners": "of its faces",
+        "triangles": "of `triangulate`: what is computed on",
+        "charts": "pieces of the layout",
+        "unused_vertices": "vertices that no face names",
+        "welded_vertices": "vertices that count as one with a vertex before them",
+        "crowded_edges": "edges of more than two triangles, which part there",
+        "one_sided_edges": "edges where the sides of a one-sided surface part",
+        "split_vertices": "vertices where fans of faces met in one point only",
+        "components": "connected pieces of the surface",
+        "closed_components": "those without a boundary",
+        "symmetric_dirichlet": "mean energy over the area, at one scale for all: >= 2",
+        "p99": "energy that is exceeded on 1% of the area at most",
+        "max": "greatest energy of a triangle",
+    },
+    "Chart": {
+        "triangles": "of the surface",
+        "first_face": "the least face of the input",
+        "max": "greatest energy of a triangle",
+    },
+    "AtlasCertificate": {
+        "injective": "whether all triangles are positive, and no two overlap",
+        "excepted": "triangles not judged: without area on the surface, or sharing UVs",
+        "mirrored_charts": "charts that were negative as a whole, taken as their mirror images",
+    },
 }
 
 
@@ -67,6 +114,7 @@ class Option:
     range: str  # "" for switches and choices
     choices: list[str]
     summary: str
+    calls: int  # sum of the CALL_ numbers of those that take it
 
     @property
     def annotated(self) -> str:
@@ -88,10 +136,13 @@ class _OptionInfo(ctypes.Structure):
         ("default_value", ctypes.c_double),
         ("name", ctypes.c_char_p),
         ("summary", ctypes.c_char_p),
+        ("calls", ctypes.c_int32),
+        ("reserved_2", ctypes.c_int32),
     ]
 
 
 INT, FLOAT, CHOICE = range(3)  # BELTRAMI_TYPE_
+RUN, UNWRAP = 1, 2  # BELTRAMI_CALL_
 
 
 def read_options(library: Path) -> Iterator[Option]:
@@ -123,7 +174,7 @@ def _option(info: Any, choices: list[str]) -> Option:
         kind = "float" if info.type == FLOAT else "int"
         default = info.default_value if info.type == FLOAT else int(info.default_value)
         span = f"from {info.minimum:,.10g} to {info.maximum:,.10g}"
-    return Option(name, kind, default, span, choices, summary)
+    return Option(name, kind, default, span, choices, summary, info.calls)
 
 
 def _camel(name: str) -> str:
@@ -139,26 +190,28 @@ class Field:
     comment: str
 
 
-def read_fields(declaration: str) -> Iterator[Field]:
+def read_fields(declaration: str, left_out: set[str]) -> Iterator[Field]:
     """Yield the members of a struct that users see."""
     body = declaration[declaration.index("{") + 1 : declaration.rindex("}")]
-    for match in re.finditer(r"([\w ]+?[ *]+)(\w+)(\[2\])?;[ ]*(?:/\*(.*?)\*/)?", body, re.DOTALL):
-        c_type, name, pair, comment = match[1].strip(), match[2], match[3], match[4] or ""
-        comment = " ".join(comment.replace("BELTRAMI_NO_ELEMENT", "None").split())
+    member = r"([\w ]+?[ *]+)(\w+)(?:\[(\d)\])?;[ ]*(?:/\*(.*?)\*/)?"
+    for match in re.finditer(member, body, re.DOTALL):
+        c_type, name, items, comment = match[1].strip(), match[2], match[3], match[4] or ""
+        comment = re.sub(r"\n\s*\*", " ", comment).replace("BELTRAMI_NO_ELEMENT", "None")
+        comment = " ".join(comment.split())
         comment = COMMENTS.get(comment, comment)
-        if name not in LEFT_OUT:
-            yield Field(name, _python_type(c_type, name, bool(pair), comment), comment)
+        if name not in left_out:
+            yield Field(name, _python_type(c_type, name, int(items or 1), comment), comment)
 
 
-def _python_type(c_type: str, name: str, pair: bool, comment: str) -> str:
-    if "char" in c_type:
+def _python_type(c_type: str, name: str, items: int, comment: str) -> str:
+    if "char" in c_type or c_type == "beltrami_status":
         return "str"
     if c_type == "double":
-        return "float"
+        return "float" if items == 1 else f"tuple[{', '.join(['float'] * items)}]"
     if name == "injective":
         return "bool"
     element = "int | None" if "None" in comment else "int"
-    return "tuple[int, int] | None" if pair else element
+    return "tuple[int, int] | None" if items == 2 else element
 
 
 def wrapped(text: str, indent: str) -> str:
@@ -180,6 +233,8 @@ def sentence(text: str) -> str:
 
 def class_of(name: str, fields: list[Field]) -> str:
     """Return the source of the class for a struct."""
+    words = WORDS.get(name, {})
+    fields = [dataclasses.replace(f, comment=words.get(f.name, f.comment)) for f in fields]
     entries: list[list[Field]] = []
     for field in fields:  # a comment is about the uncommented members after it, too
         if field.comment or not entries:
@@ -212,22 +267,28 @@ def tables(options: list[Option], header: Any) -> str:
     """Return the source of ``_tables.py``."""
     declarations = {item.name: item.declaration for item in header.items}
     choices = [literal(option) for option in options if option.type.endswith("Choice")]
-    keywords = [f"    {option.name}: {option.type}" for option in options]
-    classes = [
-        class_of(name, list(read_fields(declarations[struct]))) for struct, name in CLASSES.items()
-    ]
+    classes = []
+    for struct, name in CLASSES.items():
+        left_out = LEFT_OUT if struct in WITH_STATUS else LEFT_OUT | {"status"}
+        classes.append(class_of(name, list(read_fields(declarations[struct], left_out))))
     return (
         '"""Options and results, from the C header and the library\'s table of options.\n\n'
         'Written by ``tools/generate.py``: change it there.\n"""\n\n'
         "from __future__ import annotations\n\n"
         "from dataclasses import dataclass\nfrom typing import Literal, TypedDict\n\n"
         + "\n".join(choices)
-        + "\n\n\nclass Options(TypedDict, total=False):\n"
-        '    """The options of a run by keyword, all of them optional."""\n\n'
-        + "\n".join(keywords)
         + "\n\n\n"
+        + keywords("Options", "The options of a run", options, RUN)
+        + keywords("UnwrapOptions", "The options of `unwrap`", options, UNWRAP)
         + "\n\n".join(classes)
     )
+
+
+def keywords(name: str, what: str, options: list[Option], call: int) -> str:
+    """Return the source of the type of the keywords of a call."""
+    lines = [f"    {option.name}: {option.type}\n" for option in options if option.calls & call]
+    head = f'class {name}(TypedDict, total=False):\n    """{what} by keyword, all of them optional."""'
+    return f"{head}\n\n{''.join(lines)}\n\n"
 
 
 def documentation(options: list[Option], indent: str) -> str:
@@ -248,8 +309,13 @@ MARKED = re.compile(r"^( *)# options: (\w+)\n.*?^\1# end of options\n", re.DOTAL
 SECTION = re.compile(r"^( *)Options\n\1-------\n.*?(?=\n\1[A-Z]\w+\n\1---|\1\"\"\")", re.M | re.S)
 
 
-def with_options(source: str, options: list[Option]) -> str:
-    """Return the source of a module with its places for options filled anew."""
+def with_options(source: str, of_all_calls: list[Option]) -> str:
+    """Return the source of a module with its places for options filled anew.
+
+    A module has the options of one call: with ``# call: unwrap`` of that, else of a run.
+    """
+    call = UNWRAP if "\n# call: unwrap\n" in source else RUN
+    options = [option for option in of_all_calls if option.calls & call]
     inside: dict[str, Callable[[Option], str]] = {
         "parameters": lambda option: option.annotated,
         "keywords": lambda option: f"{option.name}={option.name}",

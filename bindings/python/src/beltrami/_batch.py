@@ -100,12 +100,6 @@ def batch(
     float32: bool = False,
     delaunay: bool = False,
     memory_limit: int = 0,
-    cut: CutChoice = "minimal",
-    hard_angle: float = 180.0,
-    weld: WeldChoice = "auto",
-    weld_distance: float = 0.0,
-    fill_holes: float = 0.5,
-    share_copies: bool = False,
     # end of options
     suffix: str = ".obj",
     root: str | os.PathLike[str] | None = None,
@@ -195,25 +189,6 @@ def batch(
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
         it; 0 sets no limit. A number from 0 to 1e+14.
-    cut : {"minimal", "islands"}, default "minimal"
-        Where seams go beside those that are given: minimal (a short cut graph where a piece is no
-        disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-        opened).
-    hard_angle : float, default 180.0
-        Degrees between the normals of two faces above which the edge between them is a seam; 180
-        makes none. A number from 0 to 180.
-    weld : {"auto", "on", "off"}, default "auto"
-        Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
-        one disk as it stands stays so), on or off.
-    weld_distance : float, default 0.0
-        Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
-        A number from 0 to 1e+300.
-    fill_holes : float, default 0.5
-        Holes whose boundary is no longer than this many roots of their component's area cost no
-        seam, larger ones are joined to one; 0 joins all. A number from 0 to 1,000,000,000.
-    share_copies : bool, default False
-        True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
-        layer of their own.
 
     Returns
     -------
@@ -250,12 +225,6 @@ def batch(
         "float32": float32,
         "delaunay": delaunay,
         "memory_limit": memory_limit,
-        "cut": cut,
-        "hard_angle": hard_angle,
-        "weld": weld,
-        "weld_distance": weld_distance,
-        "fill_holes": fill_holes,
-        "share_copies": share_copies,
         # end of options
     }
     options = _library.Context().set_options(given)  # refuses what is out of range

@@ -34,6 +34,25 @@ class Options(TypedDict, total=False):
     float32: bool
     delaunay: bool
     memory_limit: int
+
+
+class UnwrapOptions(TypedDict, total=False):
+    """The options of `unwrap` by keyword, all of them optional."""
+
+    method: MethodChoice
+    energy: EnergyChoice
+    coarse_faces: int
+    tolerance: float
+    max_iterations: int
+    threads: int
+    unit_square: bool
+    flatten: FlattenChoice
+    injectivity: InjectivityChoice
+    refine: bool
+    refine_iterations: int
+    time_limit: float
+    float32: bool
+    memory_limit: int
     cut: CutChoice
     hard_angle: float
     weld: WeldChoice
@@ -53,8 +72,8 @@ class Certificate:
     positive, negative, degenerate : int
         Faces of positive, negative, zero area in UV.
     boundary_crossings : int
-        Pairs of boundary edges that meet where they should not: all of * them while they are few,
-        else at least so many (it takes and * lists no more than about n log n of n edges).
+        Pairs of boundary edges that meet where they should not: all of them while they are few,
+        else at least so many (it takes and lists no more than about n log n of n edges).
     first_bad_face : int | None
         A face that is not positive, or None.
     first_crossing : tuple[int, int] | None
@@ -188,3 +207,182 @@ class Stage:
     seconds: float
     cpu_seconds: float
     name: str
+
+
+@dataclass(frozen=True)
+class AtlasReport:
+    """What was made of a surface: counts, energy and cost.
+
+    Attributes
+    ----------
+    vertices, faces : int
+        Of the input.
+    corners : int
+        Of its faces.
+    triangles : int
+        Of `triangulate`: what is computed on.
+    charts : int
+        Pieces of the layout.
+    uv_vertices : int
+        What a vertex buffer needs: vertices, split along the seams.
+    unused_vertices : int
+        Vertices that no face names.
+    welded_vertices : int
+        Vertices that count as one with a vertex before them.
+    repeated_faces : int
+        Triangles that name a vertex twice: each gets a point.
+    faces_without_area : int
+        Others without area (of the largest triangle, or the square of their longest edge, 1e-14):
+        each gets a point.
+    copies : int
+        Triangles with the vertices of one before them: each lies in a layer of its own, or shares
+        the UVs of the first.
+    crowded_edges : int
+        Edges of more than two triangles, which part there.
+    one_sided_edges : int
+        Edges where the sides of a one-sided surface part.
+    split_vertices : int
+        Vertices where fans of faces met in one point only.
+    reversed_faces : int
+        Triangles turned over to agree with most of their component.
+    components : int
+        Connected pieces of the surface.
+    closed_components : int
+        Those without a boundary.
+    holes : int
+        Boundaries but for the first of each component.
+    filled_holes : int
+        Boundaries that cost no seam.
+    left_out : int
+        Triangles that no energy counts: flipped, or without area.
+    area : float
+        Of the surface, in its unit squared.
+    seam_length : float
+        On the surface, each seam once, no open border.
+    utilisation : float
+        Area of the UVs over that of their bounding box.
+    symmetric_dirichlet : float
+        Mean energy over the area, at one scale for all: >= 2.
+    p99 : float
+        Energy that is exceeded on 1% of the area at most.
+    max : float
+        Greatest energy of a triangle.
+    seconds : float
+        Wall time of the run.
+    cpu_seconds : float
+        Of the whole process during the run.
+    peak_memory_bytes : int
+        Of the whole process so far.
+    """
+
+    vertices: int
+    faces: int
+    corners: int
+    triangles: int
+    charts: int
+    uv_vertices: int
+    unused_vertices: int
+    welded_vertices: int
+    repeated_faces: int
+    faces_without_area: int
+    copies: int
+    crowded_edges: int
+    one_sided_edges: int
+    split_vertices: int
+    reversed_faces: int
+    components: int
+    closed_components: int
+    holes: int
+    filled_holes: int
+    left_out: int
+    area: float
+    seam_length: float
+    utilisation: float
+    symmetric_dirichlet: float
+    p99: float
+    max: float
+    seconds: float
+    cpu_seconds: float
+    peak_memory_bytes: int
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart of an atlas: a connected piece of the surface.
+
+    Attributes
+    ----------
+    status : str
+        "BELTRAMI_OK", "BELTRAMI_NOT_CONVERGED", "BELTRAMI_NOT_INJECTIVE" or
+        "BELTRAMI_NOT_INJECTIVE_FLOAT32".
+    error : str
+        Why it has no map but one point, e.g. "BELTRAMI_E_SOLVER"; else "BELTRAMI_OK".
+    triangles : int
+        Of the surface.
+    first_face : int
+        The least face of the input.
+    area : float
+        On the surface, in its unit squared.
+    density : float
+        Mean of its faces' densities; 1 without.
+    symmetric_dirichlet : float
+        As of the atlas.
+    max : float
+        Greatest energy of a triangle.
+    box : tuple[float, float, float, float]
+        Of its UVs: least u, least v, greatest u, greatest v.
+    """
+
+    status: str
+    error: str
+    triangles: int
+    first_face: int
+    area: float
+    density: float
+    symmetric_dirichlet: float
+    max: float
+    box: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class AtlasCertificate:
+    """The exact verdict on an atlas; true where it is injective.
+
+    Attributes
+    ----------
+    injective : bool
+        Whether all triangles are positive, and no two overlap.
+    positive, negative, degenerate : int
+        Triangles of positive, negative, zero area in UV.
+    excepted : int
+        Triangles not judged: without area on the surface, or sharing UVs.
+    mirrored_charts : int
+        Charts that were negative as a whole, taken as their mirror images.
+    mirrored_faces : int
+        Triangles in them.
+    overlaps : int
+        Pairs of triangles that overlap, one at least at a seam or border: all of them while they
+        are few, else at least so many.
+    first_overlap : tuple[int, int] | None
+        Two faces that overlap, or None.
+    first_bad_face : int | None
+        A face that is not positive, or None.
+    touching_places : int
+        Where borders touch, which is allowed.
+    """
+
+    injective: bool
+    positive: int
+    negative: int
+    degenerate: int
+    excepted: int
+    mirrored_charts: int
+    mirrored_faces: int
+    overlaps: int
+    first_overlap: tuple[int, int] | None
+    first_bad_face: int | None
+    touching_places: int
+
+    def __bool__(self) -> bool:
+        """Whether the atlas is injective."""
+        return self.injective
