@@ -14,7 +14,7 @@ import pytest
 from conftest import grid, read_obj, write_obj
 
 import beltrami
-from beltrami import _batch, _program
+from beltrami import _jobs, _program
 
 
 @pytest.fixture
@@ -83,9 +83,40 @@ def test_what_changed_is_done_again(meshes, tmp_path):
     assert resumed(beltrami.batch(meshes, out)) == [False] * 4
 
 
+def test_any_mesh_is_unwrapped(meshes, tmp_path):
+    out = tmp_path / "atlases"
+    records = beltrami.unwrap_batch(meshes, out, hard_angle=60)
+    assert [record.injective for record in records] == [True] * 4
+    closed = records[3].report
+    assert closed["command"] == "unwrap"
+    assert closed["admitted"]["closed_components"] == 1
+    assert closed["options"]["hard-angle"] == 60
+    again = beltrami.unwrap_batch(meshes, out, hard_angle=60, threads=2)
+    assert resumed(again) == [True] * 4
+    again = beltrami.unwrap_batch(meshes, out, hard_angle=60, triangulate=True)
+    assert resumed(again) == [False] * 4
+    assert resumed(beltrami.batch(meshes, out)) == [False] * 4
+
+
+def test_an_atlas_is_cut_along_the_materials_of_a_file(tmp_path):
+    path = write_obj(tmp_path / "strip.obj", *grid(2))
+    lines = path.read_text().splitlines()
+    lines.insert(9 + 4, "usemtl stone")
+    path.write_text("\n".join(lines) + "\n")
+    plain, parted = (
+        beltrami.unwrap_batch([path], tmp_path / f"out{labels}", labels=labels)[0]
+        for labels in (None, "materials")
+    )
+    assert plain.report["charts"] == 1
+    assert parted.report["charts"] > 1
+    missing = beltrami.unwrap_batch([path], tmp_path / "outgroups", labels="groups")[0]
+    assert not missing.ok
+    assert "no groups" in missing.message
+
+
 def test_a_new_version_does_all_again(meshes, tmp_path, monkeypatch):
     beltrami.batch(meshes, tmp_path / "out")
-    monkeypatch.setattr(_batch._library, "version", lambda: "9.9.9")
+    monkeypatch.setattr(_jobs._library, "version", lambda: "9.9.9")
     assert resumed(beltrami.batch(meshes, tmp_path / "out")) == [False] * 4
 
 
@@ -286,6 +317,8 @@ def test_a_dask_cluster_does_the_same(cluster, meshes, tmp_path):
         assert here.read_bytes() == there.read_bytes()
     again = beltrami.batch(meshes, tmp_path / "dask", cluster.scheduler_address)
     assert resumed(again) == [True] * 4
+    atlases = beltrami.unwrap_batch(meshes, tmp_path / "atlases", cluster.scheduler_address)
+    assert [record.injective for record in atlases] == [True] * 4
 
 
 @dask_test

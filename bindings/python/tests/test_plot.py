@@ -57,6 +57,22 @@ def test_flipped_faces_are_red_and_on_top(hump):
     assert share(picture(heat), plot._BAD) > 0.003
 
 
+def test_an_atlas_shows_its_charts_in_colours_of_their_own():
+    vertices, faces = grid(4)
+    right = vertices[faces].mean(axis=1)[:, 0] > 0
+    unwrapped = beltrami.unwrap(vertices, faces, face_labels=right)
+    image = picture(plot.atlas(unwrapped, resolution=300))
+    shares = [share(image, colour) for colour in plot._CHARTS[:2]]
+    assert min(shares) > 0.3
+    assert share(image, plot._BAD) == 0
+    lines = plot.atlas(unwrapped, edges=False, resolution=99).collections[0]
+    assert len(lines.get_segments()) == 24
+    heat = plot.heat_map(*unwrapped.split(triangles=True), resolution=200)
+    assert share(picture(heat), plot._BAD) == 0
+    quads = beltrami.unwrap(np.eye(4, 3), [[0, 1, 2], [0, 2, 3, 1]])
+    assert share(picture(plot.atlas(quads, edges=False, resolution=300)), plot._CHARTS[0]) > 0.3
+
+
 def test_edges_are_drawn_where_faces_are_large():
     vertices, faces = grid(20)
     uv = vertices[:, :2]

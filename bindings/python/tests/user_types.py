@@ -25,10 +25,26 @@ def flatten(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> 
     return result.energy.symmetric_dirichlet
 
 
+def unwrap(vertices: npt.NDArray[np.float32], quads: npt.NDArray[np.int64]) -> float:
+    """Use atlases."""
+    atlas: beltrami.Atlas = beltrami.unwrap(vertices, quads, weld="off", threads=2)
+    of_list = beltrami.unwrap(vertices, [[0, 1, 2], [0, 2, 3, 4]], progress=True)
+    names: list[str] = [chart.error for chart in of_list.charts]
+    good: bool = atlas.injective and bool(beltrami.check_atlas(vertices, quads, atlas.corner_uvs))
+    split, _, uvs = atlas.split()
+    beltrami.plot.atlas(atlas)
+    records = beltrami.unwrap_batch(["a.obj"], "out", cut="islands", labels="materials")
+    print(names, good, split, uvs, records[0].ok, atlas.options["weld"])
+    return atlas.energy
+
+
 def refused(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> None:
     """Make mistakes."""
     beltrami.parameterize(vertices, faces, energy="dirichlet")  # type: ignore[arg-type]
     beltrami.parameterize(vertices, faces, colour="red")  # type: ignore[call-arg]
     beltrami.parameterize(vertices, faces, progress=3)  # type: ignore[arg-type]
+    beltrami.parameterize(vertices, faces, weld="off")  # type: ignore[call-arg]
+    beltrami.unwrap(vertices, faces, delaunay=True)  # type: ignore[call-overload]
+    beltrami.unwrap(vertices, faces, weld="maybe")  # type: ignore[call-overload]
     beltrami.Flattener().set_options(thread=2)  # type: ignore[call-arg]
     beltrami.plot.heat_map(vertices, faces, vertices, measure="angle")  # type: ignore[arg-type]

@@ -287,7 +287,9 @@ def tables(options: list[Option], header: Any) -> str:
 def keywords(name: str, what: str, options: list[Option], call: int) -> str:
     """Return the source of the type of the keywords of a call."""
     lines = [f"    {option.name}: {option.type}\n" for option in options if option.calls & call]
-    head = f'class {name}(TypedDict, total=False):\n    """{what} by keyword, all of them optional."""'
+    head = (
+        f'class {name}(TypedDict, total=False):\n    """{what} by keyword, all of them optional."""'
+    )
     return f"{head}\n\n{''.join(lines)}\n\n"
 
 

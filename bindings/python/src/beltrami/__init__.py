@@ -1,4 +1,4 @@
-"""beltrami flattens disk-like triangle meshes to UVs: injective, with low distortion.
+"""beltrami makes UVs: injective, with low distortion, of disks and of any surface as an atlas.
 
 >>> import beltrami
 >>> vertices = [[0.0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]  # (n, 3) floats
@@ -7,11 +7,18 @@
 >>> result.uv.shape, result.injective, round(result.energy.symmetric_dirichlet, 3)
 ((4, 2), True, 2.0)
 
-Vertices and faces are never duplicated, dropped or reordered: there is one UV per vertex.
+Vertices and faces are never duplicated, dropped or reordered: there is one UV per vertex. Surfaces
+that are no disk are cut into charts: every corner of every face gets a UV.
+
+>>> atlas = beltrami.unwrap(vertices, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+>>> atlas.corner_uvs.shape, atlas.injective
+((4, 3, 2), True)
 """
 
 from . import _library, plot
-from ._batch import BatchRecord, batch
+from ._atlas import Atlas, SceneAtlases
+from ._atlas_checks import AtlasCheck, Triangulation, check_atlas, triangulate
+from ._batch import batch
 from ._checks import Distortion, check_boundary, check_injective, check_triangles, distortion
 from ._errors import (
     BeltramiError,
@@ -29,16 +36,34 @@ from ._errors import (
     UnsupportedError,
 )
 from ._flatten import Flattener, parameterize
+from ._jobs import BatchRecord
 from ._library import build_info
 from ._results import Parameterization
-from ._tables import Certificate, Energy, Options, Report, Stage
+from ._tables import (
+    AtlasCertificate,
+    AtlasReport,
+    Certificate,
+    Chart,
+    Energy,
+    Options,
+    Report,
+    Stage,
+    UnwrapOptions,
+)
+from ._unwrap import unwrap
+from ._unwrap_batch import unwrap_batch
 
 __version__ = _library.version()
 __all__ = [
+    "Atlas",
+    "AtlasCertificate",
+    "AtlasCheck",
+    "AtlasReport",
     "BatchRecord",
     "BeltramiError",
     "Cancelled",
     "Certificate",
+    "Chart",
     "Distortion",
     "Energy",
     "Flattener",
@@ -54,15 +79,22 @@ __all__ = [
     "OutOfMemoryError",
     "Parameterization",
     "Report",
+    "SceneAtlases",
     "SolverError",
     "Stage",
+    "Triangulation",
     "UnsupportedError",
+    "UnwrapOptions",
     "batch",
     "build_info",
+    "check_atlas",
     "check_boundary",
     "check_injective",
     "check_triangles",
     "distortion",
     "parameterize",
     "plot",
+    "triangulate",
+    "unwrap",
+    "unwrap_batch",
 ]

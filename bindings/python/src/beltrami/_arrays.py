@@ -85,4 +85,4 @@ def _readable(array: Array) -> bool:
 
 def stride(array: Array) -> int:
     """Return the bytes from row to row of an array of this module; of a lone row, its own."""
-    return int(max(array.strides[0], array.shape[1] * array.dtype.itemsize))
+    return int(max(array.strides[0], array[:1].nbytes))

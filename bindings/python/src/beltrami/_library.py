@@ -1,4 +1,4 @@
-"""The C library as Python sees it: the only module that knows CFFI.
+"""The C library as Python sees it. Beside `_surfaces` the only module that knows CFFI.
 
 Every call into the library releases the GIL.
 """
@@ -18,9 +18,9 @@ from . import _arrays, _interrupt
 from ._arrays import Array
 from ._errors import ERRORS, BeltramiError, InvalidArgumentError
 from ._native import ffi, lib
-from ._tables import Certificate, Energy, Report, Stage
+from ._tables import AtlasCertificate, AtlasReport, Certificate, Chart, Energy, Report, Stage
 
-Record = TypeVar("Record", Certificate, Energy, Report, Stage)
+Record = TypeVar("Record", AtlasCertificate, AtlasReport, Certificate, Chart, Energy, Report, Stage)
 #: Told how far a run has come: a fraction in [0, 1] and a stage. Returns true to cancel.
 Hook = Callable[[float, str], bool]
 
@@ -33,6 +33,8 @@ _TYPES = {
     "u8": lib.BELTRAMI_U64,
 }
 _KINDS = {lib.BELTRAMI_ELEMENT_FACE: "face", lib.BELTRAMI_ELEMENT_VERTEX: "vertex"}
+#: What takes an option.
+RUN, UNWRAP = lib.BELTRAMI_CALL_RUN, lib.BELTRAMI_CALL_UNWRAP
 
 
 def text(chars: Any) -> str:
@@ -59,7 +61,7 @@ def status_name(status: int) -> str:
 # ---- Statuses -----------------------------------------------------------------------------
 
 
-def _fail(status: int, message: str, element: int, kind: int) -> NoReturn:
+def fail(status: int, message: str, element: int, kind: int) -> NoReturn:
     name = status_name(status)
     where = None if element == lib.BELTRAMI_NO_ELEMENT else element
     if not message:
@@ -69,20 +71,23 @@ def _fail(status: int, message: str, element: int, kind: int) -> NoReturn:
     raise ERRORS.get(name, BeltramiError)(message, status, name, where, _KINDS.get(kind))
 
 
-def _name_index(error: BeltramiError, faces: Array, count: int, what: str) -> None:
+def name_index(
+    error: BeltramiError, face: Callable[[int], Array], indices: Array, count: int, what: str
+) -> None:
     """Has the message show the index as it was given, and say if all of them count from 1.
 
-    The library sees negative ones without a sign, and its checks name no index.
+    The library sees negative ones without a sign, and its checks name no index. `face` returns the
+    indices of a face.
     """
     if error.status != "BELTRAMI_E_INDEX_OUT_OF_RANGE" or error.element is None:
         return
-    index = next(int(index) for index in faces[error.element] if not 0 <= index < count)
+    index = next(int(index) for index in face(error.element) if not 0 <= index < count)
     message = f"face {error.element} names vertex {index}"
     if index < 0:
         message += ": indices count from 0, not from the end"
     else:
         message += f", but there are {count} {what}: indices count from 0"
-        if (faces.min(), faces.max()) == (1, count):
+        if (indices.min(), indices.max()) == (1, count):
             message += ", these from 1: give faces - 1"
     error.args = (message,)
 
@@ -90,7 +95,7 @@ def _name_index(error: BeltramiError, faces: Array, count: int, what: str) -> No
 # ---- Structs ------------------------------------------------------------------------------
 
 
-def _sized(name: str) -> Any:
+def sized(name: str) -> Any:
     struct = ffi.new(name + "*")
     struct.struct_size = ffi.sizeof(name)
     return struct
@@ -100,18 +105,20 @@ def _plain(value: Any, annotation: str) -> Any:
     if annotation == "bool":
         return bool(value)
     if annotation == "str":
-        return text(value)
+        return status_name(value) if isinstance(value, int) else text(value)
+    if annotation.startswith("tuple[float"):
+        return tuple(value)
     if annotation.startswith("tuple"):
         return None if value[0] == lib.BELTRAMI_NO_ELEMENT else tuple(value)
     return None if value == lib.BELTRAMI_NO_ELEMENT else value
 
 
-def _record(struct: Any, cls: type[Record]) -> Record:
+def record(struct: Any, cls: type[Record]) -> Record:
     fields = dataclasses.fields(cls)
     return cls(*(_plain(getattr(struct, field.name), str(field.type)) for field in fields))
 
 
-def _buffer(array: Array) -> dict[str, Any]:
+def buffer(array: Array) -> dict[str, Any]:
     return {
         "data": ffi.cast("void*", array.ctypes.data),
         "stride": _arrays.stride(array),
@@ -120,19 +127,19 @@ def _buffer(array: Array) -> dict[str, Any]:
 
 
 def _mesh(vertices: Array | None, faces: Array, vertex_count: int) -> Any:
-    mesh = _sized("beltrami_mesh")
+    mesh = sized("beltrami_mesh")
     mesh.vertex_count = vertex_count
     mesh.face_count = len(faces)
     if vertices is not None:
-        mesh.positions = _buffer(vertices)
-    mesh.indices = _buffer(faces)
+        mesh.positions = buffer(vertices)
+    mesh.indices = buffer(faces)
     return mesh
 
 
 _LEAST_WATCHED = 10_000  # faces: what is done with fewer is over before Ctrl-C could end it
 
 
-def _cancellable(mesh: Any, call: Callable[[], int]) -> int:
+def cancellable(mesh: Any, call: Callable[[], int]) -> int:
     """Return the status of a `call` on `mesh`, which Ctrl-C ends. Raises KeyboardInterrupt."""
     if mesh.face_count < _LEAST_WATCHED:
         return call()
@@ -162,6 +169,7 @@ class _Option:
     type: int
     choices: list[str]
     is_switch: bool
+    calls: int  # that take it
 
     def number(self, value: object) -> float:
         """Return what the library wants for a value. Raises TypeError, ValueError."""
@@ -204,7 +212,7 @@ class _Option:
 
 
 def _read_option(key: int) -> _Option | None:
-    info = _sized("beltrami_option_info")
+    info = sized("beltrami_option_info")
     if lib.beltrami_option_describe(key, info) != lib.BELTRAMI_OK:
         return None
     choices: list[str] = []
@@ -212,7 +220,7 @@ def _read_option(key: int) -> _Option | None:
         choices.append(text(choice))
     is_flag = info.type == lib.BELTRAMI_TYPE_INT and (info.minimum, info.maximum) == (0, 1)
     is_switch = is_flag or choices == ["off", "on"]
-    return _Option(key, text(info.name), info.type, choices, is_switch)
+    return _Option(key, text(info.name), info.type, choices, is_switch, info.calls)
 
 
 def _read_options() -> dict[str, _Option]:
@@ -223,6 +231,11 @@ def _read_options() -> dict[str, _Option]:
 
 
 _OPTIONS = _read_options()
+
+
+def options_of(call: int) -> dict[str, _Option]:
+    """Return the options of RUN or UNWRAP by keyword."""
+    return {name: option for name, option in _OPTIONS.items() if option.calls & call}
 
 
 def arguments(options: Mapping[str, object]) -> list[str]:
@@ -266,25 +279,29 @@ class Context:
         out = ffi.new("beltrami_context**")
         status = lib.beltrami_create_(lib.BELTRAMI_ABI, out)
         if status < 0:
-            _fail(status, "", lib.BELTRAMI_NO_ELEMENT, lib.BELTRAMI_ELEMENT_NONE)
+            fail(status, "", lib.BELTRAMI_NO_ELEMENT, lib.BELTRAMI_ELEMENT_NONE)
         self._context = ffi.gc(out[0], lib.beltrami_destroy)
 
     def _check(self, status: int) -> None:
         if status < 0:
-            _fail(
+            fail(
                 status,
                 text(lib.beltrami_error_message(self._context)),
                 lib.beltrami_error_element(self._context),
                 lib.beltrami_error_element_kind(self._context),
             )
 
-    def set_options(self, options: Mapping[str, object]) -> dict[str, object]:
-        """Set options by keyword; return them as plain values. Raises TypeError, ValueError."""
+    def set_options(self, options: Mapping[str, object], call: int = RUN) -> dict[str, object]:
+        """Set options of a call by keyword; return them as plain values.
+
+        Raises TypeError, ValueError.
+        """
+        known = options_of(call)
         plain: dict[str, object] = {}
         for name, value in options.items():
-            if name not in _OPTIONS:
-                raise TypeError(f"there is no option {name!r}: choose from {', '.join(_OPTIONS)}")
-            plain[name] = self._set_option(_OPTIONS[name], value)
+            if name not in known:
+                raise TypeError(f"there is no option {name!r}: choose from {', '.join(known)}")
+            plain[name] = self._set_option(known[name], value)
         return plain
 
     def _set_option(self, option: _Option, value: object) -> object:
@@ -306,9 +323,9 @@ class Context:
         """Copy and validate a mesh in arrays of `_arrays`. Raises MeshError."""
         try:
             mesh = _mesh(vertices, faces, len(vertices))
-            self._check(_cancellable(mesh, lambda: lib.beltrami_set_mesh(self._context, mesh)))
+            self._check(cancellable(mesh, lambda: lib.beltrami_set_mesh(self._context, mesh)))
         except BeltramiError as error:
-            _name_index(error, faces, len(vertices), "vertices")
+            name_index(error, faces.__getitem__, faces, len(vertices), "vertices")
             raise
 
     def estimate_memory(self) -> int:
@@ -318,18 +335,22 @@ class Context:
         return int(out[0])
 
     def run(self, hook: Hook) -> str:
-        """Flatten the mesh; returns the name of the status. Raises what the hook raises.
+        """Flatten the mesh; returns the name of the status. Raises what the hook raises."""
+        return self.call(lib.beltrami_run, (), hook)
 
-        The hook is called in this thread. It is never left out: where another handler than Python's
-        own waits for Ctrl-C, it is there that it runs.
+    def call(self, function: Any, arguments: tuple[Any, ...], hook: Hook) -> str:
+        """Call a function that reports progress; returns the name of the status.
+
+        Raises what the hook raises. It is called in this thread, and never left out: where another
+        handler than Python's own waits for Ctrl-C, it is there that it runs.
         """
         outer = _running.hook, _running.raised
         try:
             with _interrupt.watched(self.cancel) as interrupt:
-                status, raised = self._run(hook, interrupt)
+                status, raised = self._call(function, arguments, hook, interrupt)
             if interrupt.came:
                 # The request may have come too late for this run: the next one is not meant.
-                self._run(lambda _fraction, _stage: True, interrupt)
+                self._call(function, arguments, lambda _fraction, _stage: True, interrupt)
         finally:
             _running.hook, _running.raised = outer
         if raised is not None:
@@ -339,7 +360,13 @@ class Context:
         self._check(status)
         return status_name(status)
 
-    def _run(self, hook: Hook, interrupt: _interrupt.Interrupt) -> tuple[int, BaseException | None]:
+    def _call(
+        self,
+        function: Any,
+        arguments: tuple[Any, ...],
+        hook: Hook,
+        interrupt: _interrupt.Interrupt,
+    ) -> tuple[int, BaseException | None]:
         """Return the status, and what the hook raised."""
 
         def told(fraction: float, stage: str) -> bool:
@@ -350,7 +377,7 @@ class Context:
                 interrupt.in_callback = False
 
         _running.hook, _running.raised = told, None
-        status = lib.beltrami_run(self._context, lib.beltrami_python_progress, ffi.NULL)
+        status = function(self._context, *arguments, lib.beltrami_python_progress, ffi.NULL)
         return status, _running.raised
 
     def cancel(self) -> None:
@@ -358,9 +385,9 @@ class Context:
         lib.beltrami_cancel(self._context)
 
     def _fetch(self, function: Any, struct: str, cls: type[Record]) -> Record:
-        out = _sized(struct)
+        out = sized(struct)
         self._check(function(self._context, out))
-        return _record(out, cls)
+        return record(out, cls)
 
     def report(self) -> Report:
         """Return counts, area and cost of the last run."""
@@ -383,9 +410,9 @@ class Context:
         """Return the stages of the last run in their order."""
         stages = []
         for index in range(lib.beltrami_stage_count(self._context)):
-            out = _sized("beltrami_stage")
+            out = sized("beltrami_stage")
             self._check(lib.beltrami_get_stage(self._context, index, out))
-            stages.append(_record(out, Stage))
+            stages.append(record(out, Stage))
         return tuple(stages)
 
     def uvs(self, vertex_count: int, dtype: np.dtype[Any]) -> Array:
@@ -401,8 +428,8 @@ class Context:
         return faces
 
     def _fill(self, function: Any, out: Array) -> None:
-        buffer = _buffer(out)
-        self._check(function(self._context, buffer["data"], buffer["type"], buffer["stride"]))
+        room = buffer(out)
+        self._check(function(self._context, room["data"], room["type"], room["stride"]))
 
 
 # ---- Checks without a context -------------------------------------------------------------
@@ -411,37 +438,37 @@ class Context:
 def _judge(function: Any, vertices: Array | None, faces: Array, uv: Array, out: Any) -> None:
     """Call a check. Raises BeltramiError where the status says that there is no verdict."""
     mesh = _mesh(vertices, faces, len(uv))
-    uvs = ffi.new("beltrami_buffer*", _buffer(uv))
-    status = _cancellable(mesh, lambda: function(mesh, uvs, out))
+    uvs = ffi.new("beltrami_buffer*", buffer(uv))
+    status = cancellable(mesh, lambda: function(mesh, uvs, out))
     if status >= 0:
         return
     try:
-        _fail(status, "", out.error_element, out.error_element_kind)
+        fail(status, "", out.error_element, out.error_element_kind)
     except BeltramiError as error:
-        _name_index(error, faces, len(uv), "UVs")
+        name_index(error, faces.__getitem__, faces, len(uv), "UVs")
         raise
 
 
 def check(function: str, uv: Array, faces: Array) -> Certificate:
     """Return the verdict of ``beltrami_check_`` `function` on arrays of `_arrays`."""
-    out = _sized("beltrami_certificate")
+    out = sized("beltrami_certificate")
     _judge(getattr(lib, f"beltrami_check_{function}"), None, faces, uv, out)
-    return _record(out, Certificate)
+    return record(out, Certificate)
 
 
 def measure(vertices: Array, faces: Array, uv: Array) -> tuple[Energy, Array]:
     """Return the means, and an (m, 4) array: s1, s2, symmetric Dirichlet and symmetric ARAP."""
-    out = _sized("beltrami_energy")
+    out = sized("beltrami_energy")
     values = np.empty((len(faces), 4))
-    mesh, uvs = _mesh(vertices, faces, len(uv)), ffi.new("beltrami_buffer*", _buffer(uv))
-    status = _cancellable(mesh, lambda: lib.beltrami_measure(mesh, uvs, out, ffi.NULL))
+    mesh, uvs = _mesh(vertices, faces, len(uv)), ffi.new("beltrami_buffer*", buffer(uv))
+    status = cancellable(mesh, lambda: lib.beltrami_measure(mesh, uvs, out, ffi.NULL))
     if status >= 0:
         pointer = ffi.cast("double*", values.ctypes.data)
-        status = _cancellable(mesh, lambda: lib.beltrami_measure_faces(mesh, uvs, pointer, 0))
+        status = cancellable(mesh, lambda: lib.beltrami_measure_faces(mesh, uvs, pointer, 0))
     if status < 0:
         check("triangles", uv, faces)  # the measures name no element, this does
-        _fail(status, "", _first_odd_vertex(vertices, faces), lib.BELTRAMI_ELEMENT_VERTEX)
-    return _record(out, Energy), values
+        fail(status, "", _first_odd_vertex(vertices, faces), lib.BELTRAMI_ELEMENT_VERTEX)
+    return record(out, Energy), values
 
 
 def _first_odd_vertex(vertices: Array, faces: Array) -> int:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import os
 import sys
 from typing import Any
+
+import numpy as np
 
 from ._arrays import Array
 from ._errors import NotADiskError
@@ -36,4 +40,74 @@ def with_uv(mesh: Any, uv: Array, faces: Array) -> Any:
         copied.faces = faces
     material = getattr(mesh.visual, "material", None)
     copied.visual = TextureVisuals(uv=uv, material=material)
+    return copied
+
+
+def is_scene(thing: object) -> bool:
+    """Whether `thing` is a ``trimesh.Scene``."""
+    return isinstance(thing, getattr(sys.modules.get("trimesh"), "Scene", ()))
+
+
+def load(path: Any) -> Any:
+    """Return the mesh in a file, or the scene where it holds several. Vertices stay as they are.
+
+    Raises ImportError without trimesh.
+    """
+    import trimesh
+
+    loaded = trimesh.load(path, process=False)
+    if is_mesh(loaded) or is_scene(loaded):
+        return loaded
+    raise TypeError(f"{os.fspath(path)} holds a {type(loaded).__name__}, and no mesh")
+
+
+def corner_uvs(mesh: Any) -> Array | None:
+    """Return the UVs that a mesh has for its corners, (m, 3, 2), or None."""
+    uv = getattr(mesh.visual, "uv", None)
+    if uv is None or len(uv) != len(mesh.vertices):
+        return None
+    of_corners: Array = np.asarray(uv)[mesh.faces]
+    return of_corners
+
+
+def split(mesh: Any, origins: Array, faces: Array | list[Array], uvs: Array) -> Any:
+    """Return a mesh with the UVs, its vertices copied along the seams, and all else that it had.
+
+    Colours become attributes, for a mesh has either those or UVs: of vertices what exporters write
+    beside UVs, of faces ``face_attributes["color"]``.
+    """
+    import trimesh
+    from trimesh.visual import TextureVisuals
+
+    material = getattr(mesh.visual, "material", None)
+    visual = TextureVisuals(
+        uv=uvs,
+        material=None if material is None else material.copy(),
+        face_materials=copy.copy(getattr(mesh.visual, "face_materials", None)),
+    )
+    face_attributes = {name: np.array(values) for name, values in mesh.face_attributes.items()}
+    if mesh.visual.kind == "vertex":
+        visual.vertex_attributes["color"] = np.asarray(mesh.visual.vertex_colors)[origins]
+    elif mesh.visual.kind == "face":
+        face_attributes["color"] = np.array(mesh.visual.face_colors)
+    elif "color" in getattr(mesh.visual, "vertex_attributes", {}):
+        colours = mesh.visual.vertex_attributes["color"]
+        visual.vertex_attributes["color"] = np.asarray(colours)[origins]
+    return trimesh.Trimesh(
+        vertices=np.asarray(mesh.vertices)[origins],
+        faces=faces,
+        vertex_normals=np.asarray(mesh.vertex_normals)[origins],
+        vertex_attributes={k: np.asarray(v)[origins] for k, v in mesh.vertex_attributes.items()},
+        face_attributes=face_attributes,
+        metadata=copy.deepcopy(mesh.metadata),
+        visual=visual,
+        process=False,
+    )
+
+
+def with_meshes(scene: Any, meshes: dict[str, Any]) -> Any:
+    """Return a copy of a scene with other meshes in the place of some."""
+    copied = scene.copy()
+    for name, mesh in meshes.items():
+        copied.geometry[name] = mesh
     return copied

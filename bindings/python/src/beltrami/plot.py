@@ -20,13 +20,21 @@ from ._checks import distortion as _distortion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["checkered", "heat_map", "layout"]
+    from ._atlas import Atlas
+
+__all__ = ["atlas", "checkered", "heat_map", "layout"]
 
 #: What a heat map may show.
 Measure = Literal["symmetric-dirichlet", "symmetric-arap", "area", "conformal"]
 
 _SAMPLES = 2  # per pixel and direction, against jagged edges
 _FILL = (0.80, 0.86, 0.93)
+_CHARTS = np.array(
+    [
+        *([0.80, 0.86, 0.93], [0.93, 0.85, 0.76], [0.81, 0.91, 0.80], [0.92, 0.82, 0.88]),
+        *([0.93, 0.91, 0.74], [0.78, 0.90, 0.91], [0.87, 0.83, 0.94], [0.90, 0.88, 0.84]),
+    ]
+)
 _LINE = (0.13, 0.16, 0.22)
 _BAD = (0.86, 0.10, 0.10)
 _CHECKER = np.array([[0.95, 0.94, 0.91], [0.27, 0.43, 0.62]])
@@ -77,9 +85,57 @@ def layout(
     """
     points, triangles = _arrays.coordinates(uv).astype(float), _arrays.indices(faces)
     check_triangles(points, triangles)  # refuses what cannot be drawn
+    fill = np.broadcast_to(_FILL, (len(triangles), 3))
+    return _draw_layout(points, triangles, fill, ax, edges, resolution)
+
+
+def atlas(
+    unwrapped: Atlas,
+    ax: Axes | None = None,
+    *,
+    edges: bool | None = None,
+    resolution: int = 1200,
+) -> Axes:
+    """Draw an atlas: its charts in colours of their own, their boundaries, in red what is flipped.
+
+    Parameters
+    ----------
+    unwrapped : Atlas
+        What `beltrami.unwrap` returned.
+    ax : matplotlib.axes.Axes, optional
+        Left out, a new figure is made.
+    edges : bool, optional
+        Whether to draw the edges; left out, they are drawn where the faces are large enough.
+    resolution : int
+        Pixels along the longer side.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        With equal scales, and no frame.
+
+    Raises
+    ------
+    ImportError
+        Without Matplotlib.
+    """
+    points, triangles = unwrapped.uvs.astype(float), unwrapped.uv_triangles
+    chart = unwrapped.chart_of_face[unwrapped.face_of_triangle]
+    return _draw_layout(points, triangles, _CHARTS[chart % len(_CHARTS)], ax, edges, resolution)
+
+
+def _draw_layout(
+    points: Array,
+    triangles: Array,
+    fill: Array,
+    ax: Axes | None,
+    edges: bool | None,
+    resolution: int,
+) -> Axes:
+    """Draw triangles in their colours, (m, 3)."""
     canvas = _Canvas.around(points[triangles].reshape(-1, 2), resolution)
     flipped = _areas(points, triangles) < 0
-    colours = np.where(flipped[:, None], _BAD, _FILL)
+    colours = np.where(flipped[:, None], _BAD, fill)
     # Flipped faces lie on top of what they overlap.
     image = canvas.draw(points, triangles, colours, flipped.astype(float))
     ax = _axes(ax)

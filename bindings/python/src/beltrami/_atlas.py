@@ -1,0 +1,168 @@
+"""What unwrapping returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ._arrays import Array
+from ._tables import AtlasCertificate, AtlasReport, Chart, Stage, UnwrapOptions
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """UVs of a surface that was cut into charts. It equals itself only: compare what it holds.
+
+    UV vertices are vertices of the input, split along the seams and nowhere else: with `uv_faces`
+    they are what a vertex buffer and its index buffer hold, see `split`. A corner is one vertex of
+    one face; corners are counted from 0, face after face.
+
+    Attributes
+    ----------
+    uvs : (k, 2) array of float32 or float64
+        One (u, v) per UV vertex, in the surface's unit of length (or in the unit square, with
+        `unit_square`).
+    uv_faces : (m, 3) array of integers, or list of arrays
+        The UV vertex of each corner, in the shape of the faces as given; for a list of polygons of
+        several sizes a list of arrays.
+    origins : (k,) array of integers
+        The vertex of the input that each UV vertex is a copy of.
+    chart_of_face : (m,) array of int64
+        -1 for a face without area.
+    charts : tuple of Chart
+        In the order of their least faces.
+    triangles : (t, 3) array of int64
+        The triangles that were computed on and that the certificate speaks of, as corners, in the
+        orientation in which they are positive.
+    status : str
+        "BELTRAMI_OK"; "BELTRAMI_NOT_CONVERGED", where the atlas is injective, but an optimisation
+        stopped at its iteration limit; "BELTRAMI_NOT_INJECTIVE", where a chart has no map or one
+        that is not (its own status tells), or "BELTRAMI_NOT_INJECTIVE_FLOAT32".
+    certificate : AtlasCertificate
+        The exact verdict on the very numbers in `uvs`.
+    float32_certificate : AtlasCertificate
+        The same on the numbers rounded to float32.
+    report : AtlasReport
+        What was met in the surface, counts, energy, seams and cost.
+    stages : tuple of Stage
+        What each stage took, in the order in which they ran.
+    options : UnwrapOptions
+        The options that were used, by keyword.
+    vertices : (n, 3) array of float32 or float64
+        The vertices given, in place where they needed no conversion.
+    mesh : trimesh.Trimesh | None
+        Where a ``trimesh.Trimesh`` was given: a copy with the UVs, split along the seams.
+    """
+
+    uvs: Array = field(repr=False)
+    uv_faces: Array | list[Array] = field(repr=False)
+    origins: Array = field(repr=False)
+    chart_of_face: Array = field(repr=False)
+    charts: tuple[Chart, ...] = field(repr=False)
+    triangles: Array = field(repr=False)
+    status: str
+    certificate: AtlasCertificate
+    float32_certificate: AtlasCertificate = field(repr=False)
+    report: AtlasReport = field(repr=False)
+    stages: tuple[Stage, ...] = field(repr=False)
+    options: UnwrapOptions = field(repr=False)
+    vertices: Array = field(repr=False)
+    mesh: Any | None = field(default=None, repr=False)
+
+    @property
+    def injective(self) -> bool:
+        """Whether the atlas is proven to be injective, as numbers of the type that `uvs` has."""
+        return self.certificate.injective
+
+    @property
+    def converged(self) -> bool:
+        """Whether no optimisation stopped at its iteration limit."""
+        return self.status != "BELTRAMI_NOT_CONVERGED"
+
+    @property
+    def energy(self) -> float:
+        """The mean symmetric Dirichlet energy over the area, 2 where lengths are kept."""
+        return self.report.symmetric_dirichlet
+
+    @property
+    def seam_length(self) -> float:
+        """The length of the seams on the surface, each counted once."""
+        return self.report.seam_length
+
+    @property
+    def utilisation(self) -> float:
+        """The area of the UVs over that of their bounding box."""
+        return self.report.utilisation
+
+    @property
+    def corner_uvs(self) -> Array:
+        """An (m, k, 2) array of floats: UVs of corners; of a list of polygons (c, 2)."""
+        corner_uvs: Array = self.uvs[self._faces()]
+        return corner_uvs
+
+    @property
+    def uv_triangles(self) -> Array:
+        """A (t, 3) array of integers: UV vertices of `triangles`, to draw and to measure."""
+        uv_triangles: Array = self._faces().ravel()[self.triangles]
+        return uv_triangles
+
+    @property
+    def face_of_triangle(self) -> Array:
+        """A (t,) array of int64: the face that each of `triangles` is a part of."""
+        if isinstance(self.uv_faces, list):
+            ends = np.cumsum([len(face) for face in self.uv_faces])
+            faces: Array = np.searchsorted(ends, self.triangles[:, 0], side="right")
+        else:
+            faces = self.triangles[:, 0] // self.uv_faces.shape[1]
+        return faces
+
+    def split(self, triangles: bool = False) -> tuple[Array, Array | list[Array], Array]:
+        """Return what a vertex buffer holds: vertices split along the seams, and nowhere else.
+
+        Of anything else that the vertices have, take ``normals[atlas.origins]``.
+
+        Parameters
+        ----------
+        triangles : bool
+            True gives the faces as triangles, in the orientation in which they are positive.
+
+        Returns
+        -------
+        tuple of arrays
+            Positions (k, 3), faces as given (or (t, 3)), and UVs (k, 2).
+
+        Raises
+        ------
+        MemoryError
+            Without room for them.
+        """
+        faces = self.uv_triangles if triangles else self.uv_faces
+        return self.vertices[self.origins], faces, self.uvs
+
+    def _faces(self) -> Array:
+        """Return the UV vertices of corners as one array."""
+        return np.concatenate(self.uv_faces) if isinstance(self.uv_faces, list) else self.uv_faces
+
+
+@dataclass(frozen=True, eq=False)
+class SceneAtlases:
+    """What became of a ``trimesh.Scene``: an atlas for each of its meshes.
+
+    Attributes
+    ----------
+    scene : trimesh.Scene
+        A copy with UVs. What is no mesh, such as a point cloud, is as it was.
+    atlases : dict
+        The `Atlas` of each mesh, by its name in ``scene.geometry``.
+    """
+
+    scene: Any
+    atlases: Mapping[str, Atlas] = field(repr=False)
+
+    @property
+    def injective(self) -> bool:
+        """Whether every atlas is proven to be injective."""
+        return all(atlas.injective for atlas in self.atlases.values())

@@ -1,0 +1,347 @@
+"""Unwrapping: any surface in, an atlas out."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _hints, _polygons, _trimesh
+from ._atlas import Atlas, SceneAtlases
+from ._errors import BeltramiError, NotInjectiveWarning
+from ._library import UNWRAP, Hook
+from ._polygons import Faces
+from ._progress import Progress, hook_for
+from ._surfaces import AtlasContext, Surface
+from ._tables import (
+    CutChoice,
+    EnergyChoice,
+    FlattenChoice,
+    InjectivityChoice,
+    MethodChoice,
+    UnwrapOptions,
+    WeldChoice,
+)
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+# call: unwrap
+
+
+@overload
+def unwrap(
+    vertices: npt.ArrayLike,
+    faces: Faces,
+    *,
+    corner_uvs: npt.ArrayLike | None = None,
+    face_labels: npt.ArrayLike | None = None,
+    densities: npt.ArrayLike | None = None,
+    seams: npt.ArrayLike | None = None,
+    progress: Progress = None,
+    **options: Unpack[UnwrapOptions],
+) -> Atlas: ...
+@overload
+def unwrap(
+    vertices: Any,
+    faces: None = None,
+    *,
+    corner_uvs: npt.ArrayLike | None = None,
+    face_labels: npt.ArrayLike | None = None,
+    densities: npt.ArrayLike | None = None,
+    seams: npt.ArrayLike | None = None,
+    progress: Progress = None,
+    **options: Unpack[UnwrapOptions],
+) -> Any: ...
+def unwrap(
+    vertices: Any,
+    faces: Any = None,
+    *,
+    corner_uvs: npt.ArrayLike | None = None,
+    face_labels: npt.ArrayLike | None = None,
+    densities: npt.ArrayLike | None = None,
+    seams: npt.ArrayLike | None = None,
+    # options: parameters
+    method: MethodChoice = "beltrami",
+    energy: EnergyChoice = "symmetric-dirichlet",
+    coarse_faces: int = 0,
+    tolerance: float = 0.0001,
+    max_iterations: int = 500,
+    threads: int = 1,
+    unit_square: bool = False,
+    flatten: FlattenChoice = "metric",
+    injectivity: InjectivityChoice = "auto",
+    refine: bool = False,
+    refine_iterations: int = 0,
+    time_limit: float = 0.0,
+    float32: bool = False,
+    memory_limit: int = 0,
+    cut: CutChoice = "minimal",
+    hard_angle: float = 180.0,
+    weld: WeldChoice = "auto",
+    weld_distance: float = 0.0,
+    fill_holes: float = 0.5,
+    share_copies: bool = False,
+    # end of options
+    progress: Progress = None,
+) -> Any:
+    """Cut any surface into charts and flatten them: an injective atlas, with low distortion.
+
+    The surface may be closed or open, in any number of components, with holes and handles, and of
+    any quality: nothing is refused but indices out of range, numbers that are not finite, and
+    surfaces without any area. What is not manifold is parted, faces that disagree are turned, and
+    every corner gets its UV. The same input gives the same bits, at any number of threads.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like of floats, trimesh.Trimesh, trimesh.Scene, or path
+        Positions in any unit of length. float32 and float64 with consecutive coordinates, and any
+        positive distance from row to row, are read in place; all else is converted. A path is that
+        of a file that trimesh loads.
+    faces : (m, k) array_like of integers, or sequence of polygons
+        Vertex numbers from 0: rows of 3 or more, or a sequence of polygons of any sizes. Left out
+        with a mesh, a scene or a path. Triangles of int32, int64, uint32 and uint64 are read in
+        place. Polygons are cut into triangles for the computation, and by no seam.
+    corner_uvs : (m, k, 2) array_like of floats, optional
+        UVs of the corners of each face, or (c, 2) of all corners: with ``cut="islands"`` seams run
+        where they part. Of a mesh of trimesh its own are taken.
+    face_labels : (m,) array_like, optional
+        Materials, groups: numbers or words; seams run where they differ.
+    densities : (m,) array_like of floats, optional
+        Above 0: how much larger a face is to be in the plane. A chart has the mean of its faces.
+    seams : (k, 2) array_like of integers, optional
+        Edges to cut, by their vertices; pairs that are no edge are ignored.
+    progress : bool or callable, optional
+        As for `parameterize`.
+
+    Options
+    -------
+    method : {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"}, default "beltrami"
+        How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
+        on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
+        baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
+        coarse UVs (bff and uv-prolongation may flip).
+    energy : {"symmetric-dirichlet", "symmetric-arap"}, default "symmetric-dirichlet"
+        The distortion that is minimised.
+    coarse_faces : int, default 0
+        Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
+        at least 10,000. A number from 0 to 700,000,000.
+    tolerance : float, default 0.0001
+        Relative decrease of the energy in one iteration below which composite majorization stops. A
+        number from 0 to 1.
+    max_iterations : int, default 500
+        Iterations after which composite majorization stops even if it has not converged. A number
+        from 1 to 1,000,000.
+    threads : int, default 1
+        Threads to use, the calling one included; the result does not depend on it. A number from 1
+        to 1,024.
+    unit_square : bool, default False
+        True scales and shifts the UVs into the unit square; False keeps them in the mesh's unit of
+        length.
+    flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
+        How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
+        and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
+        higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
+        local injectivity only) or bff (conformal, may flip).
+    injectivity : {"auto", "global", "local"}, default "auto"
+        What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
+        parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
+        is left as the literature has it).
+    refine : bool, default False
+        True goes on with composite majorization on the fine mesh from the result, to a little less
+        energy in much more time.
+    refine_iterations : int, default 0
+        Iterations after which the refinement stops; 0 leaves it to the tolerance. A number from 0
+        to 1,000,000.
+    time_limit : float, default 0.0
+        Seconds since the start of the run after which iterations stop with the best map so far; 0
+        sets no limit. A number from 0 to 1,000,000,000.
+    float32 : bool, default False
+        True delivers UVs that single precision holds exactly, rounded so that the map stays
+        injective.
+    memory_limit : int, default 0
+        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
+        before it starts, and steps that only hard meshes need are left out where they would exceed
+        it; 0 sets no limit. A number from 0 to 1e+14.
+    cut : {"minimal", "islands"}, default "minimal"
+        Where seams go beside those that are given: minimal (a short cut graph where a piece is no
+        disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
+        opened).
+    hard_angle : float, default 180.0
+        Degrees between the normals of two faces above which the edge between them is a seam; 180
+        makes none. A number from 0 to 180.
+    weld : {"auto", "on", "off"}, default "auto"
+        Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
+        one disk as it stands stays so), on or off.
+    weld_distance : float, default 0.0
+        Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
+        A number from 0 to 1e+300.
+    fill_holes : float, default 0.5
+        Holes whose boundary is no longer than this many roots of their component's area cost no
+        seam, larger ones are joined to one; 0 joins all. A number from 0 to 1,000,000,000.
+    share_copies : bool, default False
+        True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
+        layer of their own.
+
+    Returns
+    -------
+    Atlas
+        `uvs` are float32 where `vertices` are float32, or with the option `float32`, and rounded so
+        that they stay injective; else float64. An atlas that is not injective is returned, too,
+        with a `NotInjectiveWarning`; its `injective` is False, and its `charts` say which. Of a
+        ``trimesh.Scene`` a `SceneAtlases`.
+
+    Raises
+    ------
+    MeshError
+        `IndexOutOfRangeError`, `NonFiniteError`, or a surface without faces or area, with the face
+        or vertex in `element`.
+    TypeError, ValueError
+        For arrays of other shapes or types, and for options out of range.
+    Cancelled
+        `progress` returned False.
+    KeyboardInterrupt
+        On Ctrl-C, in the main thread.
+    ImportError
+        For a path, without trimesh.
+    OutOfMemoryError, InternalError
+        As their names say.
+    """
+    given: dict[str, object] = {
+        # options: items
+        "method": method,
+        "energy": energy,
+        "coarse_faces": coarse_faces,
+        "tolerance": tolerance,
+        "max_iterations": max_iterations,
+        "threads": threads,
+        "unit_square": unit_square,
+        "flatten": flatten,
+        "injectivity": injectivity,
+        "refine": refine,
+        "refine_iterations": refine_iterations,
+        "time_limit": time_limit,
+        "float32": float32,
+        "memory_limit": memory_limit,
+        "cut": cut,
+        "hard_angle": hard_angle,
+        "weld": weld,
+        "weld_distance": weld_distance,
+        "fill_holes": fill_holes,
+        "share_copies": share_copies,
+        # end of options
+    }
+    if faces is None and isinstance(vertices, (str, os.PathLike)):
+        vertices = _trimesh.load(vertices)
+    if faces is None and _trimesh.is_scene(vertices):
+        if any(values is not None for values in (corner_uvs, face_labels, densities, seams)):
+            raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
+        return _unwrap_scene(vertices, given, progress)
+    mesh = None
+    if faces is None:
+        if not _trimesh.is_mesh(vertices):
+            instead = _hints.for_thing(vertices)
+            missing = "faces are missing: only a mesh, a scene or a path brings its own"
+            raise TypeError(missing if instead is None else f"vertices is {instead}")
+        mesh, vertices, faces = vertices, vertices.vertices, vertices.faces
+        if corner_uvs is None and cut == "islands":
+            corner_uvs = _trimesh.corner_uvs(mesh)
+    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams)
+    with hook_for(progress) as hook:
+        atlas = _unwrap(surface, given, hook, mesh)
+    _warn(atlas, "")
+    return atlas
+
+
+def _surface(
+    vertices: npt.ArrayLike, faces: Any, corner_uvs: Any, labels: Any, densities: Any, seams: Any
+) -> Surface:
+    points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
+    return Surface(
+        points,
+        polygons,
+        None if corner_uvs is None else _polygons.corner_uvs(corner_uvs, polygons),
+        None if labels is None else _polygons.labels(labels, polygons),
+        None if densities is None else _polygons.densities(densities, polygons),
+        None if seams is None else _polygons.seams(seams),
+    )
+
+
+def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -> Atlas:
+    context = AtlasContext()
+    single = surface.vertices.dtype == np.float32
+    if single and given["float32"] is False:
+        given = {**given, "float32": True}  # so that what is handed out is injective
+    options = context.set_options(given, UNWRAP)
+    if options["cut"] == "islands" and surface.corner_uvs is None:
+        raise ValueError('cut="islands" keeps the charts of UVs: give them as corner_uvs')
+    status = context.unwrap(surface, hook)
+    faces, report = surface.faces, context.atlas()
+    dtype = np.dtype(np.float32 if options["float32"] else np.float64)
+    uvs = context.uv_vertices(report.uv_vertices, dtype)
+    number = faces.indices.dtype
+    uv_faces = faces.shaped(context.corner_uv_vertices(report.corners, number))
+    origins = context.origins(report.uv_vertices, number)
+    return Atlas(
+        uvs=uvs,
+        uv_faces=uv_faces,
+        origins=origins,
+        chart_of_face=context.face_charts(report.faces),
+        charts=context.charts(report.charts),
+        triangles=context.triangles(report.triangles),
+        status=status,
+        certificate=context.atlas_certificate(dtype),
+        float32_certificate=context.atlas_certificate(np.dtype(np.float32)),
+        report=report,
+        stages=context.atlas_stages(),
+        options=UnwrapOptions(**options),  # type: ignore[typeddict-item]
+        vertices=surface.vertices,
+        mesh=None if mesh is None else _trimesh.split(mesh, origins, uv_faces, uvs),
+    )
+
+
+def _unwrap_scene(scene: Any, given: dict[str, object], progress: Progress) -> SceneAtlases:
+    meshes = {name: thing for name, thing in scene.geometry.items() if _trimesh.is_mesh(thing)}
+    total = max(1, sum(len(mesh.faces) for mesh in meshes.values()))
+    done = 0
+    atlases: dict[str, Atlas] = {}
+    with hook_for(progress) as hook:
+        for name, mesh in meshes.items():
+            of_scene = _part_of(hook, done / total, len(mesh.faces) / total)
+            uvs = _trimesh.corner_uvs(mesh) if given["cut"] == "islands" else None
+            try:
+                surface = _surface(mesh.vertices, mesh.faces, uvs, None, None, None)
+                atlases[name] = _unwrap(surface, given, of_scene, mesh)
+            except BeltramiError as error:
+                error.args = (f"{name}: {error}",)
+                raise
+            done += len(mesh.faces)
+    for name, atlas in atlases.items():
+        _warn(atlas, f"{name}: ", callers=3)
+    textured = {name: atlas.mesh for name, atlas in atlases.items()}
+    return SceneAtlases(_trimesh.with_meshes(scene, textured), atlases)
+
+
+def _part_of(hook: Hook, before: float, share: float) -> Hook:
+    """Return the hook of a part of a run, which is told fractions of the part."""
+    return lambda fraction, stage: hook(min(1.0, before + share * fraction), stage)
+
+
+def _warn(atlas: Atlas, where: str, callers: int = 2) -> None:
+    """Warn of an atlas that is not injective; `callers` says how many calls up."""
+    if atlas.injective:
+        return
+    found, failed = (
+        atlas.certificate,
+        [chart for chart in atlas.charts if chart.error != "BELTRAMI_OK"],
+    )
+    message = (
+        f"{where}the atlas is not injective: {found.negative} flipped triangles, "
+        f"{found.degenerate} without area, {found.overlaps} overlaps"
+    )
+    if failed:
+        message += f"; {len(failed)} charts have no map, the first at face {failed[0].first_face}"
+    warnings.warn(message, NotInjectiveWarning, stacklevel=callers + 1)

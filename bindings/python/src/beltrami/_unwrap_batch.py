@@ -1,0 +1,222 @@
+"""Many meshes in one go, each unwrapped by a process of its own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from . import _jobs, _library
+from ._jobs import BatchRecord
+from ._progress import Progress
+from ._tables import (
+    CutChoice,
+    EnergyChoice,
+    FlattenChoice,
+    InjectivityChoice,
+    MethodChoice,
+    WeldChoice,
+)
+
+# call: unwrap
+
+
+def unwrap_batch(
+    paths: Iterable[str | os.PathLike[str]],
+    out_dir: str | os.PathLike[str],
+    scheduler: Any = None,
+    *,
+    # options: parameters
+    method: MethodChoice = "beltrami",
+    energy: EnergyChoice = "symmetric-dirichlet",
+    coarse_faces: int = 0,
+    tolerance: float = 0.0001,
+    max_iterations: int = 500,
+    threads: int = 1,
+    unit_square: bool = False,
+    flatten: FlattenChoice = "metric",
+    injectivity: InjectivityChoice = "auto",
+    refine: bool = False,
+    refine_iterations: int = 0,
+    time_limit: float = 0.0,
+    float32: bool = False,
+    memory_limit: int = 0,
+    cut: CutChoice = "minimal",
+    hard_angle: float = 180.0,
+    weld: WeldChoice = "auto",
+    weld_distance: float = 0.0,
+    fill_holes: float = 0.5,
+    share_copies: bool = False,
+    # end of options
+    labels: str | None = None,
+    triangulate: bool = False,
+    suffix: str = ".obj",
+    root: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    progress: Progress = None,
+) -> list[BatchRecord]:
+    """Unwrap many mesh files, on all cores or on a Dask cluster; a second call resumes.
+
+    Every mesh is a process of its own: one that fails, crashes or is killed becomes a record with
+    its failure, and the others go on. ``out_dir/batch.jsonl`` gets a line for each when it ends. A
+    mesh is left out where that log has a result for it, or its refusal, and neither the file (by
+    path, size and time), nor the options, nor the version of the library are others since; whatever
+    crashed, was cancelled, or could not be read or written is tried again. One call at a time may
+    use a folder.
+
+    Parameters
+    ----------
+    paths : iterable of path
+        Meshes in OBJ, OFF, PLY or STL files.
+    out_dir : path
+        Folder for the results, which is made if need be: files with UVs, named as the meshes.
+    scheduler : str or distributed.Client, optional
+        Address of a Dask scheduler, such as "tcp://host:8786", or a client of one: the jobs run on
+        its workers, which need this version of the package and the same paths, one on each of
+        their threads: with `threads` above 1, have as many fewer of those. Left out, they run as
+        processes on this machine.
+    labels : str, optional
+        Cut where these differ: "materials", "groups" or "objects" of an OBJ file, or the name of a
+        property of the faces of a PLY file.
+    triangulate : bool
+        True writes the triangles that were computed on; False keeps polygons.
+    suffix : {".obj", ".ply"}
+        Format of the results.
+    root : path, optional
+        Folder above the meshes: results keep their path below it. Left out, all results lie in
+        `out_dir` itself.
+    jobs : int, optional
+        Processes at a time on this machine; left out, as many as there are cores for `threads`.
+    progress : bool or callable, optional
+        As for `parameterize`; called when a mesh is done, with the fraction that is done and the
+        mesh's path. Returning False ends the batch.
+
+    Options
+    -------
+    method : {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"}, default "beltrami"
+        How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
+        on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
+        baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
+        coarse UVs (bff and uv-prolongation may flip).
+    energy : {"symmetric-dirichlet", "symmetric-arap"}, default "symmetric-dirichlet"
+        The distortion that is minimised.
+    coarse_faces : int, default 0
+        Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
+        at least 10,000. A number from 0 to 700,000,000.
+    tolerance : float, default 0.0001
+        Relative decrease of the energy in one iteration below which composite majorization stops. A
+        number from 0 to 1.
+    max_iterations : int, default 500
+        Iterations after which composite majorization stops even if it has not converged. A number
+        from 1 to 1,000,000.
+    threads : int, default 1
+        Threads to use, the calling one included; the result does not depend on it. A number from 1
+        to 1,024.
+    unit_square : bool, default False
+        True scales and shifts the UVs into the unit square; False keeps them in the mesh's unit of
+        length.
+    flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
+        How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
+        and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
+        higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
+        local injectivity only) or bff (conformal, may flip).
+    injectivity : {"auto", "global", "local"}, default "auto"
+        What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
+        parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
+        is left as the literature has it).
+    refine : bool, default False
+        True goes on with composite majorization on the fine mesh from the result, to a little less
+        energy in much more time.
+    refine_iterations : int, default 0
+        Iterations after which the refinement stops; 0 leaves it to the tolerance. A number from 0
+        to 1,000,000.
+    time_limit : float, default 0.0
+        Seconds since the start of the run after which iterations stop with the best map so far; 0
+        sets no limit. A number from 0 to 1,000,000,000.
+    float32 : bool, default False
+        True delivers UVs that single precision holds exactly, rounded so that the map stays
+        injective.
+    memory_limit : int, default 0
+        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
+        before it starts, and steps that only hard meshes need are left out where they would exceed
+        it; 0 sets no limit. A number from 0 to 1e+14.
+    cut : {"minimal", "islands"}, default "minimal"
+        Where seams go beside those that are given: minimal (a short cut graph where a piece is no
+        disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
+        opened).
+    hard_angle : float, default 180.0
+        Degrees between the normals of two faces above which the edge between them is a seam; 180
+        makes none. A number from 0 to 180.
+    weld : {"auto", "on", "off"}, default "auto"
+        Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
+        one disk as it stands stays so), on or off.
+    weld_distance : float, default 0.0
+        Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
+        A number from 0 to 1e+300.
+    fill_holes : float, default 0.5
+        Holes whose boundary is no longer than this many roots of their component's area cost no
+        seam, larger ones are joined to one; 0 joins all. A number from 0 to 1,000,000,000.
+    share_copies : bool, default False
+        True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
+        layer of their own.
+
+    Returns
+    -------
+    list of BatchRecord
+        One for each path, in their order; failures are those that are not `ok`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For options as `unwrap` does; where two results would have the same name, or one would
+        replace a mesh; for a mesh that is not below `root`.
+    OSError
+        Where the folder or the log cannot be written, or the scheduler not be reached.
+    ImportError
+        With a scheduler, but without Dask.
+    Cancelled, KeyboardInterrupt
+        Jobs under way are ended (on a cluster, only those that have not begun); another call
+        resumes.
+    """
+    given: dict[str, object] = {
+        # options: items
+        "method": method,
+        "energy": energy,
+        "coarse_faces": coarse_faces,
+        "tolerance": tolerance,
+        "max_iterations": max_iterations,
+        "threads": threads,
+        "unit_square": unit_square,
+        "flatten": flatten,
+        "injectivity": injectivity,
+        "refine": refine,
+        "refine_iterations": refine_iterations,
+        "time_limit": time_limit,
+        "float32": float32,
+        "memory_limit": memory_limit,
+        "cut": cut,
+        "hard_angle": hard_angle,
+        "weld": weld,
+        "weld_distance": weld_distance,
+        "fill_holes": fill_holes,
+        "share_copies": share_copies,
+        # end of options
+    }
+    options = _library.Context().set_options(given, _library.UNWRAP)
+    arguments = _library.arguments(options)
+    if labels is not None:
+        arguments += ["--labels", labels]
+    if triangulate:
+        arguments += ["--triangulate"]
+    depends = {**options, "labels": labels, "triangulate": triangulate}
+    task = _jobs.Task("unwrap", arguments, depends, threads)
+    return _jobs.run_batch(
+        task,
+        paths,
+        out_dir,
+        scheduler,
+        suffix=suffix,
+        root=root,
+        jobs=jobs,
+        progress=progress,
+    )

@@ -1,0 +1,141 @@
+"""Meshes, scenes and files of trimesh: the same out, with UVs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import BUST
+
+import beltrami
+
+trimesh = pytest.importorskip("trimesh")
+
+
+def box():
+    mesh = trimesh.creation.box()
+    mesh.metadata["author"] = "someone"
+    mesh.vertex_attributes["weight"] = np.arange(8.0)
+    mesh.face_attributes["part"] = np.arange(12)
+    return mesh
+
+
+def test_a_mesh_comes_back_with_uvs_and_all_that_it_had():
+    mesh = box()
+    before = (mesh.vertices.tobytes(), mesh.faces.tobytes(), repr(mesh.visual))
+    atlas = beltrami.unwrap(mesh)
+    assert atlas.injective
+    assert atlas.uvs.tobytes() == beltrami.unwrap(mesh.vertices, mesh.faces).uvs.tobytes()
+    out = atlas.mesh
+    assert (out.vertices == mesh.vertices[atlas.origins]).all()
+    assert (out.faces == atlas.uv_faces).all()
+    assert (out.visual.uv == atlas.uvs).all()
+    assert (out.vertex_normals == mesh.vertex_normals[atlas.origins]).all()
+    assert (out.vertex_attributes["weight"] == atlas.origins).all()
+    assert (out.face_attributes["part"] == np.arange(12)).all()
+    assert out.metadata["author"] == "someone"
+    assert (mesh.vertices.tobytes(), mesh.faces.tobytes(), repr(mesh.visual)) == before
+
+
+def test_materials_and_colours_stay():
+    mesh = box()
+    mesh.visual = trimesh.visual.TextureVisuals(
+        uv=np.zeros((8, 2)), material=trimesh.visual.material.SimpleMaterial(diffuse=[255, 0, 0])
+    )
+    out = beltrami.unwrap(mesh).mesh
+    assert out.visual.material.diffuse.tolist() == [255, 0, 0, 255]
+    assert out.visual.material is not mesh.visual.material
+    mesh = box()
+    mesh.visual.vertex_colors = np.arange(32, dtype=np.uint8).reshape(8, 4)
+    atlas = beltrami.unwrap(mesh)
+    colours = atlas.mesh.visual.vertex_attributes["color"]
+    assert (colours == mesh.visual.vertex_colors[atlas.origins]).all()
+    again = beltrami.unwrap(atlas.mesh)
+    assert (again.mesh.visual.vertex_attributes["color"] == colours[again.origins]).all()
+    mesh = box()
+    mesh.visual.face_colors = np.arange(48, dtype=np.uint8).reshape(12, 4)
+    out = beltrami.unwrap(mesh).mesh
+    assert (out.face_attributes["color"] == mesh.visual.face_colors).all()
+
+
+def test_islands_are_those_of_the_mesh():
+    sides = beltrami.unwrap(box(), hard_angle=45)
+    assert len(sides.charts) == 6
+    again = beltrami.unwrap(sides.mesh, cut="islands")
+    assert len(again.charts) == 6
+    assert len(beltrami.unwrap(sides.mesh).charts) == 1
+    with pytest.raises(ValueError, match="give them as corner_uvs"):
+        beltrami.unwrap(box(), cut="islands")
+
+
+def scene():
+    """Return two meshes, one of them placed twice, and some points."""
+    scene = trimesh.Scene(metadata={"title": "things"})
+    scene.add_geometry(box(), geom_name="box", node_name="left")
+    shift = trimesh.transformations.translation_matrix([3, 0, 0])
+    scene.graph.update("right", geometry="box", matrix=shift)
+    scene.add_geometry(trimesh.creation.icosphere(1), geom_name="ball", transform=2 * shift)
+    scene.add_geometry(trimesh.PointCloud(np.eye(3)), geom_name="points")
+    return scene
+
+
+def test_a_scene_comes_back_as_a_scene(tmp_path):
+    given = scene()
+    seen = []
+    result = beltrami.unwrap(given, threads=2, progress=lambda *now: seen.append(now))
+    assert result.injective
+    assert result.atlases.keys() == {"box", "ball"}
+    assert result.atlases["box"].options["threads"] == 2
+    assert [fraction for fraction, _ in seen] == sorted(fraction for fraction, _ in seen)
+    assert seen[-1][0] == pytest.approx(1)
+    out = result.scene
+    assert out.geometry.keys() == given.geometry.keys()
+    assert set(out.graph.nodes_geometry) == set(given.graph.nodes_geometry)
+    assert (out.graph["right"][0] == given.graph["right"][0]).all()
+    assert out.metadata["title"] == "things"
+    for name, atlas in result.atlases.items():
+        assert out.geometry[name] is atlas.mesh
+        assert atlas.uvs.tobytes() == beltrami.unwrap(given.geometry[name]).uvs.tobytes()
+    assert not hasattr(given.geometry["ball"].visual, "uv")
+    out.export(tmp_path / "scene.glb")
+    again = beltrami.unwrap(tmp_path / "scene.glb")
+    assert again.atlases.keys() == {"box", "ball"}
+
+
+def test_what_is_wrong_in_a_scene_names_the_mesh():
+    given = scene()
+    given.geometry["ball"].vertices[5] = np.nan
+    with pytest.raises(beltrami.NonFiniteError, match=r"^ball: vertex 5") as caught:
+        beltrami.unwrap(given)
+    assert caught.value.element == 5
+    with pytest.raises(TypeError, match="with each mesh"):
+        beltrami.unwrap(scene(), face_labels=np.zeros(12))
+    with pytest.raises(beltrami.Cancelled):
+        beltrami.unwrap(scene(), progress=lambda *_: False)
+
+
+@pytest.mark.parametrize("kind", [str, lambda path: path])
+def test_a_path_is_that_of_a_file_that_trimesh_loads(kind, tmp_path):
+    path = tmp_path / "box.stl"
+    box().export(path)
+    atlas = beltrami.unwrap(kind(path))
+    assert atlas.report.vertices == 36  # as the file has them
+    assert atlas.report.welded_vertices == 28
+    assert len(atlas.charts) == 1
+    assert atlas.mesh.visual.uv.shape == (len(atlas.uvs), 2)
+    trimesh.PointCloud(np.eye(3)).export(tmp_path / "points.ply")
+    with pytest.raises(TypeError, match=r"points\.ply holds a PointCloud, and no mesh"):
+        beltrami.unwrap(kind(tmp_path / "points.ply"))
+
+
+def test_a_disk_stays_the_disk_that_it_is():
+    atlas = beltrami.unwrap(BUST)
+    assert len(atlas.charts) == 1
+    assert atlas.seam_length == 0
+    assert atlas.mesh.visual.uv.shape == (len(atlas.mesh.vertices), 2)
+
+
+def test_things_that_are_no_mesh_are_refused_in_words():
+    with pytest.raises(TypeError, match="only a mesh, a scene or a path"):
+        beltrami.unwrap(np.eye(3))
+    with pytest.raises(TypeError, match="give its arrays, mesh"):
+        beltrami.unwrap({"vertices": np.eye(3), "faces": [[0, 1, 2]]})
