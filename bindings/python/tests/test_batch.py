@@ -146,7 +146,7 @@ def test_a_result_may_not_replace_a_mesh(meshes, tmp_path):
     before = [path.read_bytes() for path in meshes]
     (tmp_path / "link").symlink_to(meshes[0].parent)
     for folder in (meshes[0].parent, tmp_path / "link"):
-        with pytest.raises(ValueError, match=r"hump8\.obj is a mesh to flatten: name another"):
+        with pytest.raises(ValueError, match=r"hump8\.obj is a mesh of the batch: name another"):
             beltrami.batch(meshes, folder)
     assert [path.read_bytes() for path in meshes] == before
     assert beltrami.batch(meshes[:1], meshes[0].parent, suffix=".ply")[0].ok

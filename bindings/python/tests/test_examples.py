@@ -12,6 +12,7 @@ EXAMPLES = {
     "flatten": ["hump.npz"],
     "compare_energies": ["energies.png"],
     "bake_checker": ["checker.png", "checker.mtl", "checker.obj"],
+    "unwrap": ["boxes.npz"],
     "with_trimesh": ["cap.obj"],
 }
 FOLDER = ROOT / "bindings" / "python" / "examples"

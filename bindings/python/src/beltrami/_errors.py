@@ -91,7 +91,7 @@ class NotADiskError(MeshError):
     """The surface is not one oriented disk; `status` says why, `element` where.
 
     It may be closed, have several components, boundary loops or handles, an edge or a vertex where
-    more than one sheet meets, or faces that run against each other.
+    more than one sheet meets, or faces that run against each other. `unwrap` takes such surfaces.
     """
 
 
