@@ -15,6 +15,8 @@ import sys
 from collections.abc import Iterator
 
 FILE_LINES = 600
+# One header is the whole of the interface, most of it comments.
+LONGER = {"include/beltrami/beltrami.h": 900}
 FUNCTION_LINES = 70
 TREES = ["src", "program", "include", "tests", "benchmarks", "bindings"]
 FUNCTION_TREES = ["src", "program"]
@@ -100,8 +102,9 @@ def main() -> int:
         text = file.read_text()
         count += 1
         lines = text.count("\n")
-        if lines > FILE_LINES:
-            found.append(f"{name}: {lines} lines, more than {FILE_LINES}: split it by what it does")
+        most = LONGER.get(name, FILE_LINES)
+        if lines > most:
+            found.append(f"{name}: {lines} lines, more than {most}: split it by what it does")
         if file.suffix not in (".h", ".cpp") or name.split("/")[0] not in FUNCTION_TREES:
             continue
         for function, first, last in functions(text):
