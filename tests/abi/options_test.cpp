@@ -73,8 +73,8 @@ TEST(Options, TakesBothEndsOfTheRangeAndNothingBeyond) {
       const auto set = [&](double value) { return beltrami_set_float(context.get(), key, value); };
       EXPECT_EQ(set(info.minimum), BELTRAMI_OK);
       EXPECT_EQ(set(info.maximum), BELTRAMI_OK);
-      EXPECT_EQ(set(std::nextafter(info.minimum, -1e300)), BELTRAMI_E_INVALID_ARGUMENT);
-      EXPECT_EQ(set(std::nextafter(info.maximum, 1e300)), BELTRAMI_E_INVALID_ARGUMENT);
+      EXPECT_EQ(set(std::nextafter(info.minimum, -HUGE_VAL)), BELTRAMI_E_INVALID_ARGUMENT);
+      EXPECT_EQ(set(std::nextafter(info.maximum, HUGE_VAL)), BELTRAMI_E_INVALID_ARGUMENT);
       EXPECT_EQ(set(std::nan("")), BELTRAMI_E_INVALID_ARGUMENT);
     } else {
       const auto set = [&](int64_t value) { return beltrami_set_int(context.get(), key, value); };
