@@ -93,12 +93,12 @@ Decimated::Decimated(const DiskMesh& fine, const Work& work)
       live_faces_(fine.face_count()),
       live_vertices_(fine.vertex_count()),
       boundary_count_(size_of(fine.boundary)),
-      min_boundary_(least_boundary(fine)),
+      min_boundary_(least_boundary(size_of(fine.boundary))),
       collapsed_into_(fine.vertex_count()),
       valence_(fine.vertex_count()) {
   std::iota(collapsed_into_.begin(), collapsed_into_.end(), 0);
   reserve(fine.vertex_count(), fine.vertex_count() + fine.face_count(), fine.face_count());
-  const std::vector<Role> roles = vertex_roles(fine);
+  const std::vector<Role> roles = vertex_roles(fine, {fine.boundary});
   for (Index v = 0; v < fine.vertex_count(); ++v) {
     const Vec3& p = fine.positions[v];
     status(add_vertex({p.x(), p.y(), p.z()})).set_locked(roles[v] == Role::kFixedBoundary);

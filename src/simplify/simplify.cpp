@@ -78,7 +78,7 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
   };
   if (surface.role[v] == Role::kInterior) {
     surface.for_each_corner(v, [&](Index, int, Index a, Index) { consider(a); });
-  } else if (surface.role[v] == Role::kBoundary && surface.boundary_count > surface.min_boundary) {
+  } else if (surface.role[v] == Role::kBoundary && surface.may_shorten(v)) {
     consider(surface.loop_next[v]);
     consider(surface.loop_previous[v]);
   }
@@ -118,8 +118,8 @@ EdgeFaces faces_of_edge(const ShrinkingSurface& surface, Index v, Index target) 
   return edge;
 }
 
-/// Whether the collapse keeps a disk: the link condition, no vertex of too few faces and no new
-/// interior edge between boundary vertices.
+/// Whether the collapse keeps the topology: the link condition, no vertex of too few faces and no
+/// new interior edge between boundary vertices.
 bool keeps_topology(ShrinkingSurface& surface, Index v, Index target) {
   const EdgeFaces edge = faces_of_edge(surface, v, target);
   for (Index i = 0; i < edge.count; ++i) {
@@ -143,6 +143,17 @@ bool keeps_topology(ShrinkingSurface& surface, Index v, Index target) {
 }
 
 // --- Collapses ----------------------------------------------------------------------------------
+
+/// What a collapse renames: the neighbours of v that are none of the target's. By the link
+/// condition those that are both have a face with the edge.
+void record(const ShrinkingSurface& surface, Index v, Index target, CollapseHistory& history) {
+  const EdgeFaces edge = faces_of_edge(surface, v, target);
+  const std::vector<Index>& fine = surface.fine_vertex;
+  history.steps.push_back({fine[v], fine[target], size_of(history.renamed)});
+  surface.for_each_neighbour(v, [&](Index u) {
+    if (u != target && !edge.has_apex(u)) history.renamed.push_back(fine[u]);
+  });
+}
 
 /// Returns the number of faces that go.
 Index collapse(ShrinkingSurface& surface, Index v, Index target) {
@@ -168,7 +179,7 @@ Index collapse(ShrinkingSurface& surface, Index v, Index target) {
     const Index next = surface.loop_next[v], previous = surface.loop_previous[v];
     surface.loop_next[previous] = next;
     surface.loop_previous[next] = previous;
-    --surface.boundary_count;
+    --surface.loop_size[surface.loop(v)];
   }
   surface.role[v] = Role::kRemoved;
   surface.collapsed_into[surface.fine_vertex[v]] = surface.fine_vertex[target];
@@ -195,6 +206,7 @@ enum class Outcome { kCollapsed, kRefused, kReachesOut };
 struct Collapses {
   Index vertices = 0, faces = 0;
   std::vector<Candidate> reaching_out;
+  CollapseHistory history;  ///< where it is asked for
 };
 
 /// Tries the candidate, then the next cheapest targets of its vertex up to `max_cost`, if all that
@@ -207,12 +219,13 @@ Outcome try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_
   if (surface.locked[v] || surface.locked[candidate.target]) return Outcome::kRefused;
   if (surface.on_boundary(v)) {
     if (range) return Outcome::kReachesOut;  // the loop is everybody's
-    if (surface.boundary_count <= surface.min_boundary) return Outcome::kRefused;
+    if (!surface.may_shorten(v)) return Outcome::kRefused;
   }
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     if (range && !range->has_all_of(surface, v, candidate.target)) return Outcome::kReachesOut;
     if (keeps_topology(surface, v, candidate.target) &&
         keeps_shape(surface, v, candidate.target, limits)) {
+      if (surface.keeps_history) record(surface, v, candidate.target, done.history);
       done.faces += collapse(surface, v, candidate.target);
       ++done.vertices;
       return Outcome::kCollapsed;
@@ -268,6 +281,7 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
       collapsed += d.vertices;
       surface.live_faces -= d.faces;
       rest.insert(rest.end(), d.reaching_out.begin(), d.reaching_out.end());
+      surface.history.append(d.history);
     }
   } else {
     for (const auto& block : of_block) rest.insert(rest.end(), block.begin(), block.end());
@@ -275,6 +289,7 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
   poll_interrupt();
   const Collapses last = collapse_in_order(surface, rest, max_cost, target_faces, limits, nullptr);
   surface.live_faces -= last.faces;
+  surface.history.append(last.history);
   return collapsed + last.vertices;
 }
 
@@ -317,10 +332,31 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, const Work& work)
 
 CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, const Work& work) {
   if (target_faces >= fine.face_count()) return whole_disk(fine);
-  ShrinkingSurface surface = make_surface(fine, work);
+  ShrinkingSurface surface = make_surface(fine, {fine.boundary}, work);
   run_passes(surface, target_faces, work);
   return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
                      std::move(surface.collapsed_into), work);
+}
+
+CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, Index target_faces,
+                               const Work& work) {
+  VertexLoops vertices(loops.count());
+  for (Index i = 0; i < loops.count(); ++i) {
+    for (Index k = loops.start[i]; k < loops.start[i + 1]; ++k) {
+      vertices[i].push_back(fine.origin(loops.halfedge[k]));
+    }
+  }
+  ShrinkingSurface surface = make_surface(fine, vertices, work);
+  surface.keeps_history = true;
+  run_passes(surface, target_faces, work);
+  std::vector<Vec3> positions;
+  positions.reserve(surface.fine_vertex.size());
+  for (const Index v : surface.fine_vertex) positions.push_back(fine.positions[v]);
+  CoarseSurface coarse;
+  coarse.mesh = build_surface(std::move(positions), std::move(surface.faces), work);
+  coarse.fine_vertex = std::move(surface.fine_vertex);
+  coarse.history = std::move(surface.history);
+  return coarse;
 }
 
 }  // namespace beltrami

@@ -1,4 +1,5 @@
-// Fine disk -> coarse disk by quadric edge collapse (Garland & Heckbert 1997; paper section 3.1).
+// Fine disk -> coarse disk, and any surface -> a coarse one, by quadric edge collapse (Garland &
+// Heckbert 1997; paper section 3.1).
 #pragma once
 
 #include <vector>
@@ -6,6 +7,8 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
+#include "simplify/history.h"
 
 namespace beltrami {
 
@@ -22,6 +25,19 @@ struct CoarseDisk {
 /// tips of ears, both ends of every bridge and one boundary vertex between successive bridge ends,
 /// since what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
 CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work);
+
+/// A coarse surface whose vertices are a subset of the fine ones, and the way back.
+struct CoarseSurface {
+  Surface mesh;
+  std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
+  CollapseHistory history;
+};
+
+/// The same on any surface, in our passes: components, handles and boundary loops stay, each loop
+/// with at least 8 vertices (or all). `loops` are the surface's. Precondition: every vertex is used
+/// by a face.
+CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, Index target_faces,
+                               const Work& work);
 
 /// "native" or "openmesh": the back end is chosen when the library is built
 /// (-DBELTRAMI_SIMPLIFIER=native|openmesh).

@@ -29,11 +29,11 @@ constexpr double kDegenerateWidth = 1e-6;
 constexpr std::int64_t kGrain = 16384;
 
 /// One boundary vertex strictly between two positions of the loop, nearest the middle by length.
-Index middle_of_loop(const DiskMesh& mesh, Index begin, Index end) {
-  const Index count = size_of(mesh.boundary);
+Index middle_of_loop(const Surface& mesh, const std::vector<Index>& loop, Index begin, Index end) {
+  const Index count = size_of(loop);
   const auto edge_length = [&](Index i) {
-    const Vec3& from = mesh.positions[mesh.boundary[i % count]];
-    return (mesh.positions[mesh.boundary[(i + 1) % count]] - from).norm();
+    const Vec3& from = mesh.positions[loop[i % count]];
+    return (mesh.positions[loop[(i + 1) % count]] - from).norm();
   };
   double total = 0;
   for (Index i = begin; i < end; ++i) total += edge_length(i);
@@ -42,21 +42,21 @@ Index middle_of_loop(const DiskMesh& mesh, Index begin, Index end) {
   while (middle + 1 < end && before + 0.5 * edge_length(middle) < 0.5 * total) {
     before += edge_length(middle++);
   }
-  return mesh.boundary[middle % count];
+  return loop[middle % count];
 }
 
 /// Fixes ear tips, bridge ends, and one vertex between bridge ends that follow each other on the
 /// loop, else the patch behind the bridge could lose all its width.
-void fix_boundary(const DiskMesh& mesh, std::vector<Role>& role) {
-  std::vector<bool> bridge_end(mesh.vertex_count(), false);
-  for (const Index v : mesh.boundary) {
+void fix_boundary(const Surface& mesh, const std::vector<Index>& loop,
+                  std::vector<bool>& bridge_end, std::vector<Role>& role) {
+  for (const Index v : loop) {
     mesh.for_each_outgoing(v, [&](Index h) {
       if (mesh.twin[h] != kNone && mesh.on_boundary[mesh.target(h)]) bridge_end[v] = true;
     });
   }
   std::vector<Index> ends;  // positions on the loop
-  for (Index i = 0; i < size_of(mesh.boundary); ++i) {
-    const Index v = mesh.boundary[i];
+  for (Index i = 0; i < size_of(loop); ++i) {
+    const Index v = loop[i];
     role[v] = Role::kBoundary;
     if (bridge_end[v]) ends.push_back(i);
     const bool ear_tip = mesh.rotate(mesh.outgoing[v]) == kNone;
@@ -64,12 +64,12 @@ void fix_boundary(const DiskMesh& mesh, std::vector<Role>& role) {
   }
   for (Index e = 0; e < size_of(ends); ++e) {
     const bool last = e + 1 == size_of(ends);
-    const Index end = last ? ends.front() + size_of(mesh.boundary) : ends[e + 1];
-    if (end - ends[e] > 1) role[middle_of_loop(mesh, ends[e], end)] = Role::kFixedBoundary;
+    const Index end = last ? ends.front() + size_of(loop) : ends[e + 1];
+    if (end - ends[e] > 1) role[middle_of_loop(mesh, loop, ends[e], end)] = Role::kFixedBoundary;
   }
 }
 
-double longest_edge_sq(const DiskMesh& mesh, const Triangle& face) {
+double longest_edge_sq(const Surface& mesh, const Triangle& face) {
   double longest = 0;
   for (int k = 0; k < 3; ++k) {
     const Vec3& from = mesh.positions[face[k]];
@@ -94,7 +94,7 @@ void add_boundary_quadric(const Vec3& edge, const Vec3& face_normal, Quadric& en
 /// Adds what a face and its boundary edges give to the quadrics `of` its vertices; where that is
 /// null, the vertex gets nothing.
 template <class Of>
-void add_face_quadrics(const DiskMesh& mesh, Index f, FacePlanes planes, const Of& of) {
+void add_face_quadrics(const Surface& mesh, Index f, FacePlanes planes, const Of& of) {
   const Triangle& face = mesh.faces[f];
   const std::array<Quadric*, 3> quadrics = {of(face[0]), of(face[1]), of(face[2])};
   const Vec3& p = mesh.positions[face[0]];
@@ -125,17 +125,18 @@ void add_face_quadrics(const DiskMesh& mesh, Index f, FacePlanes planes, const O
 
 }  // namespace
 
-std::vector<Role> vertex_roles(const DiskMesh& mesh) {
+std::vector<Role> vertex_roles(const Surface& mesh, const VertexLoops& loops) {
   std::vector<Role> roles(mesh.vertex_count(), Role::kInterior);
-  fix_boundary(mesh, roles);
+  std::vector<bool> bridge_end(mesh.vertex_count(), false);
+  for (const std::vector<Index>& loop : loops) fix_boundary(mesh, loop, bridge_end, roles);
   return roles;
 }
 
-Index least_boundary(const DiskMesh& mesh) {
-  return std::min(size_of(mesh.boundary), kMinBoundary);
+Index least_boundary(Index loop_size) {
+  return std::min(loop_size, kMinBoundary);
 }
 
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, const Work& work) {
+std::vector<Quadric> vertex_quadrics(const Surface& mesh, FacePlanes planes, const Work& work) {
   std::vector<Quadric> quadrics;
   parallel_assign(work, quadrics, mesh.positions.size());
   const FaceChunks chunks(mesh.vertex_count(), mesh.faces, work);
@@ -161,7 +162,7 @@ std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, co
   return quadrics;
 }
 
-ShrinkingSurface make_surface(const DiskMesh& mesh, const Work& work) {
+ShrinkingSurface make_surface(const Surface& mesh, const VertexLoops& loops, const Work& work) {
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
   parallel_assign(work, surface.site, mesh.positions.size());
@@ -173,15 +174,19 @@ ShrinkingSurface make_surface(const DiskMesh& mesh, const Work& work) {
   surface.collapsed_into = surface.fine_vertex;
   surface.faces = mesh.faces;
   surface.live_faces = mesh.face_count();
-  surface.boundary_count = size_of(mesh.boundary);
-  surface.min_boundary = least_boundary(mesh);
-  for (Index i = 0; i < size_of(mesh.boundary); ++i) {
-    const Index v = mesh.boundary[i];
-    const Index next = mesh.boundary[i + 1 == size_of(mesh.boundary) ? 0 : i + 1];
-    surface.loop_next[v] = next;
-    surface.loop_previous[next] = v;
+  surface.loop_of.assign(vertex_count, kNone);
+  for (const std::vector<Index>& loop : loops) {
+    const Index number = size_of(surface.loop_size), size = size_of(loop);
+    surface.loop_size.push_back(size);
+    surface.least_size.push_back(least_boundary(size));
+    for (Index i = 0; i < size; ++i) {
+      const Index v = loop[i], next = loop[i + 1 == size ? 0 : i + 1];
+      surface.loop_of[v] = number;
+      surface.loop_next[v] = next;
+      surface.loop_previous[next] = v;
+    }
   }
-  surface.role = vertex_roles(mesh);
+  surface.role = vertex_roles(mesh, loops);
   poll_interrupt();
   surface.quadric = vertex_quadrics(mesh, FacePlanes::kIncluded, work);
   return surface;

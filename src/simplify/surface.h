@@ -6,10 +6,14 @@
 
 #include "base/types.h"
 #include "base/work.h"
-#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
+#include "simplify/history.h"
 #include "simplify/quadric.h"
 
 namespace beltrami {
+
+/// The boundary loops of a surface, each by its vertices, the surface on their left.
+using VertexLoops = std::vector<std::vector<Index>>;
 
 /// The surface between passes. Vertices and faces are compacted before each pass, in their order.
 struct ShrinkingSurface {
@@ -30,8 +34,10 @@ struct ShrinkingSurface {
   std::vector<Index> collapsed_into;  ///< per fine vertex: the next one on the way, or itself
   std::vector<Triangle> faces;        ///< a removed one has kNone as its first corner
   Index live_faces = 0;
-  Index boundary_count = 0;
-  Index min_boundary = 0;
+  std::vector<Index> loop_of;  ///< per fine vertex: the boundary loop, or kNone
+  bool keeps_history = false;
+  CollapseHistory history;
+  std::vector<Index> loop_size, least_size;  ///< per loop: its vertices, and how many it keeps
 
   // Built for one pass.
   std::vector<Index> fan_start;      ///< per vertex: its first entry in `fan`
@@ -46,6 +52,9 @@ struct ShrinkingSurface {
     return role[v] == Role::kBoundary || role[v] == Role::kFixedBoundary;
   }
   Index min_valence(Index v) const { return on_boundary(v) ? 2 : 3; }
+  Index loop(Index v) const { return loop_of[fine_vertex[v]]; }
+  /// Whether the loop of a boundary vertex can do without one.
+  bool may_shorten(Index v) const { return loop_size[loop(v)] > least_size[loop(v)]; }
 
   /// Calls visit(face, corner, next vertex, previous vertex) for each live face of v.
   template <class Visit>
@@ -67,20 +76,20 @@ struct ShrinkingSurface {
 
 /// What every vertex is at the start. Fixed: the tips of ears, the ends of bridges, and one
 /// boundary vertex between ends that follow each other on the loop.
-std::vector<ShrinkingSurface::Role> vertex_roles(const DiskMesh& mesh);
+std::vector<ShrinkingSurface::Role> vertex_roles(const Surface& mesh, const VertexLoops& loops);
 
-/// How many vertices the boundary keeps: 8, or all it has.
-Index least_boundary(const DiskMesh& mesh);
+/// How many vertices a boundary loop keeps: 8, or all it has.
+Index least_boundary(Index loop_size);
 
 /// Whether vertex_quadrics has the planes of the faces.
 enum class FacePlanes { kIncluded, kLeftOut };
 
 /// The quadric of each vertex at the start: the planes of its faces, weighted by area, and what
 /// holds the boundary and faces without area in place.
-std::vector<Quadric> vertex_quadrics(const DiskMesh& mesh, FacePlanes planes, const Work& work);
+std::vector<Quadric> vertex_quadrics(const Surface& mesh, FacePlanes planes, const Work& work);
 
 /// The surface at the start: no pass begun yet.
-ShrinkingSurface make_surface(const DiskMesh& mesh, const Work& work);
+ShrinkingSurface make_surface(const Surface& mesh, const VertexLoops& loops, const Work& work);
 
 /// Drops removed faces and vertices, keeping the order of the others.
 void compact(ShrinkingSurface& surface, const Work& work);
