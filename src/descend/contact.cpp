@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "exact/box_tree.h"
 #include "exact/crossings.h"
 
 namespace beltrami {
 namespace {
-
-using Box = Eigen::AlignedBox2d;
 
 /// How far the barrier reaches, in edges: far enough for a Newton step to see what it runs into.
 /// With half an edge the steps become twice as many; with three the map ends higher.
@@ -25,6 +24,8 @@ constexpr double kStrength = 0.01;
 constexpr double kAhead = 1.2;
 /// Points of one boundary part are near each other: of the way between them along the boundary.
 constexpr double kReachAlong = 0.25;
+/// Consecutive vertices whose edges nearby are looked up at once.
+constexpr Index kTogether = 8;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -168,33 +169,32 @@ double BoundaryContact::reach(Index i, Index e) const {
 template <class BoxOf, class EndBoxOf, class Visit>
 void BoundaryContact::for_each_near(const BoxOf& vertex_box, const EndBoxOf& edge_end_box,
                                     const Visit& visit) const {
-  // A binary tree over the edges in their order: near in the loop is near in the plane.
   const Index count = size_of(loop_);
-  Index leaves = 1;
-  while (leaves < count) leaves *= 2;
-  std::vector<Box> boxes(2 * static_cast<std::size_t>(leaves));
+  std::vector<Box2> boxes;
+  boxes.reserve(loop_.size());
   for (Index e = 0; e < count; ++e) {
-    boxes[leaves + e] = edge_end_box(e).merged(edge_end_box(after(e)));
+    boxes.push_back(edge_end_box(e).merged(edge_end_box(after(e))));
   }
-  for (Index node = leaves - 1; node > 0; --node) {
-    boxes[node] = boxes[2 * node].merged(boxes[2 * node + 1]);
-  }
-  std::vector<Index> stack;
+  BoxTree tree(boxes);
+  std::vector<Index> edges;  // near one of the vertices from `first` on
   PollSometimes poll;
-  for (Index i = 0; i < count; ++i) {
-    const Box box = vertex_box(i);
-    stack.assign(1, 1);
-    while (!stack.empty()) {
-      const Index node = stack.back();
-      stack.pop_back();
-      poll();
-      if (!boxes[node].intersects(box)) continue;
-      const Index e = node - leaves;
-      if (e < 0) {
-        stack.push_back(2 * node + 1);
-        stack.push_back(2 * node);
-      } else if (e != i && after(e) != i && !visit(i, e)) {
-        return;
+  for (Index first = 0; first < count; first += kTogether) {
+    const Index end = std::min(first + kTogether, count);
+    Box2 all;
+    for (Index i = first; i < end; ++i) all.extend(vertex_box(i));
+    edges.clear();
+    tree.for_each_near(
+        all, [] { return true; },
+        [&](Index e) {
+          edges.push_back(e);
+          return true;
+        });
+    for (Index i = first; i < end; ++i) {
+      const Box2 box = vertex_box(i);
+      for (const Index e : edges) {
+        poll();
+        if (e == i || after(e) == i || !boxes[e].intersects(box)) continue;
+        if (!visit(i, e)) return;
       }
     }
   }
@@ -229,9 +229,9 @@ void BoundaryContact::for_each_pair(const std::vector<Vec2>& uvs, double scale, 
   const auto around_vertex = [&](Index i) {
     const double reach = scale * reach_of_vertex(i);
     const Vec2& p = uvs[loop_[i]];
-    return Box(p - Vec2(reach, reach), p + Vec2(reach, reach));
+    return Box2(p - Vec2(reach, reach), p + Vec2(reach, reach));
   };
-  const auto at_vertex = [&](Index i) { return Box(uvs[loop_[i]]); };
+  const auto at_vertex = [&](Index i) { return Box2(uvs[loop_[i]]); };
   for_each_near(around_vertex, at_vertex, [&](Index i, Index e) {
     const Index p = loop_[i], a = loop_[e], b = loop_[after(e)];
     const double limit = reach(i, e);
@@ -311,9 +311,12 @@ std::vector<Touch> BoundaryContact::touches(const std::vector<Vec2>& uvs,
   std::vector<Touch> found;
   double first = limit;
   const auto until = [&] { return std::max(first, std::min(all_before, limit)); };
+  // Whoever moves along with the whole sees its parts move less, in smaller boxes.
+  Vec2 mean = Vec2::Zero();
+  for (const Index v : loop_) mean += direction[v] / static_cast<double>(loop_.size());
   const auto swept = [&](Index i, double time) {
-    const Vec2 &p = uvs[loop_[i]], &d = direction[loop_[i]];
-    Box box(p);
+    const Vec2 &p = uvs[loop_[i]], d = direction[loop_[i]] - mean;
+    Box2 box(p);
     return box.extend(p + time * d);
   };
   const auto vertex_swept = [&](Index i) { return swept(i, until()); };

@@ -26,8 +26,7 @@ class BoxTree {
   bool for_each_near(const Box2& box, const Look& look, const Visit& visit) {
     stack_.assign(1, 1);
     while (!stack_.empty()) {
-      const Index node = stack_.back();
-      stack_.pop_back();
+      const Index node = pop();
       poll_();
       if (!look()) return false;
       if (!boxes_[node].intersects(box)) continue;
@@ -41,7 +40,39 @@ class BoxTree {
     return true;
   }
 
+  /// Calls visit(a, b) for the items a < b whose boxes meet, and look() for each two boxes on the
+  /// way, until one of them returns false; then returns false.
+  template <class Look, class Visit>
+  bool for_each_pair(const Look& look, const Visit& visit) {
+    stack_.assign({1, 1});
+    while (!stack_.empty()) {
+      const Index b = pop(), a = pop();
+      poll_();
+      if (!look()) return false;
+      if (a != b && !boxes_[a].intersects(boxes_[b])) continue;
+      if (a >= leaf_count_) {
+        if (a != b && !visit(a - leaf_count_, b - leaf_count_)) return false;
+        continue;
+      }
+      const auto push = [&](Index first, Index second) {
+        stack_.push_back(first);
+        stack_.push_back(second);
+      };
+      push(2 * a + 1, 2 * b + 1);
+      push(2 * a, 2 * b + 1);
+      if (a != b) push(2 * a + 1, 2 * b);
+      push(2 * a, 2 * b);
+    }
+    return true;
+  }
+
  private:
+  Index pop() {
+    const Index node = stack_.back();
+    stack_.pop_back();
+    return node;
+  }
+
   Index leaf_count_;
   std::vector<Box2> boxes_;
   std::vector<Index> stack_;

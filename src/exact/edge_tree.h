@@ -23,6 +23,13 @@ class EdgeTree {
     return tree_.for_each_near(tree_.box(edge), look, visit);
   }
 
+  /// Calls visit(e, f) for the edges e < f whose boxes meet, and look() for each two boxes on the
+  /// way, until one of them returns false; then returns false.
+  template <class Look, class Visit>
+  bool for_each_pair(const Look& look, const Visit& visit) {
+    return tree_.for_each_pair(look, visit);
+  }
+
  private:
   const ClosedPolygon polygon_;
   BoxTree tree_;

@@ -364,9 +364,26 @@ TEST(Crossings, TakeLittleMoreThanTwiceTheWorkForTwiceTheEdges) {
   }
 }
 
+TEST(IsSimple, TakesLittleMoreThanTwiceTheWorkForTwiceTheEdges) {
+  for (const auto& make : {star, nested, all_in_one_place, collinear}) {
+    const auto polls = [&](int vertices) {
+      const std::vector<Vec2> polygon = make(vertices);
+      return count_polls([&] { is_simple(loop_of(polygon), polygon); });
+    };
+    EXPECT_LE(polls(80000), 2.5 * static_cast<double>(polls(40000)) + 10);
+  }
+}
+
 TEST(Crossings, AreNoneBetweenLongEdgesSideBySide) {
   EXPECT_EQ(crossings(star(3000)), 0);
   EXPECT_EQ(crossings(nested(3000)), 0);
+}
+
+TEST(IsSimple, TellsWhereVeryManyBoxesMeet) {
+  std::vector<Vec2> polygon = nested(6000);
+  EXPECT_TRUE(is_simple(loop_of(polygon), polygon));
+  polygon[5900].x() -= 2;
+  EXPECT_FALSE(is_simple(loop_of(polygon), polygon));
 }
 
 TEST(Crossings, ListsABoundedNumberWhereAllVerticesCoincide) {
