@@ -116,4 +116,11 @@ Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   return patch;
 }
 
+void hold_boundary(const DiskMesh& mesh, Patch& patch) {
+  for (std::size_t i = 0; i < patch.fixed.size(); ++i) {
+    if (mesh.on_boundary[patch.mesh_vertices[i]]) patch.fixed[i] = true;
+  }
+  patch.moves_boundary = false;
+}
+
 }  // namespace beltrami

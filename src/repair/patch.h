@@ -29,4 +29,7 @@ struct Patch {
 Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const std::vector<Vec2>& uvs, Index face, int rings);
 
+/// Fixes the vertices on the boundary of the mesh, too.
+void hold_boundary(const DiskMesh& mesh, Patch& patch);
+
 }  // namespace beltrami

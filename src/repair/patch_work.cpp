@@ -12,17 +12,45 @@ bool PatchWork::take(Patch& patch) {
     patch.exchange(uvs_);
     return true;
   }
-  if (!tree_) {
-    tree_.emplace(ClosedPolygon(mesh_.boundary, uvs_));
-    position_.assign(mesh_.positions.size(), kNone);
-    for (Index i = 0; i < size_of(mesh_.boundary); ++i) position_[mesh_.boundary[i]] = i;
-  }
+  follow_boundary();
   const std::vector<Index> edges = moving_edges(patch);
   const std::int64_t before = crossings_of(edges);
   exchange(patch, edges);
   if (crossings_of(edges) <= before) return true;
   exchange(patch, edges);
   return false;
+}
+
+void PatchWork::straighten_boundary(Patch& patch) {
+  if (!patch.moves_boundary) return;
+  follow_boundary();
+  const ClosedPolygon polygon(mesh_.boundary, uvs_);
+  const std::vector<Index>& all = patch.mesh_vertices;
+  // What is beside a vertex that may move is in the patch, too.
+  const auto local = [&](Index at) {
+    return std::lower_bound(all.begin(), all.end(), mesh_.boundary[at]) - all.begin();
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (patch.fixed[i] || !mesh_.on_boundary[all[i]]) continue;
+    const Index before = polygon.previous(position_[all[i]]);
+    if (!patch.fixed[local(before)]) continue;
+    std::vector<std::ptrdiff_t> part;
+    Index after = position_[all[i]];
+    for (; !patch.fixed[local(after)]; after = polygon.next(after)) part.push_back(local(after));
+    if (before == after) continue;  // no line
+    const Vec2 start = polygon.start(before), way = polygon.start(after) - start;
+    const double steps = static_cast<double>(part.size() + 1);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      patch.uvs[part[k]] = start + (static_cast<double>(k + 1) / steps) * way;
+    }
+  }
+}
+
+void PatchWork::follow_boundary() {
+  if (tree_) return;
+  tree_.emplace(ClosedPolygon(mesh_.boundary, uvs_));
+  position_.assign(mesh_.positions.size(), kNone);
+  for (Index i = 0; i < size_of(mesh_.boundary); ++i) position_[mesh_.boundary[i]] = i;
 }
 
 /// Positions in the boundary, increasing.

@@ -140,10 +140,23 @@ class Repair {
     return true;
   }
 
+  bool untangled(Patch& patch) const {
+    return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work_.aside());
+  }
+
   bool fix_patch(Index face, int rings, PatchWork& patches) {
-    Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
-    if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work_.aside())) return false;
-    return patches.take(patch);
+    const Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
+    Patch free = patch;
+    if (!untangled(free)) return false;
+    if (patches.take(free)) return true;
+    // The sides of a slit can be in each other's way.
+    Patch held = patch;
+    hold_boundary(mesh_, held);
+    if (untangled(held) && patches.take(held)) return true;
+    // From a boundary that is folded, faces can end all positive and twice around a vertex.
+    Patch straight = patch;
+    patches.straighten_boundary(straight);
+    return untangled(straight) && patches.take(straight);
   }
 
   const DiskMesh& mesh_;

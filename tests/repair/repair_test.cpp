@@ -18,6 +18,7 @@
 #include "repair/patch.h"
 #include "repair/repair.h"
 #include "repair/rounding.h"
+#include "support/cuts.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 #include "support/polls.h"
@@ -136,6 +137,44 @@ TEST(Repair, MendsAnEarThatIsFoldedInwards) {
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   uvs[5] = {0.82, 0.18};
   mend(mesh, uvs);
+  EXPECT_TRUE(injective(mesh, uvs));
+}
+
+// Slit in its middle, a saddle has too much of its surface around the slit: what relaxes there
+// closes it, and its sides cross. Here they are a hair apart, and one is drawn up on itself.
+TEST(Repair, HoldsTheBoundaryWhereTheSidesOfASlitWouldCross) {
+  const DiskMesh mesh = disks::disk(disks::slit_saddle(2, 0.5));
+  std::vector<Vec2> before = disks::flat_uvs(mesh);
+  before[13].y() -= 0.0025;
+  before[14].y() -= 0.005;
+  before[25].y() += 0.0025;
+  before[26].y() += 0.005;
+  before[14] += Vec2(-0.36, -0.05);
+  const Certificate folded = certify(mesh.faces, mesh.boundary, before, Work(1));
+  ASSERT_EQ(folded.crossings.count, 0);
+  ASSERT_EQ(folded.orientations.negative, 1);
+  std::vector<Vec2> after = before;
+  const RepairResult result = mend(mesh, after);
+  EXPECT_EQ(result.patch_fixes, 1);
+  EXPECT_EQ(result.global_fixes, 0);
+  EXPECT_TRUE(injective(mesh, after));
+  for (const Index v : mesh.boundary) EXPECT_EQ(after[v], before[v]);
+}
+
+// Of three vertices in the row on the boundary the middle one lies far inside and the first beyond
+// it. From there faces become positive by going around a vertex twice.
+TEST(Repair, StraightensABoundaryThatIsFolded) {
+  const DiskMesh mesh = disks::disk(meshes::grid(5, 5));
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  uvs[2] += Vec2(0.35, -0.15);
+  uvs[3] += Vec2(-0.4, 0.1);
+  uvs[4] += Vec2(0.25, -0.05);
+  const Certificate folded = certify(mesh.faces, mesh.boundary, uvs, Work(1));
+  ASSERT_EQ(folded.crossings.count, 0);
+  ASSERT_EQ(folded.orientations.negative, 2);
+  const RepairResult result = mend(mesh, uvs);
+  EXPECT_EQ(result.patch_fixes, 1);
+  EXPECT_EQ(result.global_fixes, 0);
   EXPECT_TRUE(injective(mesh, uvs));
 }
 
