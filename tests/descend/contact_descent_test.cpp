@@ -202,7 +202,7 @@ TEST(MinimiseEnergyWithContact, HoldsNoVertexThatNothingPressesOn) {
 
 TEST(MinimiseEnergyWithContact, HasTheSameBitsOnTwoAndThreeThreads) {
   for_each_overlap([](const std::string& where, const DiskMesh& mesh, const BoundaryContact&,
-                      NewtonOptions options, const Way& way) {
+                      const NewtonOptions& options, const Way& way) {
     const Minimum one = minimise(mesh, way.start, options);
     for (const int threads : {2, 3}) {
       const Minimum more = minimise(mesh, way.start, options, threads);

@@ -230,7 +230,7 @@ TEST(AtlasCertificate, LetsChartsBeNestedThroughHolesManyTimes) {
   for (int i = 0; i < 6; ++i) {
     atlas.add_cells(
         3, 3, [](Index x, Index y) { return x != 1 || y != 1; },
-        [&](Vec2 p) -> Vec2 { return std::ldexp(1.0, -2 * i) * (p - Vec2(1.5, 1.5)); });
+        [&](const Vec2& p) -> Vec2 { return std::ldexp(1.0, -2 * i) * (p - Vec2(1.5, 1.5)); });
   }
   EXPECT_TRUE(certify(atlas).injective());
   // In the inside of the smallest cell, whose border it does not cross.
@@ -306,7 +306,7 @@ UvFaces square_spiral(int turns, double pitch) {
     // Each side from its inner corner to the next; they share the cells at the corners by halves.
     const double inner = pitch * (side / 4.0 + 1), next = pitch * ((side + 1) / 4.0 + 1);
     const std::array<Vec2, 4> axis = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
-    const Vec2 u = axis[side % 4], v = axis[(side + 1) % 4];
+    const Vec2 &u = axis[side % 4], &v = axis[(side + 1) % 4];
     const double before = pitch * ((side - 1) / 4.0 + 1);
     // The side lies at distance `inner` along u, and runs along v.
     const Vec2 a = inner * u - before * v, b = (inner + 1) * u - (before + 1) * v;
@@ -416,7 +416,7 @@ TEST(AtlasCertificate, HoldsForTheLargestAndTheSmallestNumbers) {
     const auto scaled = [&](const Vec2& corner, double cell) {
       return UvFaces().add_cells(
           1, 1, [](Index, Index) { return true; },
-          [&](Vec2 p) -> Vec2 { return unit * (corner + cell * p); });
+          [&](const Vec2& p) -> Vec2 { return unit * (corner + cell * p); });
     };
     EXPECT_TRUE(certify(scaled({-1, -1}, 2)).injective());
     UvFaces two = scaled({-1, -1}, 2);

@@ -334,7 +334,8 @@ std::vector<Vec2> star(int vertices) {
 std::vector<Vec2> nested(int vertices) {
   std::vector<Vec2> polygon;
   for (int i = 0; i < vertices; ++i) {
-    const double x = i / 2;
+    const int pair = i / 2;
+    const double x = pair;
     polygon.push_back((i % 4 == 0 || i % 4 == 3) ? Vec2(x, 0) : Vec2(1e6 + x, 1e6));
   }
   polygon.push_back({2e6, -1});

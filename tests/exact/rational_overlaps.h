@@ -47,7 +47,7 @@ struct UvFaces {
   UvFaces& add_grid(Index nx, Index ny, const Vec2& corner, double cell = 1) {
     return add_cells(
         nx, ny, [](Index, Index) { return true; },
-        [&](Vec2 p) -> Vec2 { return corner + cell * p; });
+        [&](const Vec2& p) -> Vec2 { return corner + cell * p; });
   }
 };
 
