@@ -13,8 +13,6 @@
 namespace beltrami {
 namespace {
 
-using disks::Random;
-
 constexpr Numbers kSingle = {.single = true};
 
 Rounded round(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int threads = 1) {
