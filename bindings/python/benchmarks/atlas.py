@@ -8,11 +8,11 @@ Every file (all that trimesh reads in the folder, of at most so many triangles) 
 - islands: ours along the seams that xatlas chose, which says what is left in the same charts;
 - xatlas and uvunwrap with their default options.
 
-All run one after the other in one process, ours on one thread. Seams are their length on the surface
-over the root of its area, each once. E is the mean symmetric Dirichlet energy at the one scale for
-the whole atlas that is best, over the triangles that are not flipped; overlaps are pairs of
-triangles counted exactly (mirrored charts are taken for their mirror images), "+" where there are
-more. CPU seconds carry to no other machine, their ratio does.
+All run one after the other in one process, ours on one thread. Seams are their length on the
+surface over the root of its area, each once. E is the mean symmetric Dirichlet energy at the one
+scale for the whole atlas that is best, over the triangles that are not flipped; overlaps are pairs
+of triangles counted exactly (mirrored charts are taken for their mirror images), "+" where there
+are more. CPU seconds carry to no other machine, their ratio does.
 """
 
 from __future__ import annotations
@@ -78,9 +78,7 @@ def best_energy(vertices: np.ndarray, faces: np.ndarray, uvs: np.ndarray) -> flo
     return float(np.sqrt((weight * stretch[good]).sum() * (weight * shrink[good]).sum()))
 
 
-def charts_and_seams(
-    vertices: np.ndarray, faces: np.ndarray, uvs: np.ndarray
-) -> tuple[int, float]:
+def charts_and_seams(vertices: np.ndarray, faces: np.ndarray, uvs: np.ndarray) -> tuple[int, float]:
     """Count the charts, and measure the edges at which triangles with other UVs meet."""
     edge = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     ends = uvs[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2, 2)
