@@ -15,7 +15,6 @@
 #include "files/mesh_file.h"
 #include "files/point_numbers.h"
 #include "files/split_mesh.h"
-#include "files/surface.h"
 #include "files/surface_view.h"
 #include "picture/picture.h"
 #include "process/failure.h"
