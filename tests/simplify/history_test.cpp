@@ -52,7 +52,6 @@ std::vector<TriangleList> surfaces() {
           meshes::double_torus(20),
           perforated(),
           meshes::grid(30, 20),
-          meshes::annulus(60),
           meshes::together({meshes::torus(16), disks::blob(3), meshes::grid(12, 12)})};
 }
 
