@@ -26,7 +26,10 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "records.h"
 #include "refine.h"
+
+using beltrami::benchmarks::Records;
 
 namespace {
 
@@ -151,7 +154,7 @@ std::optional<Latency> cancel_in(beltrami_context* context, const Stage& stage,
   return Latency{request.stage, milliseconds(returned - request.when), cpu - request.run_cpu};
 }
 
-void print_row(const Stage& stage, std::vector<Latency> latencies) {
+void print_row(const Stage& stage, std::vector<Latency> latencies, Records& records) {
   const auto by_wall = [](const Latency& a, const Latency& b) { return a.wall < b.wall; };
   const auto by_cpu = [](const Latency& a, const Latency& b) { return a.cpu < b.cpu; };
   std::sort(latencies.begin(), latencies.end(), by_wall);
@@ -161,9 +164,15 @@ void print_row(const Stage& stage, std::vector<Latency> latencies) {
   std::printf("%-10s %9.0f %8zu %12.1f %12.1f %12.1f %12.1f\n", stage.name.c_str(),
               milliseconds(stage.end - stage.begin), latencies.size(), median, longest,
               latencies[middle].cpu, latencies.back().cpu);
+  records.add({{"stage", stage.name},
+               {"cancels", latencies.size()},
+               {"median_wall_ms", median},
+               {"longest_wall_ms", longest},
+               {"median_cpu_ms", latencies[middle].cpu},
+               {"longest_cpu_ms", latencies.back().cpu}});
 }
 
-void measure(beltrami_context* context, int samples, const std::string& only) {
+void measure(beltrami_context* context, int samples, const std::string& only, Records& records) {
   std::vector<Look> looks;
   const beltrami_status status = beltrami_run(context, note_look, &looks);
   const Clock::time_point end = Clock::now();
@@ -184,7 +193,8 @@ void measure(beltrami_context* context, int samples, const std::string& only) {
   std::set<std::string> printed;
   for (const Stage& stage : stages) {
     const std::vector<Latency>& latencies = found[stage.name];
-    if (!latencies.empty() && printed.insert(stage.name).second) print_row(stage, latencies);
+    if (!latencies.empty() && printed.insert(stage.name).second)
+      print_row(stage, latencies, records);
   }
 }
 
@@ -223,8 +233,8 @@ int main(int argc, char** argv) {
   app.add_option("--set", options, "Options of the library: --set threads=2 --set flatten=gif");
   app.add_option("--samples", samples, "Runs to cancel in each stage");
   app.add_option("--stage", stage, "This stage only");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  Records records("cancel");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
     auto file = beltrami::benchmarks::read_triangles(path);
     if (faces > file.face_count()) file = beltrami::benchmarks::refine(file, faces);
     beltrami_context* raw = nullptr;
@@ -236,13 +246,10 @@ int main(int argc, char** argv) {
     if (beltrami_set_mesh(raw, &mesh) != BELTRAMI_OK) {
       throw std::runtime_error(beltrami_error_message(raw));
     }
-    std::printf("%s\n%llu faces; beltrami_set_mesh, which cannot be cancelled, takes %.0f ms\n",
-                beltrami_build_info(), static_cast<unsigned long long>(mesh.face_count),
+    std::printf("%s\n%llu faces; beltrami_set_mesh takes %.0f ms\n", beltrami_build_info(),
+                static_cast<unsigned long long>(mesh.face_count),
                 milliseconds(Clock::now() - begin));
-    measure(raw, samples, stage);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_cancel_bench: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    measure(raw, samples, stage, records);
+    return 0;
+  });
 }

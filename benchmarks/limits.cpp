@@ -15,10 +15,12 @@
 #include <ctime>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "process_memory.h"
+#include "records.h"
 
 namespace beltrami::benchmarks {
 namespace {
@@ -139,20 +141,33 @@ Measured measure(const Arrays& arrays) {
   return measured;
 }
 
-void print_row(const Case& what, std::uint32_t size) {
+/// In a process of its own, whose peak is that of this case alone.
+void measure_apart(const Case& what, std::uint32_t size, Records& records) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   std::fflush(nullptr);
   const pid_t child = fork();
-  if (child != 0) {
-    int state = 0;
-    waitpid(child, &state, 0);
-    if (state != 0) std::printf("%-14s %9u  did not end\n", what.name, size);
+  if (child == 0) {
+    const Measured m = measure(what.make(size));
+    _exit(write(ends[1], &m, sizeof m) == sizeof m ? 0 : 1);
+  }
+  close(ends[1]);
+  Measured m{};
+  const bool told = read(ends[0], &m, sizeof m) == sizeof m;
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  if (!told) {
+    std::printf("%-14s %9u  did not end\n", what.name, size);
     return;
   }
-  const Measured m = measure(what.make(size));
   std::printf("%-14s %9u %8.2f %8.0f %8.0f  %s\n", what.name, size, m.seconds, m.bytes / kMebibyte,
               m.estimate / kMebibyte, beltrami_status_name(m.status));
-  std::fflush(nullptr);
-  _exit(0);
+  records.add({{"case", what.name},
+               {"size", size},
+               {"cpu_seconds", m.seconds},
+               {"bytes", m.bytes},
+               {"estimate", m.estimate},
+               {"status", beltrami_status_name(m.status)}});
 }
 
 }  // namespace
@@ -167,11 +182,13 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(100, 100000000))
       ->capture_default_str();
   app.add_option("--only", only, "One case by its name");
-  CLI11_PARSE(app, argc, argv);
-  std::printf("%-14s %9s %8s %8s %8s  %s\n", "", "size", "CPU s", "MiB", "estimate", "status");
-  for (const Case& what : cases()) {
-    if (!only.empty() && only != what.name) continue;
-    for (const std::uint32_t n : {size / 4, size}) print_row(what, n);
-  }
-  return 0;
+  Records records("limits");
+  return run(app, argc, argv, records, [&] {
+    std::printf("%-14s %9s %8s %8s %8s  %s\n", "", "size", "CPU s", "MiB", "estimate", "status");
+    for (const Case& what : cases()) {
+      if (!only.empty() && only != what.name) continue;
+      for (const std::uint32_t n : {size / 4, size}) measure_apart(what, n, records);
+    }
+    return 0;
+  });
 }

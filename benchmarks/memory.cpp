@@ -20,6 +20,7 @@
 
 #include "commands/command.h"
 #include "process_memory.h"
+#include "records.h"
 #include "refine.h"
 
 namespace beltrami::benchmarks {
@@ -137,7 +138,8 @@ std::vector<std::string> words(const std::string& text) {
 }
 
 /// Returns whether the estimate was enough.
-bool report(const std::string& name, const TriangleMesh& mesh, const std::string& mode) {
+bool report(const std::string& name, const TriangleMesh& mesh, const std::string& mode,
+            Records& records) {
   const Measured m = run_apart(mesh, words(mode));
   if (m.status < 0) {
     std::printf("%-24.24s %9llu %s: %s\n", name.c_str(),
@@ -150,6 +152,12 @@ bool report(const std::string& name, const TriangleMesh& mesh, const std::string
               m.estimate / kMebibyte, m.estimate / m.bytes, enough ? " " : "!",
               m.bytes / static_cast<double>(mesh.vertex_count()), m.energy, mode.c_str(), m.stages);
   std::fflush(stdout);
+  records.add({{"mesh", name},
+               {"faces", mesh.face_count()},
+               {"mode", mode},
+               {"bytes", m.bytes},
+               {"estimate", m.estimate},
+               {"energy", m.energy}});
   return enough;
 }
 
@@ -166,10 +174,10 @@ int main(int argc, char** argv) {
   app.add_option("MESH", meshes, "Disks; the bust of examples/data by default");
   app.add_option("--faces", sizes, "Refine to about so many faces; 0: as it is");
   app.add_option("--mode", modes, "Options of a run, as in \"flatten=gif threads=2\"");
-  CLI11_PARSE(app, argc, argv);
-  bool enough = true;
-  try {
+  beltrami::benchmarks::Records records("memory");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
     using namespace beltrami;
+    bool enough = true;
     std::printf("%s\n%-24s %9s %8s %8s %6s  %6s %8s  %s\n", beltrami_build_info(), "mesh", "faces",
                 "MiB", "estimate", "ratio", "B/vert", "E", "mode: MiB at the peak of each stage");
     for (const std::string& path : meshes) {
@@ -178,12 +186,11 @@ int main(int argc, char** argv) {
       for (const std::uint64_t faces : sizes) {
         const benchmarks::TriangleMesh mesh =
             faces > base.face_count() ? benchmarks::refine(base, faces) : base;
-        for (const std::string& mode : modes) enough &= benchmarks::report(name, mesh, mode);
+        for (const std::string& mode : modes) {
+          enough &= benchmarks::report(name, mesh, mode, records);
+        }
       }
     }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_bench_memory: %s\n", error.what());
-    return 2;
-  }
-  return enough ? 0 : 1;
+    return enough ? 0 : 1;
+  });
 }

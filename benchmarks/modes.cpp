@@ -9,16 +9,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "commands/command.h"
+#include "records.h"
 #include "refine.h"
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using beltrami::benchmarks::Json;
+using beltrami::benchmarks::Records;
 
 struct Setting {
   std::int32_t key;
@@ -88,8 +89,8 @@ Figures run(const beltrami::benchmarks::TriangleMesh& file, const Mode& mode,
   return figures;
 }
 
-Json benchmark(const std::string& path, std::uint64_t faces, bool with_cm, std::int32_t energy,
-               int threads) {
+void benchmark(const std::string& path, std::uint64_t faces, bool with_cm, std::int32_t energy,
+               int threads, Records& records) {
   auto mesh = beltrami::benchmarks::read_triangles(path);
   if (faces > mesh.face_count()) mesh = beltrami::benchmarks::refine(mesh, faces);
   const std::string name = std::filesystem::path(path).stem().string();
@@ -97,7 +98,6 @@ Json benchmark(const std::string& path, std::uint64_t faces, bool with_cm, std::
               static_cast<unsigned long long>(mesh.face_count()));
   std::printf("%-16s %12s %9s %10s %9s %7s %6s %9s  %s\n", "mode", "E", "E / CM", "flips in",
               "flips out", "cross", "cpu s", "cpu / CM", "verdict");
-  Json rows = Json::array();
   Figures cm;
   for (const Mode& mode : modes()) {
     const bool is_cm = std::string(mode.name) == "cm";
@@ -112,20 +112,19 @@ Json benchmark(const std::string& path, std::uint64_t faces, bool with_cm, std::
                 energy_ratio, f.flips_before, f.flips, f.crossings, f.cpu_seconds, cost_ratio,
                 verdict);
     std::fflush(stdout);
-    rows.push_back({{"mesh", name},
-                    {"faces", mesh.face_count()},
-                    {"mode", mode.name},
-                    {"status", beltrami_status_name(f.status)},
-                    {"energy", f.energy},
-                    {"energy_over_cm", with_cm ? Json(energy_ratio) : Json()},
-                    {"flips_before_repair", f.flips_before},
-                    {"flips", f.flips},
-                    {"boundary_crossings", f.crossings},
-                    {"cpu_seconds", f.cpu_seconds},
-                    {"cost_over_cm", with_cm ? Json(cost_ratio) : Json()},
-                    {"injective", f.injective}});
+    records.add({{"mesh", name},
+                 {"faces", mesh.face_count()},
+                 {"mode", mode.name},
+                 {"status", beltrami_status_name(f.status)},
+                 {"energy", f.energy},
+                 {"energy_over_cm", with_cm ? Json(energy_ratio) : Json()},
+                 {"flips_before_repair", f.flips_before},
+                 {"flips", f.flips},
+                 {"boundary_crossings", f.crossings},
+                 {"cpu_seconds", f.cpu_seconds},
+                 {"cost_over_cm", with_cm ? Json(cost_ratio) : Json()},
+                 {"injective", f.injective}});
   }
-  return rows;
 }
 
 }  // namespace
@@ -134,33 +133,22 @@ int main(int argc, char** argv) {
   CLI::App app("Runs every mode on MESH... and prints energy, flips and cost against CM.");
   std::vector<std::string> meshes = {BELTRAMI_EXAMPLE_MESH};
   std::uint64_t faces = 0;
-  std::string energy = "symmetric-dirichlet", json;
+  std::string energy = "symmetric-dirichlet";
   int threads = 1;
   bool no_cm = false;
   app.add_option("MESH", meshes, "Disks to flatten; the bust of examples/data by default");
   app.add_option("--faces", faces, "Refine smaller meshes to about this many faces first");
   app.add_option("--energy", energy, "symmetric-dirichlet or symmetric-arap");
   app.add_option("--threads", threads, "Threads to use");
-  app.add_option("--json", json, "Write the rows to this file, too");
   app.add_flag("--no-cm", no_cm, "Leave out CM on the full mesh, which takes the longest");
-  CLI11_PARSE(app, argc, argv);
-  const std::int32_t kind = energy == "symmetric-arap" ? BELTRAMI_ENERGY_SYMMETRIC_ARAP
-                                                       : BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
-  try {
+  Records records("modes");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
+    const std::int32_t kind = energy == "symmetric-arap" ? BELTRAMI_ENERGY_SYMMETRIC_ARAP
+                                                         : BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
     std::printf("%s, %d thread(s), energy %s\n", beltrami_build_info(), threads, energy.c_str());
-    Json rows = Json::array();
     for (const std::string& mesh : meshes) {
-      for (auto& row : benchmark(mesh, faces, !no_cm, kind, threads)) rows.push_back(row);
+      benchmark(mesh, faces, !no_cm, kind, threads, records);
     }
-    if (!json.empty()) {
-      if (FILE* file = std::fopen(json.c_str(), "w")) {
-        std::fputs((rows.dump(1) + "\n").c_str(), file);
-        std::fclose(file);
-      }
-    }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_bench: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -13,22 +13,19 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "commands/command.h"
 #include "process_memory.h"
+#include "records.h"
 #include "refine.h"
 #include "yardstick.h"
 
 namespace beltrami::benchmarks {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// What memory is in use, and from where on a new peak counts.
 double start_of_peak() {
@@ -165,12 +162,11 @@ void print(const Json& row) {
   std::fflush(stdout);
 }
 
-Json benchmark(const std::string& path, const std::vector<std::uint64_t>& sizes, int rounds,
-               std::uint64_t cm_faces) {
+void benchmark(const std::string& path, const std::vector<std::uint64_t>& sizes, int rounds,
+               std::uint64_t cm_faces, Records& records) {
   const std::string name = std::filesystem::path(path).stem().string();
   std::printf("\n%s\n%9s %7s %6s %6s %8s %8s %7s %6s %7s %7s %5s\n", name.c_str(), "faces", "cpu s",
               "/ Um", "/ Ua", "E", "E / CM", "/ CM", "2 thr.", "growth", "B/vert", "flips");
-  Json rows = Json::array();
   const TriangleMesh base = read_triangles(path);
   double last_cost = 0, last_faces = 0;
   for (const std::uint64_t faces : sizes) {
@@ -182,28 +178,28 @@ Json benchmark(const std::string& path, const std::vector<std::uint64_t>& sizes,
     const Json growth = last_cost > 0
                             ? Json(std::log(f.one.cpu / last_cost) / std::log(count / last_faces))
                             : Json();
-    rows.push_back({{"mesh", name},
-                    {"faces", mesh.face_count()},
-                    {"cpu_seconds", f.one.cpu},
-                    {"wall_seconds", f.one.wall},
-                    {"um_seconds", f.um},
-                    {"ua_seconds", f.ua},
-                    {"cost_um", ratio(f.one.cpu, f.um)},
-                    {"cost_ua", ratio(f.one.cpu, f.ua)},
-                    {"energy", f.one.energy},
-                    {"energy_over_cm", ratio(f.one.energy, f.cm_energy)},
-                    {"cost_over_cm", ratio(f.one.cpu, f.cm_cpu)},
-                    {"speedup_2_threads", f.one.wall / f.two.wall},
-                    {"growth_exponent", growth},
-                    {"bytes_per_vertex", f.one.bytes_per_vertex},
-                    {"flips", f.one.flips},
-                    {"boundary_crossings", f.one.crossings},
-                    {"stage_shares", shares}});
-    print(rows.back());
+    const Json row = {{"mesh", name},
+                      {"faces", mesh.face_count()},
+                      {"cpu_seconds", f.one.cpu},
+                      {"wall_seconds", f.one.wall},
+                      {"um_seconds", f.um},
+                      {"ua_seconds", f.ua},
+                      {"cost_um", ratio(f.one.cpu, f.um)},
+                      {"cost_ua", ratio(f.one.cpu, f.ua)},
+                      {"energy", f.one.energy},
+                      {"energy_over_cm", ratio(f.one.energy, f.cm_energy)},
+                      {"cost_over_cm", ratio(f.one.cpu, f.cm_cpu)},
+                      {"speedup_2_threads", f.one.wall / f.two.wall},
+                      {"growth_exponent", growth},
+                      {"bytes_per_vertex", f.one.bytes_per_vertex},
+                      {"flips", f.one.flips},
+                      {"boundary_crossings", f.one.crossings},
+                      {"stage_shares", shares}};
+    print(row);
+    records.add(row);
     last_cost = f.one.cpu;
     last_faces = count;
   }
-  return rows;
 }
 
 }  // namespace
@@ -217,25 +213,16 @@ int main(int argc, char** argv) {
   std::vector<std::uint64_t> sizes = {100000, 300000, 1000000, 3000000};
   int rounds = 3;
   std::uint64_t cm_faces = 300000;
-  std::string json;
   app.add_option("MESH", meshes, "Disks; the bust of examples/data by default");
   app.add_option("--faces", sizes, "Refine to about so many faces");
   app.add_option("--rounds", rounds, "The best of so many counts");
   app.add_option("--cm-faces", cm_faces, "Run CM beside it on meshes of up to so many faces");
-  app.add_option("--json", json, "Write the figures to this file, too");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  beltrami::benchmarks::Records records("pipeline");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
     std::printf("%s\n", beltrami_build_info());
-    beltrami::benchmarks::Json rows = beltrami::benchmarks::Json::array();
     for (const std::string& mesh : meshes) {
-      for (auto& row : beltrami::benchmarks::benchmark(mesh, sizes, rounds, cm_faces)) {
-        rows.push_back(row);
-      }
+      beltrami::benchmarks::benchmark(mesh, sizes, rounds, cm_faces, records);
     }
-    if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_bench_pipeline: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -15,6 +15,7 @@
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
+#include "records.h"
 #include "refine.h"
 #include "simplify/back_ends.h"
 #include "simplify/simplify.h"
@@ -63,7 +64,8 @@ Outcome run(const std::function<CoarseDisk()>& simplify, int rounds) {
   return best;
 }
 
-void benchmark(const std::string& path, std::uint64_t faces, Index target, int rounds) {
+void benchmark(const std::string& path, std::uint64_t faces, Index target, int rounds,
+               Records& records) {
   auto file = read_triangles(path);
   if (faces > file.face_count()) file = refine(file, faces);
   const DiskMesh fine = disk_of(file);
@@ -76,6 +78,13 @@ void benchmark(const std::string& path, std::uint64_t faces, Index target, int r
               ours.coarse.mesh.face_count(), ours.cpu, openmesh.cpu, openmesh.cpu / ours.cpu, near,
               openmesh_near, near / openmesh_near);
   std::fflush(stdout);
+  records.add({{"mesh", std::filesystem::path(path).stem().string()},
+               {"faces", fine.face_count()},
+               {"left", ours.coarse.mesh.face_count()},
+               {"cpu_seconds", ours.cpu},
+               {"openmesh_cpu_seconds", openmesh.cpu},
+               {"distance", near},
+               {"openmesh_distance", openmesh_near}});
 }
 
 }  // namespace
@@ -91,18 +100,15 @@ int main(int argc, char** argv) {
   app.add_option("--faces", faces, "Refine smaller meshes to about so many faces");
   app.add_option("--target", target, "Simplify to so many faces");
   app.add_option("--rounds", rounds, "The best of so many counts");
-  CLI11_PARSE(app, argc, argv);
-  std::printf("%-24s %8s %6s %8s %9s %7s %9s %9s %6s\n", "mesh", "faces", "left", "ours s",
-              "OpenMesh", "ratio", "distance", "OpenMesh", "ratio");
-  try {
+  beltrami::benchmarks::Records records("simplify");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
+    std::printf("%-24s %8s %6s %8s %9s %7s %9s %9s %6s\n", "mesh", "faces", "left", "ours s",
+                "OpenMesh", "ratio", "distance", "OpenMesh", "ratio");
     for (const std::string& mesh : meshes) {
       for (const std::uint64_t count : faces) {
-        beltrami::benchmarks::benchmark(mesh, count, target, rounds);
+        beltrami::benchmarks::benchmark(mesh, count, target, rounds, records);
       }
     }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_bench_simplify: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }

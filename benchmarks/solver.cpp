@@ -18,6 +18,7 @@
 #include "base/work.h"
 #include "linear/cholesky/native_solver.h"
 #include "linear/spd_solver.h"
+#include "records.h"
 #include "refine.h"
 #include "yardstick.h"
 
@@ -41,7 +42,8 @@ Cost run_eigen(const System& system) {
       [&]() -> DenseMatrix { return factor.solve(system.rhs); });
 }
 
-void benchmark(const std::string& path, std::uint64_t faces, int rounds, bool with_eigen) {
+void benchmark(const std::string& path, std::uint64_t faces, int rounds, bool with_eigen,
+               Records& records) {
   auto mesh = read_triangles(path);
   if (faces > mesh.face_count()) mesh = refine(mesh, faces);
   const System system = interior_laplacian(mesh, Numbering::kAlongCurve);
@@ -93,6 +95,15 @@ void benchmark(const std::string& path, std::uint64_t faces, int rounds, bool wi
     std::printf(" %7.3f %7.3f", c.best.total() / ua, c.best.total() / um);
 #endif
     std::printf("\n");
+    records.add({{"mesh", std::filesystem::path(path).stem().string()},
+                 {"faces", mesh.face_count()},
+                 {"solver", c.name},
+                 {"analyze", c.best.analyze},
+                 {"factorize", c.best.factorize},
+                 {"solve", c.best.solve},
+                 {"total", c.best.total()},
+                 {"wall", c.best.wall},
+                 {"residual", c.best.residual}});
   }
   std::fflush(stdout);
 }
@@ -110,16 +121,13 @@ int main(int argc, char** argv) {
   app.add_option("--faces", faces, "Refine smaller meshes to about so many faces");
   app.add_option("--rounds", rounds, "The best of so many counts");
   app.add_flag("--no-eigen", no_eigen, "Leave out Eigen's solver, which takes the longest");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  beltrami::benchmarks::Records records("solver");
+  return beltrami::benchmarks::run(app, argc, argv, records, [&] {
     for (const std::string& mesh : meshes) {
       for (const std::uint64_t count : faces) {
-        beltrami::benchmarks::benchmark(mesh, count, rounds, !no_eigen);
+        beltrami::benchmarks::benchmark(mesh, count, rounds, !no_eigen, records);
       }
     }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beltrami_bench_solver: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }

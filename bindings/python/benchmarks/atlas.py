@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import records
 import trimesh
 import uvunwrap
 import xatlas
@@ -170,6 +171,18 @@ def compare(path: Path, vertices: np.ndarray, faces: np.ndarray) -> dict[str, Ou
     return outcomes
 
 
+def rows_of(mesh: str, outcomes: dict[str, Outcome | str]) -> list[dict[str, object]]:
+    """Return what is recorded of one mesh."""
+    rows: list[dict[str, object]] = []
+    for program, found in outcomes.items():
+        if isinstance(found, str):
+            rows.append({"mesh": mesh, "program": program, "error": found})
+            continue
+        figures = {key: value for key, value in vars(found).items() if key != "corner_uvs"}
+        rows.append({"mesh": mesh, "program": program, **figures})
+    return rows
+
+
 def summarise(table: list[dict[str, Outcome | str]]) -> None:
     """Print medians over the meshes that all programs took."""
     whole = [
@@ -202,12 +215,13 @@ def main() -> None:
     parser.add_argument("files", type=Path, nargs="*")
     parser.add_argument("--data", type=Path, default=FOLDER, help="folder of meshes")
     parser.add_argument("--most", type=int, default=300_000, help="triangles of a mesh")
+    records.add_option(parser)
     arguments = parser.parse_args()
     files = arguments.files or sorted(
         path for path in arguments.data.iterdir() if path.suffix.lower() in SUFFIXES
     )
     print("  program    charts    seams         E  overlaps   flips    CPU s")
-    table = []
+    table: dict[str, dict[str, Outcome | str]] = {}
     for path in files:
         try:
             vertices, faces = load(path)
@@ -215,8 +229,10 @@ def main() -> None:
             print(f"{path.name}: not read: {error}")
             continue
         if len(faces) <= arguments.most:
-            table.append(compare(path, vertices, faces))
-    summarise(table)
+            table[path.name] = compare(path, vertices, faces)
+    summarise(list(table.values()))
+    if arguments.record:
+        records.write("atlas", [row for name, found in table.items() for row in rows_of(name, found)])
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from pathlib import Path
 
 import igl
 import numpy as np
+import records
 import xatlas
 from meshes import FOLDER, areas, read_obj
 
@@ -140,6 +141,7 @@ def main() -> None:
     parser.add_argument("mesh", nargs="?", type=Path, default=bust, metavar="MESH.obj")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--energy-tolerance", type=float, default=1e-4)
+    records.add_option(parser)
     arguments = parser.parse_args()
     vertices, faces = read_obj(arguments.mesh)
     print(f"{arguments.mesh.name}: {len(vertices)} vertices, {len(faces)} faces")
@@ -153,6 +155,9 @@ def main() -> None:
     )
     for name in PROGRAMS:
         print(describe(name, rounds))
+    if arguments.record:
+        seconds = {name: min(found[name].cpu_seconds for found in rounds) for name in PROGRAMS}
+        records.write("peers", [{"mesh": arguments.mesh.stem, "cpu_seconds": seconds}])
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ freedom, so that the least energy cannot rise: by how much each method's does is
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import importlib.util
 import statistics
 import time
@@ -26,6 +27,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import records
 from meshes import FOLDER, areas, is_sphere, nested_seams, open_along, read_obj, refine
 
 import beltrami
@@ -209,6 +211,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--points", type=int, nargs="+", default=[5, 10, 20, 40])
     parser.add_argument("--faces", type=int, default=0, help="refine smaller meshes to about these")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
+    records.add_option(parser)
     given = parser.parse_args()
     given.points = sorted(set(given.points))
     if given.points[0] < 3:
@@ -242,6 +245,8 @@ def main() -> None:
     print("\nlargest rise of E from a cut to a larger one that contains it")
     for method in methods:
         print(nesting(rows, method))
+    if given.record:
+        records.write("seams", [dataclasses.asdict(row) for row in rows])
 
 
 if __name__ == "__main__":
