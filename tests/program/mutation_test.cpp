@@ -1,13 +1,11 @@
 // Readers under files that were damaged at random: whatever they return can be worked on.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <random>
-
 #include "binary.h"
 #include "files/column.h"
 #include "files/mesh_file.h"
 #include "files/surface.h"
+#include "mutator.h"
 #include "process/failure.h"
 
 namespace beltrami::cli {
@@ -69,64 +67,30 @@ std::vector<Seed> seeds() {
           {"binary stl", read_stl, binary_stl}};
 }
 
-class Mutator {
- public:
-  std::string damaged(std::string text) {
-    for (std::size_t n = 1 + below(4); n > 0; --n) damage(text);
-    return text;
-  }
-
- private:
-  std::size_t below(std::size_t limit) { return random_() % std::max<std::size_t>(limit, 1); }
-
-  void damage(std::string& text) {
-    const std::size_t at = below(text.size()), length = below(1 + text.size() - at) % 40;
-    static const std::vector<std::string> pieces = {"-1",
-                                                    "0",
-                                                    "4294967295",
-                                                    "2147483647",
-                                                    "-9223372036854775808",
-                                                    "99999999999999999999",
-                                                    "1e999",
-                                                    "nan",
-                                                    "0.5",
-                                                    "\n",
-                                                    " ",
-                                                    "/",
-                                                    "//",
-                                                    "\\\n",
-                                                    "#",
-                                                    std::string(1, '\0'),
-                                                    "list uchar int ",
-                                                    "element vertex 9\n",
-                                                    "property float x\n",
-                                                    "\xff\xff\xff\xff"};
-    switch (below(6)) {
-      case 0:
-        if (!text.empty()) text[at] = static_cast<char>(random_());
-        break;
-      case 1:
-        text.erase(at, length);
-        break;
-      case 2:
-        text.insert(at, text.substr(below(text.size()), length));
-        break;
-      case 3:
-        text.resize(at);
-        break;
-      case 4: {  // a number or a word becomes another one
-        const std::size_t end = text.find_first_of(" \n/", at);
-        text.replace(at, end == std::string::npos ? length : end - at,
-                     pieces[below(pieces.size())]);
-        break;
-      }
-      default:
-        text.insert(at, pieces[below(pieces.size())]);
-    }
-  }
-
-  std::mt19937_64 random_{15};
-};
+/// Words of these formats, and what is in the way of readers.
+Mutator mutator_of_text() {
+  return Mutator({"-1",
+                  "0",
+                  "4294967295",
+                  "2147483647",
+                  "-9223372036854775808",
+                  "99999999999999999999",
+                  "1e999",
+                  "nan",
+                  "0.5",
+                  "\n",
+                  " ",
+                  "/",
+                  "//",
+                  "\\\n",
+                  "#",
+                  std::string(1, '\0'),
+                  "list uchar int ",
+                  "element vertex 9\n",
+                  "property float x\n",
+                  "\xff\xff\xff\xff"},
+                 " \n/");
+}
 
 void expect_whole(const std::vector<Column>& columns, std::uint64_t items) {
   for (const Column& column : columns) {
@@ -185,7 +149,7 @@ void work_on(MeshFile mesh) {
 
 TEST(DamagedFiles, AreRefusedOrReadToTheLastProof) {
   const std::vector<Seed> all = seeds();
-  Mutator mutator;
+  Mutator mutator = mutator_of_text();
   for (const Seed& seed : all) {
     SCOPED_TRACE(seed.name);
     int read = 0;
