@@ -35,7 +35,8 @@ constexpr const char* kAnyMesh =
 
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
-  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
+      ->required();
   command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
   options.add_to(*command);
   command
@@ -60,7 +61,8 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
 
 CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("flatten", "Flatten a disk-like triangle mesh to UVs");
-  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply or .stl")->required();
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
+      ->required();
   command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
   command->add_flag("--weld", arguments.weld,
                     "Flatten vertices at one place (to the last bit) as one; every vertex of the\n"
@@ -77,7 +79,8 @@ CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& optio
 
 CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   CLI::App* command = app.add_subcommand("check", "Judge the UVs that a mesh file carries");
-  command->add_option("MESH", arguments.input, "Mesh with UVs: .obj or .ply")->required();
+  command->add_option("MESH", arguments.input, "Mesh with UVs: .obj, .ply, .gltf or .glb")
+      ->required();
   command->add_flag("--float32", arguments.float32, "Judge the UVs rounded to single precision");
   command->add_flag("--weld", arguments.weld,
                     "Judge vertices at one place and with one UV (to the last bit) as one");

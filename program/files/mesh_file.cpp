@@ -43,8 +43,10 @@ MeshFile read_text(const std::string& path, Content content) {
       return read_off(text, path, content);
     case MeshFormat::kPly:
       return read_ply(text, path, content);
-    default:
+    case MeshFormat::kStl:
       return read_stl(text, path, content);
+    default:
+      return read_gltf(text, path, content);
   }
 }
 
@@ -56,7 +58,9 @@ MeshFormat format_of(const std::string& path) {
   if (extension == ".off") return MeshFormat::kOff;
   if (extension == ".ply") return MeshFormat::kPly;
   if (extension == ".stl") return MeshFormat::kStl;
-  throw Failure(path + ": the format is unknown: use the extension .obj, .off, .ply or .stl");
+  if (extension == ".gltf" || extension == ".glb") return MeshFormat::kGltf;
+  throw Failure(path +
+                ": the format is unknown: use the extension .obj, .off, .ply, .stl, .gltf or .glb");
 }
 
 void require_writable_format(const std::string& path) {

@@ -1,4 +1,4 @@
-// Meshes in files: OBJ, OFF, PLY and STL; and MNI objects, which have the extension of OBJ.
+// Meshes in files: OBJ, OFF, PLY, STL and glTF; and MNI objects, which have the extension of OBJ.
 //
 // The readers and writers are our own because four things are the point of this program that
 // general mesh libraries do not give: doubles that are correctly rounded in both directions
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,10 @@
 #include "files/polygons.h"
 
 namespace beltrami::cli {
+
+namespace gltf {
+struct Model;
+}
 
 inline constexpr std::uint32_t kNoNormal = std::numeric_limits<std::uint32_t>::max();
 /// What the library can index; files with more are refused.
@@ -64,11 +69,12 @@ struct MeshFile {
   std::vector<std::string> comments;  ///< of a PLY header, whole lines
   std::vector<std::string> not_kept;  ///< what the reader passed over, in words
   std::string truncated;  ///< "" or how the file ends amid its faces: these are left out
+  std::shared_ptr<const gltf::Model> gltf;  ///< all of a glTF file, for gltf_file.h
 
   std::uint64_t vertex_count() const { return positions.size() / 3; }
 };
 
-enum class MeshFormat { kObj, kOff, kPly, kStl };
+enum class MeshFormat { kObj, kOff, kPly, kStl, kGltf };
 
 /// Which parts of a file a command needs.
 enum class Content {
@@ -97,6 +103,8 @@ MeshFile read_off(std::string_view text, const std::string& path, Content conten
 MeshFile read_ply(std::string_view text, const std::string& path, Content content);
 MeshFile read_mni(std::string_view text, const std::string& path, Content content);
 MeshFile read_stl(std::string_view text, const std::string& path, Content content);
+/// gltf_file.h says what of a scene is in it. Buffers in files are read from beside `path`.
+MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content);
 
 /// Receives the bytes of a file in order.
 using Sink = std::function<void(std::string_view)>;

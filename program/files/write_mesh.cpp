@@ -70,7 +70,10 @@ void replace_faces(MeshFile& mesh, std::vector<std::uint32_t> corners) {
 
 std::vector<std::string> not_kept(const MeshFile& mesh, const std::string& path) {
   std::vector<std::string> found = mesh.not_kept;
-  const bool ply = format_of(path) == MeshFormat::kPly;
+  const MeshFormat format = format_of(path);
+  if (format == MeshFormat::kGltf) return found;  // write_gltf says the rest
+  if (mesh.gltf) found.emplace_back("all of glTF but its triangles");
+  const bool ply = format == MeshFormat::kPly;
   for (std::string& what : ply ? not_in_ply(mesh) : not_in_obj(mesh)) {
     found.push_back(std::move(what));
   }

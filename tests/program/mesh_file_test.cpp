@@ -386,6 +386,8 @@ TEST(ReadStl, RefusesWhatIsIncomplete) {
 TEST(ReadMesh, GoesByTheExtensionInAnyCase) {
   EXPECT_EQ(format_of("a.OBJ"), MeshFormat::kObj);
   EXPECT_EQ(format_of("b.c/d.Stl"), MeshFormat::kStl);
+  EXPECT_EQ(format_of("a.GLB"), MeshFormat::kGltf);
+  EXPECT_EQ(format_of("a.gltf"), MeshFormat::kGltf);
   EXPECT_THROW(format_of("a.obj.gz"), Failure);
   EXPECT_THROW(format_of("obj"), Failure);
   EXPECT_THROW(require_writable_format("a.stl"), Failure);

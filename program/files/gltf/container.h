@@ -1,0 +1,24 @@
+// The files that a document is written as.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "files/gltf/document.h"
+#include "files/gltf/item.h"
+#include "files/gltf/rebuild.h"
+#include "files/gltf_file.h"
+
+namespace beltrami::cli::gltf {
+
+/// Where the buffer goes if `document` is written as `path`: to a file of its own, or "".
+std::string buffer_path(const Document& document, const std::string& path);
+
+/// `json`, edited from that of `document`, and its buffer. Throws Failure for what GLB cannot hold.
+std::vector<GltfOutput::File> files_of(const Document& document, Json json, Buffer buffer,
+                                       const std::string& path);
+
+/// Files that images are in, if the paths in `document` do not lead to them from `path`.
+std::vector<std::string> images_left_behind(const Document& document, const std::string& path);
+
+}  // namespace beltrami::cli::gltf

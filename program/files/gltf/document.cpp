@@ -1,0 +1,195 @@
+#include "files/gltf/document.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "files/gltf/little.h"
+#include "files/gltf/uri.h"
+#include "process/descriptor.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli::gltf {
+namespace {
+
+constexpr std::string_view kMagic = "glTF";
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+/// Deeper than any document is. Writing JSON takes stack for each level.
+constexpr int kMaxDepth = 200;
+
+/// The parts of a GLB file, or of the text of a .gltf file.
+struct Container {
+  std::string_view json;
+  std::optional<std::string_view> chunk;  ///< the binary one
+  bool other_chunks = false;
+};
+
+Container open_glb(std::string_view bytes, const std::string& path) {
+  const std::string short_file = path + ": the file is cut short";
+  if (bytes.size() < 12) throw Failure(short_file);
+  const auto version = little<std::uint32_t>(bytes.data() + 4);
+  if (version != 2) {
+    throw Failure(path + ": this is glTF " + std::to_string(version) +
+                  ": convert it to glTF 2.0 first");
+  }
+  const auto length = little<std::uint32_t>(bytes.data() + 8);
+  if (length > bytes.size() || length < 12) throw Failure(short_file);
+  Container found;
+  std::string_view rest = bytes.substr(12, length - 12);
+  for (int chunk = 0; rest.size() >= 8; ++chunk) {
+    const auto size = little<std::uint32_t>(rest.data());
+    const auto type = little<std::uint32_t>(rest.data() + 4);
+    if (size > rest.size() - 8) throw Failure(short_file);
+    const std::string_view content = rest.substr(8, size);
+    rest.remove_prefix(8 + std::size_t{size});
+    if (chunk == 0 && type != kJsonChunk) {
+      throw Failure(path + ": the first chunk is not JSON: export the file again");
+    }
+    if (chunk == 0) {
+      found.json = content;
+    } else if (chunk == 1 && type == kBinaryChunk) {
+      found.chunk = content;
+    } else {
+      found.other_chunks = true;
+    }
+  }
+  if (found.json.empty()) throw Failure(short_file);
+  return found;
+}
+
+Json parse(std::string_view text, const std::string& path) {
+  const auto visit = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kMaxDepth) {
+      throw Failure(path + ": the JSON is nested deeper than " + std::to_string(kMaxDepth) +
+                    " levels: export the file again");
+    }
+    throw_if_interrupted();
+    return true;
+  };
+  try {
+    return Json::parse(text.begin(), text.end(), visit);
+  } catch (const Json::parse_error& error) {
+    throw Failure(path + ": byte " + std::to_string(error.byte) +
+                  " of the JSON is not as it should be: export the file again");
+  } catch (const Json::exception&) {
+    throw Failure(path + ": the JSON has a number beyond all bounds: export the file again");
+  }
+}
+
+void require_version(const Document& document) {
+  const Item root = document.root();
+  if (!document.json.is_object()) root.fail("the JSON is no object: this is not glTF");
+  const std::optional<Item> asset = root.object("asset");
+  if (!asset) root.fail("there is no asset: this is not glTF");
+  const std::string version = asset->text("version");
+  if (version.starts_with("2.")) return;
+  root.fail(version.empty()
+                ? "asset.version is missing: this is not glTF 2.0"
+                : "this is glTF " + one_line(version) + ": convert it to glTF 2.0 first");
+}
+
+/// Compressed data would have to be decoded here and compressed again.
+void refuse_compression(const Document& document) {
+  for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) {
+      const Item view = document.entry("bufferViews", i);
+      if (!view.has_extension(extension)) continue;
+      view.fail(std::string("its bytes are compressed by ") + extension +
+                ", which cannot be read: export the file without mesh compression");
+    }
+  }
+}
+
+std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri) {
+  const std::optional<std::string> relative = decode_path(uri);
+  if (!relative) {
+    buffer.fail(
+        "its uri is neither data in base 64 nor a file beside this one: export the file "
+        "as .glb");
+  }
+  const std::string file =
+      (std::filesystem::path(document.path).parent_path() / *relative).string();
+  document.files.push_back(file);
+  return read_file(file);
+}
+
+void read_buffers(Document& document, const std::optional<std::string_view>& chunk) {
+  for (std::uint64_t i = 0; i < document.count("buffers"); ++i) {
+    const Item buffer = document.entry("buffers", i);
+    const std::string uri = buffer.text("uri");
+    Storage storage = Storage::kEmbedded;
+    std::string bytes;
+    if (uri.empty()) {
+      storage = Storage::kChunk;
+      if (i != 0 || !chunk) buffer.fail("it has no bytes: export the file again");
+      bytes = *chunk;
+    } else if (is_data(uri)) {
+      std::optional<std::string> data = decode_data(uri);
+      if (!data) buffer.fail("its uri is no data in base 64: export the file again");
+      bytes = std::move(*data);
+    } else {
+      storage = Storage::kFile;
+      bytes = bytes_of_file(document, buffer, uri);
+    }
+    const std::uint64_t length = buffer.required("byteLength");
+    if (length > bytes.size()) {
+      buffer.fail("there are " + std::to_string(bytes.size()) + " of its " +
+                  std::to_string(length) + " bytes: the file is cut short");
+    }
+    if (i == 0) document.storage = storage;
+    document.buffers.push_back(std::move(bytes));
+    // The text would be as long as the bytes once more, and the output has one of its own.
+    if (storage == Storage::kEmbedded) document.json["buffers"][i].erase("uri");
+  }
+}
+
+}  // namespace
+
+BufferView buffer_view(const Document& document, std::uint64_t number) {
+  const Item item = document.entry("bufferViews", number);
+  BufferView view;
+  view.buffer = item.required("buffer");
+  view.offset = item.whole("byteOffset", 0);
+  view.length = item.required("byteLength");
+  view.stride = item.whole("byteStride", 0);
+  // byteLength of a buffer is no more than the bytes that it has.
+  const std::uint64_t size = document.entry("buffers", view.buffer).required("byteLength");
+  if (view.offset > size || view.length > size - view.offset) {
+    item.fail("it reaches beyond buffers[" + std::to_string(view.buffer) +
+              "]: the file is damaged, export it again");
+  }
+  return view;
+}
+
+Item Document::entry(const char* list, std::uint64_t number) const {
+  static const Json no_entries = Json::array();
+  const std::optional<Item> all = root().array(list);
+  return all ? (*all)[number] : Item{no_entries, list, path}[number];
+}
+
+std::uint64_t Document::count(const char* list) const {
+  const std::optional<Item> all = root().array(list);
+  return all ? all->size() : 0;
+}
+
+Document read_document(std::string_view bytes, const std::string& path) {
+  if (bytes.empty()) throw Failure(path + ": the file is empty");
+  Document document;
+  document.path = path;
+  Container container;
+  if (bytes.starts_with(kMagic)) {
+    container = open_glb(bytes, path);
+  } else {
+    container.json = bytes;
+  }
+  if (container.other_chunks) document.not_kept.emplace_back("chunks that are not of glTF 2.0");
+  document.json = parse(container.json, path);
+  require_version(document);
+  refuse_compression(document);
+  read_buffers(document, container.chunk);
+  for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) buffer_view(document, i);
+  return document;
+}
+
+}  // namespace beltrami::cli::gltf

@@ -1,0 +1,45 @@
+// A glTF file in memory: its JSON, and the bytes of its buffers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/gltf/item.h"
+
+namespace beltrami::cli::gltf {
+
+/// Where the bytes of a buffer were.
+enum class Storage { kChunk, kFile, kEmbedded };
+
+struct Document {
+  std::string path;
+  Json json;                          ///< an object; embedded buffers are without their URIs
+  std::vector<std::string> buffers;   ///< each as long as its byteLength at least
+  Storage storage = Storage::kChunk;  ///< of the first buffer
+  std::vector<std::string> files;     ///< the paths of buffers in files
+  std::vector<std::string> not_kept;  ///< what was passed over, in words
+
+  Item root() const { return {json, "", path}; }
+  /// Entry `number` of the list of this name: "accessors". Throws Failure if there is none.
+  Item entry(const char* list, std::uint64_t number) const;
+  /// How many entries that list has.
+  std::uint64_t count(const char* list) const;
+};
+
+/// A part of a buffer.
+struct BufferView {
+  std::uint64_t buffer = 0, offset = 0, length = 0;
+  std::uint64_t stride = 0;  ///< 0 where items stand side by side
+};
+
+/// Takes `bytes` apart, the whole file at `path`, and reads its buffers. Throws Failure for what is
+/// not glTF 2.0 or is cut short, and for mesh data that an extension compresses.
+/// Every buffer view lies within its buffer.
+Document read_document(std::string_view bytes, const std::string& path);
+
+/// Throws Failure where there is none of this number.
+BufferView buffer_view(const Document& document, std::uint64_t number);
+
+}  // namespace beltrami::cli::gltf

@@ -1,0 +1,283 @@
+// UVs into a document.
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "files/gltf/accessor.h"
+#include "files/gltf/container.h"
+#include "files/gltf/document.h"
+#include "files/gltf/item.h"
+#include "files/gltf/little.h"
+#include "files/gltf/model.h"
+#include "files/gltf/rebuild.h"
+#include "files/gltf/split.h"
+#include "files/gltf_file.h"
+#include "files/mesh_file.h"
+#include "files/polygons.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace gltf {
+namespace {
+
+constexpr std::uint64_t kTriangles = 4;
+/// Says which corners of a mesh are one vertex of a solid, by the vertices as they were.
+constexpr const char* kManifold = "EXT_mesh_manifold";
+
+std::string name_of_set(std::uint32_t uv_set) {
+  return "TEXCOORD_" + std::to_string(uv_set);
+}
+
+/// An index type that holds indices below `count`, and is no smaller than that of the input. The
+/// greatest number of a type is no index.
+Component index_type(std::uint64_t count, Component least) {
+  if (least == Component::kU8 && count <= 0xFF) return Component::kU8;
+  if (least != Component::kU32 && count <= 0xFFFF) return Component::kU16;
+  return Component::kU32;
+}
+
+class Writer {
+ public:
+  Writer(const MeshFile& file, std::uint32_t uv_set)
+      : file_(file),
+        model_(model_of(file)),
+        document_(model_.document),
+        uv_set_(uv_set),
+        uv_name_(name_of_set(uv_set)),
+        split_(split_vertices(file)),
+        json_(document_.json),
+        new_numbers_(model_.sets.size()) {}
+
+  Buffer write() {
+    for (std::size_t set = 0; set < model_.sets.size(); ++set) {
+      const std::uint64_t count = model_.sets[set].count + split_.copies[set].size();
+      if (count > std::numeric_limits<std::uint32_t>::max()) {
+        document_.root().fail("the UVs need more vertices than glTF can number: split the file");
+      }
+      uvs_of_set_.push_back(add({{{"componentType", static_cast<int>(Component::kF32)},
+                                  {"count", count},
+                                  {"type", "VEC2"}},
+                                 std::move(split_.uvs[set]),
+                                 0,
+                                 Target::kVertices}));
+    }
+    for (const Primitive& primitive : model_.primitives) {
+      throw_if_interrupted();
+      edit_primitive(primitive);
+    }
+    return rebuild(document_, json_, std::move(added_));
+  }
+
+  Json take_json() { return std::move(json_); }
+  const std::set<std::string>& not_kept() const { return not_kept_; }
+
+ private:
+  std::uint64_t add(NewAccessor accessor) {
+    added_.push_back(std::move(accessor));
+    return document_.count("accessors") + added_.size() - 1;
+  }
+
+  void edit_primitive(const Primitive& place) {
+    const Item before = model_.primitive(place.mesh, place.primitive);
+    Json& mesh = json_["meshes"][place.mesh];
+    Json& primitive = mesh["primitives"][place.primitive];
+    const std::uint32_t set = place.set;
+    const std::vector<std::uint64_t>& mapped = place.normal_maps;
+    const bool tangents = std::find(mapped.begin(), mapped.end(), uv_set_) == mapped.end();
+
+    edit_attributes(primitive["attributes"], false, set, tangents);
+    primitive["attributes"][uv_name_] = uvs_of_set_[set];
+    if (primitive.contains("targets")) {
+      for (Json& target : primitive["targets"]) edit_attributes(target, true, set, tangents);
+    }
+    edit_indices(place, before, primitive);
+    const bool stale = !split_.copies[set].empty() && mesh.contains("extensions") &&
+                       mesh["extensions"].contains(kManifold);
+    if (stale) {
+      mesh["extensions"].erase(kManifold);
+      not_kept_.insert(kManifold);
+    }
+  }
+
+  /// Attributes of a primitive, or of a morph target of it.
+  void edit_attributes(Json& attributes, bool morph, std::uint32_t set, bool tangents) {
+    Json edited = Json::object();
+    for (const auto& [name, value] : attributes.items()) {
+      if (name == uv_name_) {
+        if (morph) not_kept_.insert("morphs of UVs");
+      } else if (name == "TANGENT" && !tangents) {
+        not_kept_.insert("tangents");
+      } else {
+        edited[name] = copied(*whole_of(value), set, name == "POSITION");
+      }
+    }
+    attributes = std::move(edited);
+  }
+
+  /// The accessor with the copies of vertices behind it.
+  std::uint64_t copied(std::uint64_t number, std::uint32_t set, bool positions) {
+    const std::vector<std::uint32_t>& copies = split_.copies[set];
+    if (copies.empty()) return number;
+    const auto [found, is_new] = new_numbers_[set].try_emplace(number, 0);
+    if (!is_new) return found->second;
+    const Item item = document_.entry("accessors", number);
+    const Accessor accessor(document_, number, model_.sets[set].count);
+    const bool zeros = !item.find("bufferView") && !item.find("sparse");
+    const std::uint64_t size = accessor.element_size(), stride = (size + 3) / 4 * 4;
+    NewAccessor made{described(item), {}, stride == size ? 0 : stride, Target::kVertices};
+    made.json["count"] = accessor.count() + copies.size();
+    if (positions && (!item.find("min") || !item.find("max"))) add_bounds(accessor, made.json);
+    if (!zeros) {
+      made.bytes.reserve(stride * (accessor.count() + copies.size()));
+      const auto append = [&](std::uint64_t i) {
+        made.bytes.append(accessor.element(i));
+        made.bytes.append(stride - size, '\0');
+      };
+      for (std::uint64_t i = 0; i < accessor.count(); ++i) append(i);
+      for (const std::uint32_t i : copies) append(i);
+    }
+    return found->second = add(std::move(made));
+  }
+
+  /// The accessor's JSON but for where its bytes are.
+  static Json described(const Item& accessor) {
+    Json json = accessor.json;
+    for (const char* key : {"bufferView", "byteOffset", "sparse"}) json.erase(key);
+    return json;
+  }
+
+  /// glTF asks for the bounds of positions; they are of the numbers as they are stored.
+  static void add_bounds(const Accessor& positions, Json& json) {
+    for (const bool greatest : {false, true}) {
+      Json bound = Json::array();
+      for (std::uint64_t k = 0; k < 3; ++k) {
+        double found = positions.stored_value(0, k);
+        for (std::uint64_t i = 1; i < positions.count(); ++i) {
+          const double value = positions.stored_value(i, k);
+          found = greatest ? std::max(found, value) : std::min(found, value);
+        }
+        bound.push_back(found);
+      }
+      json[greatest ? "max" : "min"] = std::move(bound);
+    }
+  }
+
+  /// A strip or a fan with a split vertex is none any more: all of them become triangles.
+  void edit_indices(const Primitive& place, const Item& before, Json& primitive) {
+    const bool strip = before.whole("mode", kTriangles) != kTriangles;
+    const std::uint64_t first = 3 * place.first_face, end = first + 3 * place.face_count;
+    bool same = !strip;
+    for (std::uint64_t c = first; same && c < end; ++c) {
+      same = split_.corners[c] == model_.local[file_.polygons.corners()[c]];
+    }
+    if (same || first == end) return;  // points to vertices that kept their places
+    const std::uint64_t count = model_.sets[place.set].count + split_.copies[place.set].size();
+    const std::optional<std::uint64_t> number = before.whole("indices");
+    Json json = {{"componentType", 0}, {"count", 0}, {"type", "SCALAR"}};
+    Component least = Component::kU16;
+    if (number) {
+      const Item old = document_.entry("accessors", *number);
+      json = described(old);
+      for (const char* key : {"min", "max"}) json.erase(key);
+      least = static_cast<Component>(old.required("componentType"));
+    }
+    const Component type = index_type(count, least);
+    json["componentType"] = static_cast<int>(type);
+    json["count"] = end - first;
+    std::string bytes;
+    bytes.reserve((end - first) * size_of(type));
+    for (std::uint64_t c = first; c < end; ++c) {
+      const std::uint32_t vertex = split_.corners[c];
+      if (type == Component::kU8) {
+        append_little(bytes, static_cast<std::uint8_t>(vertex));
+      } else if (type == Component::kU16) {
+        append_little(bytes, static_cast<std::uint16_t>(vertex));
+      } else {
+        append_little(bytes, vertex);
+      }
+    }
+    primitive["indices"] = add({std::move(json), std::move(bytes), 0, Target::kIndices});
+    if (strip) primitive["mode"] = kTriangles;
+  }
+
+  const MeshFile& file_;
+  const Model& model_;
+  const Document& document_;
+  std::uint32_t uv_set_;
+  std::string uv_name_;
+  Split split_;
+  Json json_;
+  std::vector<NewAccessor> added_;
+  std::vector<std::uint64_t> uvs_of_set_;
+  std::vector<std::map<std::uint64_t, std::uint64_t>> new_numbers_;  ///< per set, of old accessors
+  std::set<std::string> not_kept_;
+};
+
+/// The least set that this primitive does not have.
+std::uint32_t free_set(const Item& primitive) {
+  const std::optional<Item> attributes = primitive.object("attributes");
+  std::uint32_t set = 0;
+  while (attributes->find(name_of_set(set).c_str())) ++set;
+  return set;
+}
+
+}  // namespace
+}  // namespace gltf
+
+void require_uv_set(const MeshFile& file, std::uint32_t uv_set) {
+  const gltf::Model& model = gltf::model_of(file);
+  std::uint32_t least = uv_set;
+  std::string lacking;
+  for (const gltf::Primitive& place : model.primitives) {
+    const gltf::Item primitive = model.primitive(place.mesh, place.primitive);
+    const std::uint32_t free = gltf::free_set(primitive);
+    if (free >= least) continue;
+    least = free;
+    lacking = primitive.name;
+  }
+  if (least == uv_set) return;
+  throw Failure(model.document.path + ": " + lacking + " has no " + gltf::name_of_set(least) +
+                ", and glTF leaves none out before " + gltf::name_of_set(uv_set) + ": use set " +
+                std::to_string(least));
+}
+
+std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::string& path) {
+  const gltf::Document& document = gltf::model_of(file).document;
+  const std::string beside = gltf::buffer_path(document, path);
+  if (beside.empty()) return {path};
+  std::error_code ignored;
+  const bool in_place = std::filesystem::equivalent(document.path, path, ignored);
+  for (const std::string& buffer : document.files) {
+    if (in_place || !std::filesystem::equivalent(buffer, beside, ignored)) continue;
+    throw Failure(path + ": its buffer would replace " + beside + ", which belongs to " +
+                  document.path + ": use another name, or the extension .glb");
+  }
+  return {beside, path};
+}
+
+std::array<float, 2> stored_uv(double u, double v) {
+  return {static_cast<float>(u), static_cast<float>(1 - v)};
+}
+
+GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path) {
+  require_uv_set(file, uv_set);
+  gltf_output_paths(file, path);
+  const gltf::Document& document = gltf::model_of(file).document;
+  gltf::Writer writer(file, uv_set);
+  gltf::Buffer buffer = writer.write();
+  GltfOutput output;
+  output.files = gltf::files_of(document, writer.take_json(), std::move(buffer), path);
+  output.not_kept = file.not_kept;
+  output.not_kept.insert(output.not_kept.end(), writer.not_kept().begin(), writer.not_kept().end());
+  for (const std::string& image : gltf::images_left_behind(document, path)) {
+    output.not_kept.push_back("image beside the input: " + one_line(image));
+  }
+  return output;
+}
+
+}  // namespace beltrami::cli

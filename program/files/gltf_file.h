@@ -1,0 +1,67 @@
+// glTF 2.0, .gltf and .glb, beyond what MeshFile shows of it: UVs go back into the whole file.
+//
+// The document is kept as a tree of JSON beside the bytes of its buffers, and is edited in place:
+// materials, nodes, skins, animations, textures, extras and extensions, known or not, come out as
+// they went in. Libraries of structs (tinygltf is the one that Debian has) lose what they do not
+// know, and check few of the bounds that a file from anywhere needs checked.
+//
+// A MeshFile of glTF has every primitive of triangles once, however many nodes show its mesh, in
+// the order of the file. Strips and fans are triangles; those of a strip that only join its parts,
+// and have a vertex twice, are left out. Points and lines are no triangles. Vertices are those that
+// faces of a mesh use, with the UVs of TEXCOORD_0 where they are asked for; the face properties
+// mesh, primitive and material have the numbers of these in the file, -1 for no material.
+//
+// Positions are in the scene, so that areas are to scale: a mesh is where the first node that
+// shows it has it, by the order of nodes, of those whose transform can be inverted. A mesh that no
+// such node shows, and one that a skin moves, stays where its own coordinates have it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files/mesh_file.h"
+
+namespace beltrami::cli {
+
+/// What write_gltf wants written.
+struct GltfOutput {
+  struct File {
+    std::string path;
+    std::vector<std::string> pieces;  ///< one after another
+  };
+  std::vector<File> files;            ///< to be put in place in this order: a .bin, then its .gltf
+  std::vector<std::string> not_kept;  ///< in words: "tangents"
+};
+
+/// u v per vertex of TEXCOORD_`uv_set`, NaN in primitives without; empty where none has it. glTF's
+/// V axis points down, that of beltrami up: v here is 1 - v there. Precondition: file.gltf.
+std::vector<double> gltf_uvs(const MeshFile& file, std::uint32_t uv_set);
+
+/// Throws Failure unless every primitive has the sets before `uv_set`, which glTF asks for; it
+/// names the least set that is free. Precondition: file.gltf.
+void require_uv_set(const MeshFile& file, std::uint32_t uv_set);
+
+/// The paths of what write_gltf is going to give. Throws Failure where one of them is a buffer of
+/// `file` that would not be replaced together with `file`. Preconditions: those of write_gltf.
+std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::string& path);
+
+/// u and v as glTF holds them: the bits that write_gltf writes.
+std::array<float, 2> stored_uv(double u, double v);
+
+/// The file with its UVs now, of corners or of vertices, as TEXCOORD_`uv_set` of every primitive
+/// with triangles, in single precision, for `path`: .glb holds its buffer; .gltf has it beside it,
+/// as the same name with .bin, where the input had a file too, else in itself.
+///
+/// A vertex is split only where its corners have UVs of different numbers; its copies have its
+/// other attributes to the bit, also those of morph targets, and come behind the old vertices,
+/// which keep their places. Bytes that nothing refers to any more are left out. Tangents go where
+/// the material's normal map uses the new UVs: they belonged to the old ones.
+///
+/// Preconditions: file.gltf, and its faces are where they were, though their corners may have
+/// turned; `path` is of glTF. Throws Failure as require_uv_set and gltf_output_paths do, and for
+/// what is too large for GLB; std::bad_alloc.
+GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path);
+
+}  // namespace beltrami::cli

@@ -1,0 +1,443 @@
+// glTF out: vertices are split where the UVs are, and everything else is as it was.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "files/gltf_file.h"
+#include "files/mesh_file.h"
+#include "files/polygons.h"
+#include "gltf_builder.h"
+#include "process/failure.h"
+#include "temporary_directory.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Json = GltfBuilder::Json;
+using Corners = std::vector<std::uint32_t>;
+
+/// A GLB file taken apart, without the reader under test.
+struct Parts {
+  Json json;
+  std::string chunk;
+
+  explicit Parts(const std::string& glb) {
+    const std::size_t length = number<std::uint32_t>(glb, 12);
+    json = Json::parse(glb.substr(20, length));
+    chunk = glb.substr(28 + length, number<std::uint32_t>(glb, 20 + length));
+  }
+
+  template <class Number>
+  static Number number(const std::string& bytes, std::size_t at) {
+    Number found;
+    std::memcpy(&found, bytes.data() + at, sizeof found);
+    return found;
+  }
+
+  std::string view(const Json& number) const {
+    const Json& found = json["bufferViews"][number.get<std::size_t>()];
+    return chunk.substr(found["byteOffset"], found["byteLength"]);
+  }
+  /// The numbers of an accessor; `padded`: the width that elements have in the buffer.
+  template <class Number>
+  std::vector<Number> values(const Json& accessor, std::size_t width, std::size_t padded) const {
+    const Json& found = json["accessors"][accessor.get<std::size_t>()];
+    const std::string bytes = view(found["bufferView"]);
+    std::vector<Number> all;
+    for (std::size_t i = 0; i < found["count"]; ++i) {
+      for (std::size_t k = 0; k < width; ++k) {
+        all.push_back(number<Number>(bytes, (i * padded + k) * sizeof(Number)));
+      }
+    }
+    return all;
+  }
+  const Json& primitive(std::size_t mesh, std::size_t number = 0) const {
+    return json["meshes"][mesh]["primitives"][number];
+  }
+  std::size_t count(const Json& accessor) const {
+    return json["accessors"][accessor.get<std::size_t>()]["count"];
+  }
+};
+
+std::string joined(const GltfOutput::File& file) {
+  return std::accumulate(file.pieces.begin(), file.pieces.end(), std::string());
+}
+
+MeshFile read(const std::string& bytes, const std::string& path = "a.glb") {
+  return read_gltf(bytes, path, Content::kSurface);
+}
+
+/// UVs that tell corners apart: (number, 1/4) for UV vertex `number`.
+GltfOutput write(MeshFile file, const Corners& uv_vertices, std::uint32_t uv_set = 0,
+                 const std::string& path = "b.glb") {
+  for (std::uint32_t i = 0; i <= *std::max_element(uv_vertices.begin(), uv_vertices.end()); ++i) {
+    file.corner_uvs.values.insert(file.corner_uvs.values.end(), {double(i), 0.25});
+  }
+  file.corner_uvs.of_corner = uv_vertices;
+  return write_gltf(file, uv_set, path);
+}
+
+/// Of every corner.
+std::vector<double> corner_uvs(const MeshFile& file, std::uint32_t uv_set) {
+  const std::vector<double> uvs = gltf_uvs(file, uv_set);
+  std::vector<double> found;
+  for (const std::uint32_t vertex : file.polygons.corners()) {
+    for (std::size_t k = 0; k < 2; ++k) found.push_back(uvs[2 * std::size_t{vertex} + k]);
+  }
+  return found;
+}
+
+Parts written(const GltfBuilder& builder, const Corners& uv_vertices, std::uint32_t uv_set = 0) {
+  const GltfOutput output = write(read(builder.text()), uv_vertices, uv_set);
+  return Parts(joined(output.files.back()));
+}
+
+/// Two triangles of a square, 0 1 2 and 0 2 3, with what vertices can have.
+GltfBuilder rich_square() {
+  GltfBuilder builder;
+  Json attributes = {
+      {"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})},
+      {"NORMAL", builder.vectors3({0, 0, 1, 0, 0, -1, 0, 1, 0, 1, 0, 0})},
+      {"TANGENT",
+       builder.accessor<float>("VEC4", 4, {1, 0, 0, 1, 2, 0, 0, 1, 3, 0, 0, 1, 4, 0, 0, 1})},
+      {"TEXCOORD_0", builder.vectors2({.1f, .2f, .3f, .4f, .5f, .6f, .7f, .8f})},
+      // Three bytes and one that is nothing.
+      {"COLOR_0", builder.accessor<std::uint8_t>(
+                      "VEC3", 4, {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 10, 11, 12, 0})},
+      {"JOINTS_0",
+       builder.accessor<std::uint8_t>("VEC4", 4, {0, 1, 2, 3, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3})},
+      {"WEIGHTS_0", builder.accessor<std::uint16_t>(
+                        "VEC4", 4, {9, 0, 0, 0, 8, 0, 0, 0, 7, 0, 0, 0, 6, 0, 0, 0})},
+      {"_PART", builder.accessor<std::uint16_t>("SCALAR", 2, {1, 0, 2, 0, 3, 0, 4, 0})}};
+  for (const char* name : {"COLOR_0", "_PART"}) {
+    Json& accessor = builder.json["accessors"][attributes[name].get<std::size_t>()];
+    builder.json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteStride"] = 4;
+  }
+  Json& positions = builder.json["accessors"][0];
+  positions["min"] = {0, 0, 0};
+  positions["max"] = {1, 1, 0};
+  positions["name"] = "places";
+  Json& primitive =
+      builder.mesh(std::move(attributes), builder.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}));
+  primitive["targets"] = {{{"POSITION", builder.vectors3({0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4})}}};
+  // Only vertex 2 moves.
+  const int places = builder.view({2}),
+            values = builder.view(GltfBuilder::bytes_of_all<float>({5, 6, 7}));
+  builder.json["accessors"].push_back(
+      {{"componentType", 5126},
+       {"count", 4},
+       {"type", "VEC3"},
+       {"sparse",
+        {{"count", 1},
+         {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+         {"values", {{"bufferView", values}}}}}});
+  primitive["targets"].push_back({{"POSITION", builder.json["accessors"].size() - 1}});
+  return builder;
+}
+
+/// UV vertices of the square's corners that cut it along the diagonal, at vertex 0 alone or at 2
+/// too.
+const Corners kWhole = {0, 1, 2, 0, 2, 3}, kCut = {0, 1, 2, 4, 5, 3};
+
+TEST(GltfWrite, WithoutSeamsOnlyTheUvsAreNew) {
+  const GltfBuilder builder = rich_square();
+  const Parts parts = written(builder, kWhole);
+  const Parts before(builder.glb());
+  EXPECT_EQ(parts.json["accessors"].size(), before.json["accessors"].size());
+  for (const auto& [name, number] : before.primitive(0)["attributes"].items()) {
+    const Json& accessor = parts.json["accessors"][number.get<std::size_t>()];
+    EXPECT_EQ(parts.primitive(0)["attributes"][name], number) << name;
+    if (name == "TEXCOORD_0") continue;
+    const Json& view = before.json["accessors"][number.get<std::size_t>()]["bufferView"];
+    EXPECT_EQ(parts.view(accessor["bufferView"]), before.view(view)) << name;
+  }
+  EXPECT_EQ(parts.primitive(0)["indices"], before.primitive(0)["indices"]);
+  EXPECT_EQ(parts.values<float>(parts.primitive(0)["attributes"]["TEXCOORD_0"], 2, 2),
+            (std::vector<float>{0, .75, 1, .75, 2, .75, 3, .75}));
+  EXPECT_EQ(parts.chunk.size(), before.chunk.size()) << "the old UVs are gone";
+}
+
+TEST(GltfWrite, SplitVerticesHaveTheSameAttributesToTheBit) {
+  const Parts parts = written(rich_square(), kCut);
+  const Parts before(rich_square().glb());
+  const Json& attributes = parts.primitive(0)["attributes"];
+  EXPECT_EQ(parts.values<std::uint8_t>(parts.primitive(0)["indices"], 1, 1),
+            (std::vector<std::uint8_t>{0, 1, 2, 4, 5, 3}))
+      << "the first corner keeps the vertex, copies come behind";
+  EXPECT_EQ(parts.values<float>(attributes["TEXCOORD_0"], 2, 2),
+            (std::vector<float>{0, .75, 1, .75, 2, .75, 3, .75, 4, .75, 5, .75}));
+  const std::map<std::string, std::size_t> sizes = {
+      {"POSITION", 12}, {"NORMAL", 12},   {"TANGENT", 16}, {"COLOR_0", 4},
+      {"JOINTS_0", 4},  {"WEIGHTS_0", 8}, {"_PART", 4}};
+  for (const auto& [name, size] : sizes) {
+    const auto bytes_of_name = [&, &attribute = name](const Parts& of) {
+      const Json& number = of.primitive(0)["attributes"][attribute];
+      return of.view(of.json["accessors"][number.get<std::size_t>()]["bufferView"]);
+    };
+    const std::string old = bytes_of_name(before);
+    EXPECT_EQ(bytes_of_name(parts), old + old.substr(0, size) + old.substr(2 * size, size)) << name;
+  }
+  const Json& positions = parts.json["accessors"][attributes["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(positions["min"], Json({0, 0, 0}));
+  EXPECT_EQ(positions["max"], Json({1, 1, 0}));
+  EXPECT_EQ(positions["name"], "places");
+  const Json& targets = parts.primitive(0)["targets"];
+  EXPECT_EQ(parts.values<float>(targets[0]["POSITION"], 3, 3),
+            (std::vector<float>{0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0, 1, 0, 0, 3}));
+  EXPECT_EQ(parts.values<float>(targets[1]["POSITION"], 3, 3),
+            (std::vector<float>{0, 0, 0, 0, 0, 0, 5, 6, 7, 0, 0, 0, 0, 0, 0, 5, 6, 7}));
+}
+
+TEST(GltfWrite, EqualPositionsAreNotMergedAndHardEdgesStay) {
+  // A cube has 24 vertices in glTF, four for each side: one UV vertex each asks for no split.
+  GltfBuilder builder;
+  std::vector<std::uint8_t> corners;
+  const int positions =
+      builder.vectors3({0, 0, 0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1,
+                        0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 0,
+                        0, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1});
+  const int indices = builder.indices<std::uint8_t>(
+      {0,  1,  2,  0,  2,  3,  4,  5,  6,  4,  6,  7,  8,  9,  10, 8,  10, 11,
+       12, 13, 14, 12, 14, 15, 16, 17, 18, 16, 18, 19, 20, 21, 22, 20, 22, 23});
+  builder.mesh({{"POSITION", positions}}, indices);
+  const MeshFile file = read(builder.glb());
+  EXPECT_EQ(file.vertex_count(), 24u);
+  EXPECT_EQ(file.polygons.size(), 12u);
+  // UV vertices of the eight corners of the welded cube: still no vertex has two.
+  Corners uv_vertices;
+  for (const std::uint32_t vertex : file.polygons.corners()) {
+    const double* p = &file.positions[3 * std::size_t{vertex}];
+    uv_vertices.push_back(static_cast<std::uint32_t>(p[0] + 2 * p[1] + 4 * p[2]));
+  }
+  const Parts parts(joined(write(file, uv_vertices).files.back()));
+  EXPECT_EQ(parts.count(parts.primitive(0)["attributes"]["POSITION"]), 24u);
+  EXPECT_EQ(parts.primitive(0)["indices"], indices);
+}
+
+TEST(GltfWrite, PrimitivesWithTheSameVerticesAreSplitTogether) {
+  GltfBuilder builder;
+  const Json attributes = {{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})}};
+  builder.mesh(attributes, builder.indices<std::uint8_t>({0, 1, 2}));
+  const Json second = {{"attributes", attributes},
+                       {"indices", builder.indices<std::uint8_t>({0, 2, 3})}};
+  const Json points = {{"attributes", attributes}, {"mode", 0}};
+  builder.json["meshes"][0]["primitives"].push_back(second);
+  builder.json["meshes"][0]["primitives"].push_back(points);
+  builder.json["meshes"].push_back({{"primitives", {second}}});
+  builder.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}, {{"mesh", 0}, {"scale", {2, 2, 2}}}};
+  // The first two join at the diagonal; the third has the number of UV vertex 0, but another mesh.
+  const Parts parts = written(builder, {0, 1, 2, 0, 2, 3, 0, 5, 6});
+  const Json& shared = parts.primitive(0)["attributes"];
+  EXPECT_EQ(parts.primitive(0, 1)["attributes"], shared);
+  EXPECT_EQ(parts.primitive(1)["attributes"], shared);
+  EXPECT_EQ(parts.primitive(0, 2), points) << "points are as they were, and what they refer to";
+  EXPECT_EQ(parts.values<float>(points["attributes"]["POSITION"], 3, 3).size(), 12u);
+  EXPECT_EQ(parts.count(shared["POSITION"]), 7u);
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(parts.values<std::uint8_t>(parts.primitive(0)["indices"], 1, 1), (Bytes{0, 1, 2}));
+  EXPECT_EQ(parts.values<std::uint8_t>(parts.primitive(0, 1)["indices"], 1, 1), (Bytes{0, 2, 3}));
+  EXPECT_EQ(parts.values<std::uint8_t>(parts.primitive(1)["indices"], 1, 1), (Bytes{4, 5, 6}));
+  EXPECT_EQ(parts.json["nodes"], builder.json["nodes"]);
+}
+
+TEST(GltfWrite, IndicesGrowWhereTheyMust) {
+  GltfBuilder builder;
+  const int positions = builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  builder.mesh({{"POSITION", positions}}, builder.indices<std::uint8_t>({0, 1, 2}));
+  Json& indices = builder.json["accessors"][1];
+  std::string many;
+  for (int i = 0; i < 30000; ++i) many += std::string("\0\1\2", 3);
+  const auto type_with = [&](std::size_t triangles) {
+    builder.json["bufferViews"][1] = builder.json["bufferViews"][std::size_t(builder.view(many))];
+    indices["count"] = 3 * triangles;
+    Corners uv_vertices(3 * triangles);
+    std::iota(uv_vertices.begin(), uv_vertices.end(), 0u);
+    const Parts parts = written(builder, uv_vertices);
+    const Json& primitive = parts.primitive(0);
+    EXPECT_EQ(parts.count(primitive["attributes"]["POSITION"]), 3 * triangles);
+    return parts.json["accessors"][primitive["indices"].get<std::size_t>()]["componentType"];
+  };
+  EXPECT_EQ(type_with(85), 5121) << "255 vertices, the last of them 254";
+  EXPECT_EQ(type_with(86), 5123);
+  EXPECT_EQ(type_with(21845), 5123) << "65535 vertices";
+  EXPECT_EQ(type_with(21846), 5125);
+}
+
+TEST(GltfWrite, StripsAndWhatHasNoIndicesGetThemWhereTheyMust) {
+  GltfBuilder builder;
+  const int positions = builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+  builder.mesh({{"POSITION", positions}})["mode"] = 5;
+  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0})}});
+  const Parts parts = written(builder, {0, 1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_EQ(parts.primitive(0)["mode"], 4);
+  EXPECT_EQ(parts.values<std::uint16_t>(parts.primitive(0)["indices"], 1, 1),
+            (std::vector<std::uint16_t>{0, 1, 2, 4, 3, 5}));
+  EXPECT_FALSE(parts.primitive(1).contains("indices")) << "no vertex of it has two corners";
+}
+
+TEST(GltfWrite, MissingBoundsOfPositionsAreMadeWhereTheyAreSplit) {
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", builder.vectors3({0, -2, 0, 1, 0, 0.5, 1, 1, 0, 0, 1, 7})}},
+               builder.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}));
+  const Parts parts = written(builder, kCut);
+  const Json& number = parts.primitive(0)["attributes"]["POSITION"];
+  const Json& positions = parts.json["accessors"][number.get<std::size_t>()];
+  EXPECT_EQ(positions["min"], Json({0.0, -2.0, 0.0}));
+  EXPECT_EQ(positions["max"], Json({1.0, 1.0, 7.0}));
+}
+
+TEST(GltfWrite, TheRestOfTheDocumentIsAsItWas) {
+  GltfBuilder builder = rich_square();
+  const int image = builder.view("not a picture, but bytes");
+  const int times = builder.accessor<float>("SCALAR", 1, {0, 1});
+  const int weights = builder.accessor<float>("SCALAR", 1, {0, 0, 1, 1});
+  const int binds =
+      builder.accessor<float>("MAT4", 16, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  const int secret = builder.view("of an extension nobody knows");
+  Json& json = builder.json;
+  json["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}}};
+  json["textures"] = {{{"source", 0}}};
+  json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                        {"extensions", {{"KHR_materials_ior", {{"ior", 1.4}}}}},
+                        {"extras", {{"a", 0.1}, {"b", {nullptr, true, "\xC3\xA4"}}}}}};
+  json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"name", "joint"}}};
+  json["skins"] = {{{"joints", {1}}, {"inverseBindMatrices", binds}}};
+  json["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", weights}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  json["extensionsUsed"] = {"NOBODY_knows", "KHR_materials_ior"};
+  json["extensions"] = {{"NOBODY_knows", {{"view", secret}, {"x", 1e-300}}}};
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  json["meshes"][0]["weights"] = {0.25, 0};
+  json["meshes"][0]["extras"] = {{"targetNames", {"up", "out"}}};
+  json["scenes"] = {{{"nodes", {0, 1}}}};
+  json["scene"] = 0;
+  const Parts parts = written(builder, kCut);
+  for (const auto& [key, value] : json.items()) {
+    if (key == "accessors" || key == "bufferViews" || key == "buffers" || key == "meshes") continue;
+    EXPECT_EQ(parts.json[key].dump(), value.dump()) << key;
+  }
+  Json mesh = parts.json["meshes"][0], before = json["meshes"][0];
+  for (const char* key : {"attributes", "indices", "targets"}) {
+    mesh["primitives"][0].erase(key);
+    before["primitives"][0].erase(key);
+  }
+  EXPECT_EQ(mesh.dump(), before.dump());
+  EXPECT_EQ(parts.view(image), "not a picture, but bytes");
+  EXPECT_EQ(parts.view(secret), "of an extension nobody knows") << "its number is known to nobody";
+  EXPECT_EQ(parts.values<float>(times, 1, 1), (std::vector<float>{0, 1}));
+  EXPECT_EQ(parts.values<float>(weights, 1, 1), (std::vector<float>{0, 0, 1, 1}));
+  EXPECT_EQ(parts.values<float>(binds, 16, 16).size(), 16u);
+}
+
+TEST(GltfWrite, WrittenTwiceItHasTheSameSize) {
+  const auto again = [](const std::string& glb, const Corners& uv_vertices) {
+    return joined(write(read(glb), uv_vertices).files.back());
+  };
+  const std::string once = again(rich_square().glb(), kCut), twice = again(once, kCut);
+  EXPECT_EQ(once.size(), twice.size()) << "old UVs, and vertices from before the split, are gone";
+  EXPECT_EQ(again(twice, kCut), twice);
+}
+
+TEST(GltfWrite, TangentsGoWithTheUvsThatTheyBelongedTo) {
+  const auto not_kept = [](const Json& normal_texture, std::uint32_t uv_set) {
+    GltfBuilder builder = rich_square();
+    builder.json["materials"] = {{{"normalTexture", normal_texture}}, Json::object()};
+    builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+    const GltfOutput output = write(read(builder.glb()), kCut, uv_set);
+    const Parts parts(joined(output.files.back()));
+    EXPECT_EQ(parts.primitive(0)["attributes"].contains("TANGENT"), output.not_kept.empty());
+    return output.not_kept;
+  };
+  const std::vector<std::string> tangents = {"tangents"};
+  EXPECT_EQ(not_kept({{"index", 0}}, 0), tangents);
+  EXPECT_TRUE(not_kept({{"index", 0}}, 1).empty());
+  EXPECT_EQ(not_kept({{"index", 0}, {"texCoord", 1}}, 1), tangents);
+  const Json moved = {{"index", 0},
+                      {"texCoord", 1},
+                      {"extensions", {{"KHR_texture_transform", {{"texCoord", 0}}}}}};
+  EXPECT_EQ(not_kept(moved, 0), tangents);
+  EXPECT_TRUE(not_kept(moved, 1).empty());
+}
+
+TEST(GltfWrite, SetsComeOneAfterAnother) {
+  const MeshFile file = read(rich_square().glb());
+  require_uv_set(file, 0);
+  require_uv_set(file, 1);
+  try {
+    write(file, kWhole, 2);
+    FAIL() << "TEXCOORD_1 is missing";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.what(),
+              std::string("a.glb: meshes[0].primitives[0] has no TEXCOORD_1, and glTF leaves none "
+                          "out before TEXCOORD_2: use set 1"));
+  }
+  const GltfOutput output = write(file, kCut, 1);
+  const MeshFile back = read(joined(output.files.back()));
+  EXPECT_EQ(corner_uvs(back, 1),
+            (std::vector<double>{0, .25, 1, .25, 2, .25, 4, .25, 5, .25, 3, .25}));
+  EXPECT_EQ(corner_uvs(back, 0), corner_uvs(file, 0)) << "to the bit";
+}
+
+TEST(GltfWrite, MorphsOfTheOldUvsAreLeftOut) {
+  GltfBuilder builder = rich_square();
+  Json& target = builder.json["meshes"][0]["primitives"][0]["targets"][0];
+  target["TEXCOORD_0"] = builder.vectors2({0, 0, 1, 0, 0, 0, 0, 0});
+  const GltfOutput output = write(read(builder.glb()), kCut);
+  const Parts parts(joined(output.files.back()));
+  EXPECT_EQ(output.not_kept, std::vector<std::string>{"morphs of UVs"});
+  EXPECT_FALSE(parts.primitive(0)["targets"][0].contains("TEXCOORD_0"));
+}
+
+TEST(GltfWrite, TheBufferIsWhereTheInputHadIt) {
+  const TemporaryDirectory directory;
+  const GltfBuilder builder = rich_square();
+  directory.file("a b.bin", builder.buffer());
+  const std::string input = directory.file("a b.gltf", builder.text("a%20b.bin"));
+  const MeshFile file = read_mesh(input, Content::kSurface);
+  const auto put = [&](const GltfOutput& output) {
+    for (const GltfOutput::File& each : output.files) {
+      directory.file(std::filesystem::path(each.path).filename().string(), joined(each));
+    }
+    return read_mesh(output.files.back().path, Content::kSurface);
+  };
+  const std::vector<double> uvs = {0, .25, 1, .25, 2, .25, 4, .25, 5, .25, 3, .25};
+  const GltfOutput beside = write(file, kCut, 0, directory.path("c%.gltf"));
+  ASSERT_EQ(beside.files.size(), 2u);
+  EXPECT_EQ(beside.files[0].path, directory.path("c%.bin"));
+  EXPECT_EQ(corner_uvs(put(beside), 0), uvs);
+  EXPECT_EQ(gltf_output_paths(file, directory.path("c%.gltf")),
+            (std::vector<std::string>{directory.path("c%.bin"), directory.path("c%.gltf")}));
+  EXPECT_EQ(corner_uvs(put(write(file, kCut, 0, directory.path("c.glb"))), 0), uvs);
+  EXPECT_EQ(corner_uvs(put(write(file, kCut, 0, input)), 0), uvs) << "in place";
+
+  const GltfOutput embedded = write(read(builder.glb()), kCut, 0, directory.path("d.gltf"));
+  EXPECT_EQ(embedded.files.size(), 1u);
+  EXPECT_EQ(corner_uvs(put(embedded), 0), uvs);
+}
+
+TEST(GltfWrite, ABufferOfTheInputIsNotReplacedUnderIt) {
+  const TemporaryDirectory directory;
+  const GltfBuilder builder = rich_square();
+  directory.file("shared.bin", builder.buffer());
+  const MeshFile file =
+      read_mesh(directory.file("a.gltf", builder.text("shared.bin")), Content::kSurface);
+  EXPECT_THROW(write(file, kCut, 0, directory.path("shared.gltf")), Failure);
+  EXPECT_THROW(gltf_output_paths(file, directory.path("shared.gltf")), Failure);
+  EXPECT_NO_THROW(gltf_output_paths(file, directory.path("shared.glb")));
+}
+
+TEST(GltfWrite, ImagesThatStayBehindAreNamed) {
+  const TemporaryDirectory directory;
+  GltfBuilder builder = rich_square();
+  builder.json["images"] = {{{"uri", "wood%20a.png"}}, {{"uri", "data:image/png;base64,AAAA"}}};
+  const MeshFile file = read_mesh(directory.file("a.gltf", builder.text()), Content::kSurface);
+  EXPECT_TRUE(write(file, kCut, 0, directory.path("b.gltf")).not_kept.empty());
+  EXPECT_EQ(write(file, kCut, 0, directory.path("c/b.gltf")).not_kept,
+            std::vector<std::string>{"image beside the input: wood a.png"});
+}
+
+}  // namespace
+}  // namespace beltrami::cli
