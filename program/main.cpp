@@ -37,7 +37,10 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
       ->required();
-  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj or .ply")->required();
+  command
+      ->add_option("OUT", arguments.output,
+                   "Mesh with UVs to write: .obj or .ply; .gltf or .glb where IN is glTF")
+      ->required();
   options.add_to(*command);
   command
       ->add_option("--seams", arguments.seams,
@@ -48,6 +51,11 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
                    "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
                    "or a property of the faces of a PLY file")
       ->type_name("NAME");
+  command
+      ->add_option(
+          "--uv-set", arguments.uv_set,
+          "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
+      ->type_name("NUMBER");
   command->add_flag("--triangulate", arguments.triangulate,
                     "Write the triangles that were computed on, in the orientation in which their\n"
                     "UVs are positive");

@@ -26,6 +26,7 @@ struct UnwrapArguments {
   std::string input, output;
   std::string seams, labels;    ///< a path, and what labels faces; or ""
   std::string report, picture;  ///< paths, or "" for none
+  std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
   bool triangulate = false;     ///< write the triangles that were computed on
   bool quiet = false;
 };

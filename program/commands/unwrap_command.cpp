@@ -1,5 +1,6 @@
 // beltrami unwrap: read any mesh, cut it, flatten its charts, write, report.
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "commands/report.h"
 #include "files/atomic_file.h"
 #include "files/face_labels.h"
+#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/point_numbers.h"
 #include "files/split_mesh.h"
@@ -30,6 +32,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options = options.values();
   report.options.emplace_back("seams", arguments.seams);
   report.options.emplace_back("labels", arguments.labels);
+  report.options.emplace_back("uv-set", std::to_string(arguments.uv_set));
   report.options.emplace_back("triangulate", arguments.triangulate);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
@@ -59,8 +62,14 @@ class Unwrapping {
  private:
   /// Everything about files that can be told before the work.
   void require_files() const {
-    format_of(arguments_.input);
-    require_writable_format(arguments_.output);
+    const MeshFormat format = format_of(arguments_.input);
+    if (!writes_gltf()) {
+      require_writable_format(arguments_.output);
+    } else if (format != MeshFormat::kGltf || arguments_.triangulate) {
+      throw Failure(arguments_.output +
+                    ": glTF is written from glTF alone, whose faces are triangles: use the "
+                    "extension .obj or .ply, or leave out --triangulate");
+    }
     require_distinct({arguments_.input, arguments_.seams, arguments_.report, arguments_.picture});
     require_distinct({arguments_.output, arguments_.seams, arguments_.report, arguments_.picture});
     const std::vector<std::string> written = {arguments_.output, arguments_.report,
@@ -71,11 +80,19 @@ class Unwrapping {
     }
   }
 
+  bool writes_gltf() const { return format_of(arguments_.output) == MeshFormat::kGltf; }
+
   void read() {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
     file_ = read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface);
+    if (writes_gltf()) {
+      require_uv_set(file_, arguments_.uv_set);
+      for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {
+        require_writable(path);
+      }
+    }
     if (!file_.truncated.empty()) {
       file_.not_kept.push_back("what is missing of the input (" + file_.truncated + ")");
     }
@@ -163,6 +180,29 @@ class Unwrapping {
       }
     }
     report_.not_kept = not_kept(file_, arguments_.output);
+    // Copies that share UVs overlap on purpose; what is stored is judged without such knowledge.
+    if (writes_gltf() && options_.integer(BELTRAMI_OPTION_SHARE_COPIES) == 0) judge_stored_uvs();
+  }
+
+  /// glTF rounds u and 1 - v to single precision: the verdict is to be on those. A mirror and a
+  /// shift from them to -v are exact.
+  void judge_stored_uvs() {
+    const std::vector<double> uvs = file_.corner_uvs.values;
+    for (std::size_t i = 0; i < uvs.size(); i += 2) {
+      const auto [u, v] = stored_uv(uvs[i], uvs[i + 1]);
+      file_.corner_uvs.values[i] = double{u};
+      file_.corner_uvs.values[i + 1] = -double{v};
+    }
+    const SurfaceView view(file_);
+    const beltrami_surface surface = view.surface();
+    beltrami_atlas_certificate found{};
+    found.struct_size = sizeof found;
+    const beltrami_status status = beltrami_check_atlas(&surface, 0, &found, nullptr, 0);
+    require_ok(status, arguments_.input, "", found.error_element_kind, found.error_element);
+    report_.status = beltrami_status_name(status);
+    report_.atlas_certificate = found;
+    report_.float32_injective = found.injective != 0;
+    file_.corner_uvs.values = uvs;
   }
 
   /// All files are complete on the disk before the first of them replaces anything. Returns the
@@ -170,12 +210,8 @@ class Unwrapping {
   int write_files() {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
-    AtomicFile output(arguments_.output);
-    write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
-      throw_if_interrupted();
-      output.write(bytes);
-    });
-    output.close();
+    std::deque<AtomicFile> outputs;
+    write_mesh_files(outputs);
     clock.finish();
 
     std::optional<AtomicFile> picture, report;
@@ -193,11 +229,32 @@ class Unwrapping {
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
-    output.commit();
+    for (AtomicFile& output : outputs) output.commit();
     if (picture) picture->commit();
     if (report) report->commit();
     remark(note);
     return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
+  }
+
+  void write_mesh_files(std::deque<AtomicFile>& outputs) {
+    if (!writes_gltf()) {
+      AtomicFile& output = outputs.emplace_back(arguments_.output);
+      write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
+        throw_if_interrupted();
+        output.write(bytes);
+      });
+    } else {
+      const GltfOutput gltf = write_gltf(file_, arguments_.uv_set, arguments_.output);
+      report_.not_kept = gltf.not_kept;
+      for (const GltfOutput::File& file : gltf.files) {
+        AtomicFile& output = outputs.emplace_back(file.path);
+        for (const std::string& piece : file.pieces) {
+          throw_if_interrupted();
+          output.write(piece);
+        }
+      }
+    }
+    for (AtomicFile& output : outputs) output.close();
   }
 
   void write_picture(AtomicFile& file) {

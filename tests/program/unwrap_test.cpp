@@ -4,8 +4,11 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
+#include "gltf_builder.h"
+#include "process/failure.h"
 #include "run_program.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -44,6 +47,27 @@ TEST(Unwrap, TakesAClosedMeshAndKeepsItsPolygons) {
     EXPECT_GE(json["energy"]["symmetric_dirichlet"], 2);
     EXPECT_GT(json["utilisation"], 0);
   }
+}
+
+TEST(Unwrap, PutsAnAtlasIntoGltf) {
+  // A tetrahedron, without UVs.
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1})}},
+               builder.indices<std::uint8_t>({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}));
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.glb", builder.glb()), out = directory.path("out.glb");
+  EXPECT_EQ(run({"unwrap", in, out, "--uv-set", "1"}).exit_code, kExitUnusable);
+  const Outcome outcome = run({"unwrap", in, out});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(run({"check", out}).exit_code, 0);
+  ASSERT_EQ(run({"unwrap", out, out, "--uv-set", "1"}).exit_code, 0)
+      << "in place, beside the first";
+  const MeshFile before = read_mesh(in, Content::kSurface), after = read_mesh(out, Content::kUvs);
+  EXPECT_EQ(gltf_uvs(after, 1), after.uvs);
+  EXPECT_EQ(after.polygons.size(), 4u);
+  EXPECT_GT(after.vertex_count(), before.vertex_count());
+  const std::string obj = directory.file("in.obj", kCube);
+  EXPECT_EQ(run({"unwrap", obj, directory.path("b.glb")}).exit_code, kExitUnusable);
 }
 
 TEST(Unwrap, WritesTheTrianglesOnDemand) {
