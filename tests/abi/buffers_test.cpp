@@ -155,12 +155,12 @@ TEST(Buffers, WritesFaceEnergiesWithAStride) {
             BELTRAMI_E_INVALID_ARGUMENT);
 }
 
-/// Calls `fill` on the struct with a struct_size of less, exactly, and more than the library's,
-/// each with canaries behind the size it claims.
+/// Calls `fill` on the struct with a struct_size of less than its first release had, of that, and
+/// of more than the library's, each with canaries behind the size it claims.
 template <class Struct, class Fill>
-void expect_sizes_respected(Fill&& fill) {
+void expect_sizes_respected(Fill&& fill, std::size_t first_size = sizeof(Struct)) {
   const std::size_t size = sizeof(Struct);
-  for (const uint32_t claimed : {0u, 4u, 7u, static_cast<uint32_t>(size - 1)}) {
+  for (const uint32_t claimed : {0u, 4u, 7u, static_cast<uint32_t>(first_size - 1)}) {
     Struct out;
     std::memset(static_cast<void*>(&out), 0xa5, sizeof out);
     out.struct_size = claimed;
@@ -170,6 +170,13 @@ void expect_sizes_respected(Fill&& fill) {
     EXPECT_EQ(out.struct_size, claimed);
     for (std::size_t i = 4; i < size; ++i) EXPECT_EQ(bytes[i], 0xa5) << "byte " << i;
   }
+  Struct older;
+  std::memset(static_cast<void*>(&older), 0xa5, sizeof older);
+  older.struct_size = static_cast<uint32_t>(first_size);
+  EXPECT_GE(fill(&older), BELTRAMI_OK);
+  std::vector<unsigned char> bytes(size);
+  std::memcpy(bytes.data(), &older, size);
+  for (std::size_t i = first_size; i < size; ++i) EXPECT_EQ(bytes[i], 0xa5) << "byte " << i;
   for (const std::size_t extra : {0, 8, 64}) {  // a caller newer than the library
     struct {
       Struct out;
@@ -200,7 +207,8 @@ TEST(StructSize, IsRespectedByEveryOutput) {
   expect_sizes_respected<beltrami_stage>(
       [&](beltrami_stage* out) { return beltrami_get_stage(c, 0, out); });
   expect_sizes_respected<beltrami_option_info>(
-      [&](beltrami_option_info* out) { return beltrami_option_describe(0, out); });
+      [&](beltrami_option_info* out) { return beltrami_option_describe(0, out); },
+      offsetof(beltrami_option_info, calls));
   for (const auto check :
        {beltrami_check_triangles, beltrami_check_boundary, beltrami_check_injective}) {
     expect_sizes_respected<beltrami_certificate>(
@@ -208,6 +216,33 @@ TEST(StructSize, IsRespectedByEveryOutput) {
   }
   expect_sizes_respected<beltrami_energy>(
       [&](beltrami_energy* out) { return beltrami_measure(&mesh_view, &uv_view, out, nullptr); });
+}
+
+TEST(StructSize, IsRespectedByEveryOutputOfAnAtlas) {
+  const TriangleList mesh = meshes::tetrahedron();
+  const Context context = create();
+  beltrami_context* c = context.get();
+  auto surface = sized<beltrami_surface>();
+  surface.vertex_count = mesh.positions.size();
+  surface.face_count = mesh.faces.size();
+  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
+  ASSERT_EQ(beltrami_unwrap(c, &surface, nullptr, nullptr), BELTRAMI_OK);
+  std::vector<double> uvs(2 * 3 * mesh.faces.size());
+  ASSERT_EQ(beltrami_get_corner_uvs(c, uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
+  surface.corner_uvs = {uvs.data(), 0, BELTRAMI_F64, 0};
+  expect_sizes_respected<beltrami_atlas>(
+      [&](beltrami_atlas* out) { return beltrami_get_atlas(c, out); });
+  expect_sizes_respected<beltrami_chart>(
+      [&](beltrami_chart* out) { return beltrami_get_chart(c, 0, out); });
+  expect_sizes_respected<beltrami_stage>(
+      [&](beltrami_stage* out) { return beltrami_get_atlas_stage(c, 0, out); });
+  expect_sizes_respected<beltrami_atlas_certificate>([&](beltrami_atlas_certificate* out) {
+    return beltrami_get_atlas_certificate(c, BELTRAMI_F64, out);
+  });
+  expect_sizes_respected<beltrami_atlas_certificate>([&](beltrami_atlas_certificate* out) {
+    return beltrami_check_atlas(&surface, 0, out, nullptr, 0);
+  });
 }
 
 TEST(StructSize, IsRespectedByTheMesh) {
