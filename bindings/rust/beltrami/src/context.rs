@@ -6,6 +6,7 @@ use std::ptr::{self, NonNull};
 use beltrami_sys as sys;
 
 use crate::error::{Element, Error};
+use crate::options::Value;
 
 /// A live context, which one thread uses at a time: it is Send, and not Sync.
 #[derive(Debug)]
@@ -36,6 +37,20 @@ impl Context {
 
     pub(crate) fn raw(&self) -> *mut sys::beltrami_context {
         self.0.as_ptr()
+    }
+
+    /// Sets options by key. Fails with `InvalidArgument` at the first that is out of range.
+    pub(crate) fn apply(&self, values: impl Iterator<Item = (i32, Value)>) -> Result<(), Error> {
+        for (key, value) in values {
+            // SAFETY: the context is alive.
+            self.check(unsafe {
+                match value {
+                    Value::Int(value) => sys::beltrami_set_int(self.raw(), key, value),
+                    Value::Float(value) => sys::beltrami_set_float(self.raw(), key, value),
+                }
+            })?;
+        }
+        Ok(())
     }
 
     /// Turns a negative status of the last call into its failure.

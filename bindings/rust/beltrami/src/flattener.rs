@@ -10,7 +10,7 @@ use crate::context::Context;
 use crate::control::{Control, Trampoline};
 use crate::error::{Error, ErrorKind};
 use crate::mesh::Mesh;
-use crate::options::{Options, Value};
+use crate::options::Options;
 use crate::parameterization::Parameterization;
 
 /// Flattens meshes, one after the other, with the same options.
@@ -89,27 +89,13 @@ impl Flattener {
     ///
     /// [`InvalidArgument`](ErrorKind::InvalidArgument) for a value that is out of range.
     pub fn set_options(&mut self, options: &Options) -> Result<(), Error> {
-        let result = self.apply(options);
+        let result = self.context.apply(options.values());
         match result {
             Ok(()) => self.options = options.clone(),
             // They were taken before, so they are again.
-            Err(_) => self.apply(&self.options)?,
+            Err(_) => self.context.apply(self.options.values())?,
         }
         result
-    }
-
-    fn apply(&self, options: &Options) -> Result<(), Error> {
-        let context = self.context.raw();
-        for (key, value) in options.values() {
-            // SAFETY: the context is alive.
-            self.context.check(unsafe {
-                match value {
-                    Value::Int(value) => sys::beltrami_set_int(context, key, value),
-                    Value::Float(value) => sys::beltrami_set_float(context, key, value),
-                }
-            })?;
-        }
-        Ok(())
     }
 
     /// Copies and validates a mesh for [`run`](Self::run). A valid one drops the results of the old

@@ -1,5 +1,8 @@
 #![doc = include_str!("../README.md")]
 
+mod atlas;
+mod atlas_check;
+mod atlas_report;
 mod check;
 mod context;
 mod control;
@@ -13,9 +16,16 @@ mod mesh;
 mod ndarray;
 mod options;
 mod parameterization;
+mod surface;
+mod unwrapper;
 mod verdict;
 mod view;
 
+pub use atlas::Atlas;
+pub use atlas_check::{
+    check_atlas, check_atlas_with, triangulate, AtlasCheck, AtlasRules, Triangulation,
+};
+pub use atlas_report::{AtlasCertificate, AtlasSummary, Chart};
 pub use check::{
     check_boundary, check_boundary_with, check_injective, check_injective_with, check_triangles,
     check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,
@@ -26,9 +36,12 @@ pub use flattener::Flattener;
 pub use library::{build_info, has, version};
 pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
 pub use options::{
-    Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, OPTIONS,
+    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options,
+    UnwrapOptions, Weld, OPTIONS,
 };
 pub use parameterization::{Parameterization, Stage, Status, Summary};
+pub use surface::{Edges, Integers, Reals, Surface};
+pub use unwrapper::Unwrapper;
 pub use verdict::{Certificate, Crossings, Distortion, Orientations};
 pub use view::{Index, Real, Scalar, View, ViewMut};
 

@@ -4,6 +4,7 @@ use std::mem::size_of;
 
 use ndarray::{Array2, ArrayView2};
 
+use crate::atlas::Atlas;
 use crate::error::Error;
 use crate::mesh::{Faces, Positions, Uvs};
 use crate::parameterization::Parameterization;
@@ -49,13 +50,34 @@ input! {
     Uvs, Real;
 }
 
+/// An array of `rows` UVs that `write` fills.
+fn uvs_array<T: Real + ndarray::LinalgScalar>(
+    rows: usize,
+    write: impl FnOnce(ViewMut<'_, T, 2>) -> Result<(), Error>,
+) -> Array2<T> {
+    let mut uvs = Array2::zeros((rows, 2));
+    let numbers = uvs.as_slice_mut().expect("a new array is in standard layout");
+    let room = ViewMut::from_flat(numbers).expect("two numbers per row");
+    write(room).expect("as many rows as UVs");
+    uvs
+}
+
 impl Parameterization<'_> {
     /// What [`uvs`](Self::uvs) returns, as an array with a row (u, v) for every vertex.
     pub fn uvs_array<T: Real + ndarray::LinalgScalar>(&self) -> Array2<T> {
-        let mut uvs = Array2::zeros((self.summary().vertices, 2));
-        let numbers = uvs.as_slice_mut().expect("a new array is in standard layout");
-        let room = ViewMut::<T, 2>::from_flat(numbers).expect("two numbers per row");
-        self.write_uvs(room).expect("one row per vertex");
-        uvs
+        uvs_array(self.summary().vertices, |room| self.write_uvs(room))
+    }
+}
+
+impl Atlas<'_> {
+    /// What [`uvs`](Self::uvs) returns, as an array with a row (u, v) for every UV vertex.
+    pub fn uvs_array<T: Real + ndarray::LinalgScalar>(&self) -> Array2<T> {
+        uvs_array(self.summary().uv_vertices, |room| self.write_uvs(room))
+    }
+
+    /// What [`corner_uvs`](Self::corner_uvs) returns, as an array with a row (u, v) for every
+    /// corner.
+    pub fn corner_uvs_array<T: Real + ndarray::LinalgScalar>(&self) -> Array2<T> {
+        uvs_array(self.summary().corners, |room| self.write_corner_uvs(room))
     }
 }

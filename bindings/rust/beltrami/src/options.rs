@@ -9,7 +9,7 @@ use std::time::Duration;
 use beltrami_sys as sys;
 
 use crate::error::Error;
-pub use table::{Delaunay, Energy, Flatten, Injectivity, Method, OPTIONS};
+pub use table::{Cut, Delaunay, Energy, Flatten, Injectivity, Method, Weld, OPTIONS};
 
 /// What an option takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,6 +43,10 @@ pub struct OptionInfo {
     pub default: f64,
     /// The names of a choice.
     pub choices: &'static [&'static str],
+    /// Whether it is one of [`Options`], for a [`Flattener`](crate::Flattener).
+    pub flattens: bool,
+    /// Whether it is one of [`UnwrapOptions`], for an [`Unwrapper`](crate::Unwrapper).
+    pub unwraps: bool,
 }
 
 /// A value as the library takes it.
@@ -124,14 +128,34 @@ macro_rules! choice {
     };
 }
 
-/// Defines `OPTIONS` and the methods of `Options` that set one.
+/// Defines the method of one builder that sets an option.
+macro_rules! setter {
+    ($builder:ident [$(#[doc = $doc:literal])*] $option:ident $type:ty, $key:literal) => {
+        impl $builder {
+            $(#[doc = $doc])*
+            pub fn $option(self, value: $type) -> Self {
+                self.with($key, crate::options::IntoValue::into_value(value))
+            }
+        }
+    };
+}
+
+/// Defines the methods of builders that set an option.
+macro_rules! setters {
+    ([$($builder:ident)*] $doc:tt $option:ident $type:ty, $key:literal) => {
+        $( crate::options::setter!($builder $doc $option $type, $key); )*
+    };
+}
+
+/// Defines `OPTIONS` and the methods of `Options` and `UnwrapOptions` that set one.
 macro_rules! options {
     ($( $(#[doc = $doc:literal])*
-        $option:ident($type:ty) = $key:literal $name:literal $summary:literal
-            $kind:ident($choices:expr), $minimum:literal..=$maximum:literal, default $default:literal;
+        $option:ident($type:ty) of $builders:tt = $key:literal $name:literal $summary:literal
+            $kind:ident($choices:expr), $minimum:literal..=$maximum:literal, default $default:literal,
+            calls $calls:literal;
     )*) => {
         /// All options, in the order of the library's table: what a user interface or a command
-        /// line is made from, with [`Options::set`].
+        /// line is made from, with [`Options::set`] and [`UnwrapOptions::set`].
         pub const OPTIONS: &[crate::OptionInfo] = &[$(
             crate::OptionInfo {
                 name: $name,
@@ -141,53 +165,110 @@ macro_rules! options {
                 maximum: $maximum as f64,
                 default: $default as f64,
                 choices: $choices,
+                flattens: $calls & beltrami_sys::BELTRAMI_CALL_RUN != 0,
+                unwraps: $calls & beltrami_sys::BELTRAMI_CALL_UNWRAP != 0,
             },
         )*];
 
-        impl Options {
-            $(
-                $(#[doc = $doc])*
-                pub fn $option(self, value: $type) -> Self {
-                    self.with($key, crate::options::IntoValue::into_value(value))
-                }
-            )*
+        $( crate::options::setters!($builders [$(#[doc = $doc])*] $option $type, $key); )*
+    };
+}
+use {choice, options, setter, setters};
+
+/// Defines a builder of options.
+macro_rules! builder {
+    ($(#[$doc:meta])* $builder:ident, $is_taken:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, PartialEq)]
+        #[must_use = "builders return what they build"]
+        pub struct $builder(Values);
+
+        impl $builder {
+            /// All options as the library has them.
+            pub fn new() -> Self {
+                $builder(Values([None; OPTIONS.len()]))
+            }
+
+            /// Sets an option by its name, to a number, a choice's name, or for a switch `true` or
+            /// `false`: what a command line or a settings file has.
+            ///
+            /// # Errors
+            ///
+            /// [`InvalidArgument`](crate::ErrorKind::InvalidArgument) for an unknown name, and for
+            /// text that is no value of the option. Numbers are compared with its range when the
+            /// options are used.
+            pub fn set(mut self, name: &str, value: &str) -> Result<Self, Error> {
+                self.0.set(name, value, |option| option.$is_taken)?;
+                Ok(self)
+            }
+
+            fn with(mut self, key: usize, value: Value) -> Self {
+                self.0.0[key] = Some(value);
+                self
+            }
+
+            /// Keys and values of all options that the library has.
+            pub(crate) fn values(&self) -> impl Iterator<Item = (i32, Value)> + '_ {
+                self.0.all()
+            }
+        }
+
+        impl Default for $builder {
+            fn default() -> Self {
+                $builder::new()
+            }
+        }
+
+        impl fmt::Debug for $builder {
+            fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(formatter)
+            }
         }
     };
 }
-use {choice, options};
 
-/// The options of a run. What is not set is as the library has it.
-///
-/// ```
-/// # use beltrami::{Energy, Flatten, Flattener, Options};
-/// let options = Options::new().energy(Energy::SymmetricArap).flatten(Flatten::Metric).threads(4);
-/// assert_eq!(options, Options::new().set("energy", "symmetric-arap")?
-///     .set("flatten", "metric")?.set("threads", "4")?);
-/// # Flattener::with_options(&options)?;
-/// # Ok::<(), beltrami::Error>(())
-/// ```
-#[derive(Clone, PartialEq)]
-#[must_use = "builders return what they build"]
-pub struct Options {
-    /// By key; `None` for the default.
-    values: [Option<Value>; OPTIONS.len()],
+builder! {
+    /// The options of a run. What is not set is as the library has it.
+    ///
+    /// ```
+    /// # use beltrami::{Energy, Flatten, Flattener, Options};
+    /// let options =
+    ///     Options::new().energy(Energy::SymmetricArap).flatten(Flatten::Metric).threads(4);
+    /// assert_eq!(options, Options::new().set("energy", "symmetric-arap")?
+    ///     .set("flatten", "metric")?.set("threads", "4")?);
+    /// # Flattener::with_options(&options)?;
+    /// # Ok::<(), beltrami::Error>(())
+    /// ```
+    Options, flattens
 }
 
-impl Options {
-    /// All options as the library has them.
-    pub fn new() -> Options {
-        Options { values: [None; OPTIONS.len()] }
-    }
+builder! {
+    /// The options of unwrapping. What is not set is as the library has it.
+    ///
+    /// ```
+    /// # use beltrami::{Cut, UnwrapOptions, Unwrapper};
+    /// let options = UnwrapOptions::new().cut(Cut::Islands).hard_angle(60.0).threads(4);
+    /// assert_eq!(options, UnwrapOptions::new().set("cut", "islands")?
+    ///     .set("hard-angle", "60")?.set("threads", "4")?);
+    /// # Unwrapper::with_options(&options)?;
+    /// # Ok::<(), beltrami::Error>(())
+    /// ```
+    UnwrapOptions, unwraps
+}
 
-    /// Sets an option by its name, to a number, a choice's name, or for a switch `true` or `false`:
-    /// what a command line or a settings file has.
-    ///
-    /// # Errors
-    ///
-    /// [`InvalidArgument`](crate::ErrorKind::InvalidArgument) for an unknown name, and for text that
-    /// is no value of the option. Numbers are compared with its range when the options are used.
-    pub fn set(self, name: &str, value: &str) -> Result<Options, Error> {
-        let key = OPTIONS.iter().position(|option| option.name == name).ok_or_else(|| {
+/// Values of options by key; `None` for the default.
+#[derive(Clone, PartialEq)]
+struct Values([Option<Value>; OPTIONS.len()]);
+
+impl Values {
+    fn set(
+        &mut self,
+        name: &str,
+        value: &str,
+        is_taken: impl Fn(&OptionInfo) -> bool,
+    ) -> Result<(), Error> {
+        let known = |option: &OptionInfo| option.name == name && is_taken(option);
+        let key = OPTIONS.iter().position(known).ok_or_else(|| {
             Error::argument(format!("there is no option {name}: see beltrami::OPTIONS"))
         })?;
         let option = &OPTIONS[key];
@@ -195,19 +276,24 @@ impl Options {
             let takes = option.takes();
             Error::argument(format!("{value:?} is no value for the option {name}: {takes}"))
         })?;
-        Ok(self.with(key, number))
+        self.0[key] = Some(number);
+        Ok(())
     }
 
-    fn with(mut self, key: usize, value: Value) -> Self {
-        self.values[key] = Some(value);
-        self
-    }
-
-    /// Keys and values of all options that the library has.
-    pub(crate) fn values(&self) -> impl Iterator<Item = (i32, Value)> + '_ {
+    fn all(&self) -> impl Iterator<Item = (i32, Value)> + '_ {
         (0..)
-            .zip(&self.values)
+            .zip(&self.0)
             .filter_map(|(key, value)| Some((key, (*value).or_else(|| default(key))?)))
+    }
+}
+
+impl fmt::Debug for Values {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let set = OPTIONS
+            .iter()
+            .zip(&self.0)
+            .filter_map(|(option, value)| Some((option.name, value.as_ref()?)));
+        formatter.debug_map().entries(set).finish()
     }
 }
 
@@ -256,21 +342,5 @@ impl OptionInfo {
             }
             OptionKind::Float => format!("give a number from {} to {}", self.minimum, self.maximum),
         }
-    }
-}
-
-impl Default for Options {
-    fn default() -> Options {
-        Options::new()
-    }
-}
-
-impl fmt::Debug for Options {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let set = OPTIONS
-            .iter()
-            .zip(&self.values)
-            .filter_map(|(option, value)| Some((option.name, value.as_ref()?)));
-        formatter.debug_map().entries(set).finish()
     }
 }

@@ -30,7 +30,7 @@ pub enum Status {
 }
 
 impl Status {
-    fn from_raw(status: sys::beltrami_status) -> Status {
+    pub(crate) fn from_raw(status: sys::beltrami_status) -> Status {
         match status {
             sys::BELTRAMI_OK => Status::Injective,
             sys::BELTRAMI_NOT_CONVERGED => Status::NotConverged,
@@ -145,6 +145,29 @@ pub struct Stage {
     pub seconds: f64,
     /// Processor time of the whole process.
     pub cpu_seconds: f64,
+}
+
+impl Stage {
+    /// An empty one for the library to fill.
+    pub(crate) fn raw() -> sys::beltrami_stage {
+        sys::beltrami_stage {
+            struct_size: size_of::<sys::beltrami_stage>() as u32,
+            ..Default::default()
+        }
+    }
+
+    /// # Safety
+    ///
+    /// `raw` is one that the library has filled.
+    pub(crate) unsafe fn new(raw: &sys::beltrami_stage) -> Stage {
+        Stage {
+            // SAFETY: the caller's promise; the names of stages are static texts.
+            name: unsafe { static_text(raw.name) },
+            iterations: raw.iterations.try_into().unwrap_or(0),
+            seconds: raw.seconds,
+            cpu_seconds: raw.cpu_seconds,
+        }
+    }
 }
 
 /// A map of a mesh to the plane: the results of a flattener's last run, read from it on demand.
@@ -327,19 +350,11 @@ impl<'a> Parameterization<'a> {
     }
 
     fn stage(&self, index: i32) -> Stage {
-        let mut raw = sys::beltrami_stage {
-            struct_size: size_of::<sys::beltrami_stage>() as u32,
-            ..Default::default()
-        };
+        let mut raw = Stage::raw();
         // SAFETY: `raw` has the size that it says.
         self.read(|context| unsafe { sys::beltrami_get_stage(context, index, &mut raw) });
-        Stage {
-            // SAFETY: the names of stages are static texts.
-            name: unsafe { static_text(raw.name) },
-            iterations: raw.iterations.try_into().unwrap_or(0),
-            seconds: raw.seconds,
-            cpu_seconds: raw.cpu_seconds,
-        }
+        // SAFETY: it was filled.
+        unsafe { Stage::new(&raw) }
     }
 
     fn result(&self) -> sys::beltrami_result {

@@ -10,8 +10,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use beltrami::{
-    Delaunay, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionKind, Options,
-    OPTIONS,
+    Cut, Delaunay, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionInfo,
+    OptionKind, Options, UnwrapOptions, Unwrapper, Weld, OPTIONS,
 };
 use beltrami_sys as sys;
 
@@ -24,6 +24,7 @@ struct Entry {
     maximum: f64,
     default: f64,
     choices: Vec<&'static str>,
+    calls: i32,
 }
 
 fn text(raw: *const c_char) -> &'static str {
@@ -67,6 +68,7 @@ fn entry(info: &sys::beltrami_option_info) -> Entry {
         maximum: info.maximum,
         default: info.default_value,
         choices: choices(info.key),
+        calls: info.calls,
     }
 }
 
@@ -82,26 +84,50 @@ fn every_option_of_the_library_is_here_with_its_range_default_and_choices() {
         assert_eq!(theirs.maximum, ours.maximum, "{}", ours.name);
         assert_eq!(theirs.default, ours.default, "{}", ours.name);
         assert_eq!(theirs.choices, ours.choices, "{}", ours.name);
+        assert_eq!(theirs.calls & sys::BELTRAMI_CALL_RUN != 0, ours.flattens, "{}", ours.name);
+        assert_eq!(theirs.calls & sys::BELTRAMI_CALL_UNWRAP != 0, ours.unwraps, "{}", ours.name);
     }
+}
+
+/// Sets an option where it is taken, alike by all that take it.
+fn use_option(option: &OptionInfo, value: &str) -> Result<(), ErrorKind> {
+    let flattens = option.flattens.then(|| {
+        let options = Options::new().set(option.name, value).unwrap();
+        Flattener::with_options(&options).map(drop).map_err(|error| error.kind)
+    });
+    let unwraps = option.unwraps.then(|| {
+        let options = UnwrapOptions::new().set(option.name, value).unwrap();
+        Unwrapper::with_options(&options).map(drop).map_err(|error| error.kind)
+    });
+    assert!(flattens.is_none() || unwraps.is_none() || flattens == unwraps, "{}", option.name);
+    flattens.or(unwraps).unwrap()
+}
+
+#[test]
+fn options_that_are_not_taken_are_unknown() {
+    for option in OPTIONS {
+        let value =
+            option.choices.first().map_or_else(|| option.default.to_string(), |c| c.to_string());
+        let flattens = Options::new().set(option.name, &value).is_ok();
+        let unwraps = UnwrapOptions::new().set(option.name, &value).is_ok();
+        assert_eq!((flattens, unwraps), (option.flattens, option.unwraps), "{}", option.name);
+    }
+    let error = Options::new().set("weld", "off").unwrap_err();
+    assert_eq!(error.to_string(), "there is no option weld: see beltrami::OPTIONS");
 }
 
 #[test]
 fn options_are_taken_up_to_the_ends_of_their_range_and_refused_beyond() {
     for option in OPTIONS {
-        let set = |number: f64| {
-            let options = Options::new().set(option.name, &number.to_string()).unwrap();
-            Flattener::with_options(&options).map_err(|error| error.kind)
-        };
+        let set = |number: f64| use_option(option, &number.to_string());
         for good in [option.minimum, option.maximum, option.default] {
             assert!(set(good).is_ok(), "{} = {good}", option.name);
         }
         for bad in [option.minimum - 1.0, option.maximum + option.maximum.max(1.0)] {
-            let refused = set(bad).map(drop);
-            assert_eq!(refused, Err(ErrorKind::InvalidArgument), "{} = {bad}", option.name);
+            assert_eq!(set(bad), Err(ErrorKind::InvalidArgument), "{} = {bad}", option.name);
         }
         for choice in option.choices {
-            let options = Options::new().set(option.name, choice).unwrap();
-            assert!(Flattener::with_options(&options).is_ok(), "{} = {choice}", option.name);
+            assert!(use_option(option, choice).is_ok(), "{} = {choice}", option.name);
         }
     }
 }
@@ -149,6 +175,15 @@ fn typed_and_named_options_are_the_same() {
     for &delaunay in Delaunay::ALL {
         assert_eq!(Options::new().delaunay(delaunay), named("delaunay", delaunay.name()));
     }
+    let unwrap = |name, value: &str| UnwrapOptions::new().set(name, value).unwrap();
+    for &cut in Cut::ALL {
+        assert_eq!(UnwrapOptions::new().cut(cut), unwrap("cut", cut.name()));
+    }
+    for &weld in Weld::ALL {
+        assert_eq!(UnwrapOptions::new().weld(weld), unwrap("weld", weld.name()));
+    }
+    assert_eq!(UnwrapOptions::new().method(Method::Cm), unwrap("method", "cm"));
+    assert_eq!(UnwrapOptions::new().share_copies(true), unwrap("share-copies", "true"));
     assert_eq!(Options::new().refine(true), named("refine", "true"));
     assert_eq!(Options::new().threads(2), named("threads", "2"));
     assert_eq!(Options::new().tolerance(0.5), named("tolerance", "0.5"));
@@ -240,12 +275,20 @@ fn summary_in_rust(option: &Entry) -> String {
     }
 }
 
+/// The types that have a method for it.
+fn builders(option: &Entry) -> Vec<&'static str> {
+    let calls = [(sys::BELTRAMI_CALL_RUN, "Options"), (sys::BELTRAMI_CALL_UNWRAP, "UnwrapOptions")];
+    let taken = calls.into_iter().filter(|(call, _)| option.calls & call != 0);
+    taken.map(|(_, builder)| builder).collect()
+}
+
 fn render_choice(option: &Entry, comments: &HashMap<String, String>) -> String {
     let constant =
         |name: &str| format!("BELTRAMI_{}_{}", option.name, name).to_uppercase().replace('-', "_");
     let mut source = String::from("choice! {\n");
     let method = option.name.replace('-', "_");
-    source += &docs("    ", &format!("{} See [`Options::{method}`].", summary_in_rust(option)));
+    let builder = builders(option)[0];
+    source += &docs("    ", &format!("{} See [`{builder}::{method}`].", summary_in_rust(option)));
     writeln!(source, "    {} {{", pascal_case(option.name)).unwrap();
     for name in &option.choices {
         let words = comments.get(&constant(name)).cloned();
@@ -259,7 +302,8 @@ fn render_option(key: usize, option: &Entry) -> String {
     let mut source = docs("    ", &summary_in_rust(option));
     source += "    ///\n";
     if matches!(option.kind, OptionKind::Int | OptionKind::Float) {
-        source += &docs("    ", &format!("From {} to {}.", option.minimum, in_words(option.maximum)));
+        source +=
+            &docs("    ", &format!("From {} to {}.", option.minimum, in_words(option.maximum)));
         source += "    ///\n";
     }
     source += &docs("    ", &format!("Default: {}.", default_in_words(option)));
@@ -271,12 +315,13 @@ fn render_option(key: usize, option: &Entry) -> String {
     // Whole literals are of 32 bits where nothing says otherwise.
     let whole = option.maximum <= f64::from(i32::MAX);
     let maximum = if whole { option.maximum.to_string() } else { format!("{:?}", option.maximum) };
-    writeln!(source, "    {method}({taken}) = {key} {:?}", option.name).unwrap();
+    let builders = builders(option).join(" ");
+    writeln!(source, "    {method}({taken}) of [{builders}] = {key} {:?}", option.name).unwrap();
     writeln!(source, "        {:?}", option.summary).unwrap();
     writeln!(
         source,
-        "        {:?}({choices}), {}..={maximum}, default {};",
-        option.kind, option.minimum, option.default
+        "        {:?}({choices}), {}..={maximum}, default {}, calls {};",
+        option.kind, option.minimum, option.default, option.calls
     )
     .unwrap();
     source
@@ -286,7 +331,7 @@ fn render(table: &[Entry], comments: &HashMap<String, String>) -> String {
     let mut source = String::from(
         "// The options of the library, written by tests/option_table.rs from its table and header.\n\n\
          use std::time::Duration;\n\n\
-         use super::{choice, options, Options};\n\n",
+         use super::{choice, options, Options, UnwrapOptions};\n\n",
     );
     for option in table.iter().filter(|option| option.kind == OptionKind::Choice) {
         source += &render_choice(option, comments);

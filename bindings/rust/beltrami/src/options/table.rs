@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{choice, options, Options};
+use super::{choice, options, Options, UnwrapOptions};
 
 choice! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
@@ -85,7 +85,7 @@ choice! {
 choice! {
     /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
     /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-    /// opened). See [`Options::cut`].
+    /// opened). See [`UnwrapOptions::cut`].
     Cut {
         /// Nothing but a short cut graph where a piece is no disk.
         Minimal = "minimal",
@@ -96,7 +96,7 @@ choice! {
 
 choice! {
     /// Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
-    /// one disk as it stands stays so), on or off. See [`Options::weld`].
+    /// one disk as it stands stays so), on or off. See [`UnwrapOptions::weld`].
     Weld {
         /// Yes; but a surface that is one disk as it stands stays so.
         Auto = "auto",
@@ -114,16 +114,16 @@ options! {
     /// coarse UVs (bff and uv-prolongation may flip).
     ///
     /// Default: [`Beltrami`](Method::Beltrami).
-    method(Method) = 0 "method"
+    method(Method) of [Options UnwrapOptions] = 0 "method"
         "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs (bff and uv-prolongation may flip)."
-        Choice(Method::NAMES), 0..=5, default 0;
+        Choice(Method::NAMES), 0..=5, default 0, calls 3;
 
     /// The distortion that is minimised.
     ///
     /// Default: [`SymmetricDirichlet`](Energy::SymmetricDirichlet).
-    energy(Energy) = 1 "energy"
+    energy(Energy) of [Options UnwrapOptions] = 1 "energy"
         "The distortion that is minimised."
-        Choice(Energy::NAMES), 0..=1, default 0;
+        Choice(Energy::NAMES), 0..=1, default 0, calls 3;
 
     /// Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
     /// at least 10,000.
@@ -131,44 +131,44 @@ options! {
     /// From 0 to 700000000.
     ///
     /// Default: 0.
-    coarse_faces(u32) = 2 "coarse-faces"
+    coarse_faces(u32) of [Options UnwrapOptions] = 2 "coarse-faces"
         "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000."
-        Int(&[]), 0..=700000000, default 0;
+        Int(&[]), 0..=700000000, default 0, calls 3;
 
     /// Relative decrease of the energy in one iteration below which composite majorization stops.
     ///
     /// From 0 to 1.
     ///
     /// Default: 0.0001.
-    tolerance(f64) = 3 "tolerance"
+    tolerance(f64) of [Options UnwrapOptions] = 3 "tolerance"
         "Relative decrease of the energy in one iteration below which composite majorization stops."
-        Float(&[]), 0..=1, default 0.0001;
+        Float(&[]), 0..=1, default 0.0001, calls 3;
 
     /// Iterations after which composite majorization stops even if it has not converged.
     ///
     /// From 1 to 1000000.
     ///
     /// Default: 500.
-    max_iterations(u32) = 4 "max-iterations"
+    max_iterations(u32) of [Options UnwrapOptions] = 4 "max-iterations"
         "Iterations after which composite majorization stops even if it has not converged."
-        Int(&[]), 1..=1000000, default 500;
+        Int(&[]), 1..=1000000, default 500, calls 3;
 
     /// Threads to use, the calling one included; the result does not depend on it.
     ///
     /// From 1 to 1024.
     ///
     /// Default: 1.
-    threads(u32) = 5 "threads"
+    threads(u32) of [Options UnwrapOptions] = 5 "threads"
         "Threads to use, the calling one included; the result does not depend on it."
-        Int(&[]), 1..=1024, default 1;
+        Int(&[]), 1..=1024, default 1, calls 3;
 
     /// `true` scales and shifts the UVs into the unit square; `false` keeps them in the mesh's unit
     /// of length.
     ///
     /// Default: `false`.
-    unit_square(bool) = 6 "unit-square"
+    unit_square(bool) of [Options UnwrapOptions] = 6 "unit-square"
         "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's unit of length."
-        Switch(&[]), 0..=1, default 0;
+        Switch(&[]), 0..=1, default 0, calls 3;
 
     /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
     /// and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
@@ -176,35 +176,35 @@ options! {
     /// local injectivity only) or bff (conformal, may flip).
     ///
     /// Default: [`Metric`](Flatten::Metric).
-    flatten(Flatten) = 7 "flatten"
+    flatten(Flatten) of [Options UnwrapOptions] = 7 "flatten"
         "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local injectivity only) or bff (conformal, may flip)."
-        Choice(Flatten::NAMES), 0..=4, default 0;
+        Choice(Flatten::NAMES), 0..=4, default 0, calls 3;
 
     /// What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
     /// parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
     /// is left as the literature has it).
     ///
     /// Default: [`Auto`](Injectivity::Auto).
-    injectivity(Injectivity) = 8 "injectivity"
+    injectivity(Injectivity) of [Options UnwrapOptions] = 8 "injectivity"
         "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which is left as the literature has it)."
-        Choice(Injectivity::NAMES), 0..=2, default 0;
+        Choice(Injectivity::NAMES), 0..=2, default 0, calls 3;
 
     /// `true` goes on with composite majorization on the fine mesh from the result, to a little
     /// less energy in much more time.
     ///
     /// Default: `false`.
-    refine(bool) = 9 "refine"
+    refine(bool) of [Options UnwrapOptions] = 9 "refine"
         "1 goes on with composite majorization on the fine mesh from the result, to a little less energy in much more time."
-        Switch(&[]), 0..=1, default 0;
+        Switch(&[]), 0..=1, default 0, calls 3;
 
     /// Iterations after which the refinement stops; 0 leaves it to the tolerance.
     ///
     /// From 0 to 1000000.
     ///
     /// Default: 0.
-    refine_iterations(u32) = 10 "refine-iterations"
+    refine_iterations(u32) of [Options UnwrapOptions] = 10 "refine-iterations"
         "Iterations after which the refinement stops; 0 leaves it to the tolerance."
-        Int(&[]), 0..=1000000, default 0;
+        Int(&[]), 0..=1000000, default 0, calls 3;
 
     /// Seconds since the start of the run after which iterations stop with the best map so far; 0
     /// sets no limit.
@@ -212,26 +212,26 @@ options! {
     /// From 0 to 1000000000.
     ///
     /// Default: [`Duration::ZERO`].
-    time_limit(Duration) = 11 "time-limit"
+    time_limit(Duration) of [Options UnwrapOptions] = 11 "time-limit"
         "Seconds since the start of the run after which iterations stop with the best map so far; 0 sets no limit."
-        Float(&[]), 0..=1000000000, default 0;
+        Float(&[]), 0..=1000000000, default 0, calls 3;
 
     /// `true` delivers UVs that single precision holds exactly, rounded so that the map stays
     /// injective.
     ///
     /// Default: `false`.
-    float32(bool) = 12 "float32"
+    float32(bool) of [Options UnwrapOptions] = 12 "float32"
         "1 delivers UVs that single precision holds exactly, rounded so that the map stays injective."
-        Switch(&[]), 0..=1, default 0;
+        Switch(&[]), 0..=1, default 0, calls 3;
 
     /// [`On`](Delaunay::On) flips edges to the intrinsic Delaunay triangulation of the prolonged
     /// metric before the fine mesh is flattened: what is injective then are its own triangles on
     /// the same vertices.
     ///
     /// Default: [`Off`](Delaunay::Off).
-    delaunay(Delaunay) = 13 "delaunay"
+    delaunay(Delaunay) of [Options] = 13 "delaunay"
         "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the fine mesh is flattened: what is injective then are its own triangles on the same vertices."
-        Choice(Delaunay::NAMES), 0..=1, default 0;
+        Choice(Delaunay::NAMES), 0..=1, default 0, calls 1;
 
     /// Bytes of memory that a run is to stay within by its estimate: one that needs more ends
     /// before it starts, and steps that only hard meshes need are left out where they would exceed
@@ -240,18 +240,18 @@ options! {
     /// From 0 to 100000000000000.
     ///
     /// Default: 0.
-    memory_limit(u64) = 14 "memory-limit"
+    memory_limit(u64) of [Options UnwrapOptions] = 14 "memory-limit"
         "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it; 0 sets no limit."
-        Int(&[]), 0..=100000000000000.0, default 0;
+        Int(&[]), 0..=100000000000000.0, default 0, calls 3;
 
     /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
     /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
     /// opened).
     ///
     /// Default: [`Minimal`](Cut::Minimal).
-    cut(Cut) = 15 "cut"
+    cut(Cut) of [UnwrapOptions] = 15 "cut"
         "Where seams go beside those that are given: minimal (a short cut graph where a piece is no disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is opened)."
-        Choice(Cut::NAMES), 0..=1, default 0;
+        Choice(Cut::NAMES), 0..=1, default 0, calls 2;
 
     /// Degrees between the normals of two faces above which the edge between them is a seam; 180
     /// makes none.
@@ -259,26 +259,26 @@ options! {
     /// From 0 to 180.
     ///
     /// Default: 180.
-    hard_angle(f64) = 16 "hard-angle"
+    hard_angle(f64) of [UnwrapOptions] = 16 "hard-angle"
         "Degrees between the normals of two faces above which the edge between them is a seam; 180 makes none."
-        Float(&[]), 0..=180, default 180;
+        Float(&[]), 0..=180, default 180, calls 2;
 
     /// Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
     /// one disk as it stands stays so), on or off.
     ///
     /// Default: [`Auto`](Weld::Auto).
-    weld(Weld) = 17 "weld"
+    weld(Weld) of [UnwrapOptions] = 17 "weld"
         "Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is one disk as it stands stays so), on or off."
-        Choice(Weld::NAMES), 0..=2, default 0;
+        Choice(Weld::NAMES), 0..=2, default 0, calls 2;
 
     /// Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
     ///
     /// From 0 to 1e300.
     ///
     /// Default: 0.
-    weld_distance(f64) = 18 "weld-distance"
+    weld_distance(f64) of [UnwrapOptions] = 18 "weld-distance"
         "Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place."
-        Float(&[]), 0..=1e300, default 0;
+        Float(&[]), 0..=1e300, default 0, calls 2;
 
     /// Holes whose boundary is no longer than this many roots of their component's area cost no
     /// seam, larger ones are joined to one; 0 joins all.
@@ -286,15 +286,15 @@ options! {
     /// From 0 to 1000000000.
     ///
     /// Default: 0.5.
-    fill_holes(f64) = 19 "fill-holes"
+    fill_holes(f64) of [UnwrapOptions] = 19 "fill-holes"
         "Holes whose boundary is no longer than this many roots of their component's area cost no seam, larger ones are joined to one; 0 joins all."
-        Float(&[]), 0..=1000000000, default 0.5;
+        Float(&[]), 0..=1000000000, default 0.5, calls 2;
 
     /// `true` gives copies of a face, as of double-sided surfaces, the UVs of the first instead of
     /// a layer of their own.
     ///
     /// Default: `false`.
-    share_copies(bool) = 20 "share-copies"
+    share_copies(bool) of [UnwrapOptions] = 20 "share-copies"
         "1 gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a layer of their own."
-        Switch(&[]), 0..=1, default 0;
+        Switch(&[]), 0..=1, default 0, calls 2;
 }
