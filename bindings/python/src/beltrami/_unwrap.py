@@ -178,7 +178,7 @@ def unwrap(
         one disk as it stands stays so), on or off.
     weld_distance : float, default 0.0
         Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
-        A number from 0 to 1e+300.
+        A number from 0 to 1e+100.
     fill_holes : float, default 0.5
         Holes whose boundary is no longer than this many roots of their component's area cost no
         seam, larger ones are joined to one; 0 joins all. A number from 0 to 1,000,000,000.

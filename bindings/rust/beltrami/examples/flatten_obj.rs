@@ -79,7 +79,8 @@ fn parse_options(arguments: &[String]) -> Result<Options, Box<dyn Error>> {
 }
 
 fn usage() -> String {
-    let options = OPTIONS.iter().map(|option| format!("\n  --{} {}", option.name, option.summary));
+    let options = OPTIONS.iter().filter(|option| option.flattens);
+    let options = options.map(|option| format!("\n  --{} {}", option.name, option.summary));
     USAGE.to_owned() + &options.collect::<String>()
 }
 

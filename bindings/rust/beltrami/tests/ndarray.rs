@@ -3,7 +3,9 @@
 
 mod support;
 
-use beltrami::{check_injective, Error, Faces, Flattener, Mesh, Positions, Uvs};
+use beltrami::{
+    check_injective, Error, Faces, Flattener, Mesh, Positions, Surface, Unwrapper, Uvs,
+};
 use ndarray::{s, Array2, ShapeBuilder};
 use support::sheet;
 
@@ -24,6 +26,17 @@ fn arrays_are_as_good_as_slices() {
     let certificate = check_injective(mesh.faces, Uvs::try_from(uvs.view()).unwrap()).unwrap();
     assert!(certificate.injective);
     assert_eq!(map.uvs_array::<f32>().dim(), (positions.len(), 2));
+}
+
+#[test]
+fn atlases_come_as_arrays_too() {
+    let (positions, faces) = sheet(4);
+    let positions = Array2::from(positions);
+    let positions = Positions::try_from(positions.view()).unwrap();
+    let mut unwrapper = Unwrapper::new().unwrap();
+    let atlas = unwrapper.unwrap(&Surface::new(positions, &faces)).unwrap();
+    assert_eq!(atlas.uvs_array::<f64>(), Array2::from(atlas.uvs::<[f64; 2]>()));
+    assert_eq!(atlas.corner_uvs_array::<f32>(), Array2::from(atlas.corner_uvs::<[f32; 2]>()));
 }
 
 #[test]

@@ -273,12 +273,12 @@ options! {
 
     /// Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place.
     ///
-    /// From 0 to 1e300.
+    /// From 0 to 1e100.
     ///
     /// Default: 0.
     weld_distance(f64) of [UnwrapOptions] = 18 "weld-distance"
         "Vertices no further apart, in the mesh's unit of length, count as one; 0 those at one place."
-        Float(&[]), 0..=1e300, default 0, calls 2;
+        Float(&[]), 0..=1e100, default 0, calls 2;
 
     /// Holes whose boundary is no longer than this many roots of their component's area cost no
     /// seam, larger ones are joined to one; 0 joins all.
