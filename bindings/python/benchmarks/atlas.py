@@ -232,7 +232,9 @@ def main() -> None:
             table[path.name] = compare(path, vertices, faces)
     summarise(list(table.values()))
     if arguments.record:
-        records.write("atlas", [row for name, found in table.items() for row in rows_of(name, found)])
+        records.write(
+            "atlas", [row for name, found in table.items() for row in rows_of(name, found)]
+        )
 
 
 if __name__ == "__main__":

@@ -98,6 +98,20 @@ def test_any_mesh_is_unwrapped(meshes, tmp_path):
     assert resumed(beltrami.batch(meshes, out)) == [False] * 4
 
 
+def test_an_atlas_is_written_in_the_format_of_its_mesh(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    for suffix in ("ply", "glb", "stl"):
+        trimesh.creation.box().export(tmp_path / f"{suffix}.{suffix}")
+    paths = sorted(tmp_path.iterdir())
+    records = beltrami.unwrap_batch(paths, tmp_path / "out")
+    assert [record.output for record in records] == ["glb.glb", "ply.ply", "stl.obj"]
+    assert [record.injective for record in records] == [True] * 3
+    records = beltrami.unwrap_batch(paths, tmp_path / "out", suffix=".obj")
+    assert [record.output for record in records] == ["glb.obj", "ply.obj", "stl.obj"]
+    with pytest.raises(ValueError, match=r"give '\.obj' or '\.ply'"):
+        beltrami.unwrap_batch(paths, tmp_path / "out", suffix=".stl")
+
+
 def test_an_atlas_is_cut_along_the_materials_of_a_file(tmp_path):
     path = write_obj(tmp_path / "strip.obj", *grid(2))
     lines = path.read_text().splitlines()

@@ -75,6 +75,7 @@ class Task:
     arguments: list[str]
     options: dict[str, object]  # what the result depends on, and the threads
     threads: int
+    suffixes: tuple[str, ...] = (".obj", ".ply")  # of results
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ def run_batch(
     out_dir: str | os.PathLike[str],
     scheduler: Any,
     *,
-    suffix: str,
+    suffix: str | None,
     root: str | os.PathLike[str] | None,
     jobs: int | None,
     progress: Progress,
@@ -103,8 +104,8 @@ def run_batch(
     """Do a task with many files; arguments, result and errors are those of `batch`."""
     if isinstance(paths, (str, os.PathLike)):
         raise TypeError(f"paths is {paths!r}: give a list of paths, such as glob.glob('*.ply')")
-    if suffix not in (".obj", ".ply"):
-        raise ValueError(f"suffix is {suffix!r}: give '.obj' or '.ply'")
+    if suffix not in (*task.suffixes, None):
+        raise ValueError(f"suffix is {suffix!r}: give {' or '.join(map(repr, task.suffixes))}")
     folder = Path(out_dir)
     work = [_job(path, folder, suffix, root, task) for path in paths]
     _require_distinct(work)
@@ -140,7 +141,7 @@ def run_batch(
 def _job(
     path: str | os.PathLike[str],
     folder: Path,
-    suffix: str,
+    suffix: str | None,
     root: str | os.PathLike[str] | None,
     task: Task,
 ) -> Job:
@@ -149,6 +150,8 @@ def _job(
         raise TypeError(f"paths has a {kind}: give files, and meshes to parameterize or unwrap")
     path = Path(path).absolute()
     below = path.relative_to(Path(root).absolute()) if root is not None else Path(path.name)
+    if suffix is None:
+        suffix = path.suffix.lower() if path.suffix.lower() in task.suffixes else task.suffixes[0]
     name = below.with_suffix(suffix)
     try:
         status = path.stat()

@@ -50,7 +50,7 @@ def unwrap_batch(
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
-    suffix: str = ".obj",
+    suffix: str | None = None,
     root: str | os.PathLike[str] | None = None,
     jobs: int | None = None,
     progress: Progress = None,
@@ -67,7 +67,7 @@ def unwrap_batch(
     Parameters
     ----------
     paths : iterable of path
-        Meshes in OBJ, OFF, PLY or STL files.
+        Meshes in OBJ, OFF, PLY, STL or glTF files.
     out_dir : path
         Folder for the results, which is made if need be: files with UVs, named as the meshes.
     scheduler : str or distributed.Client, optional
@@ -77,11 +77,12 @@ def unwrap_batch(
         processes on this machine.
     labels : str, optional
         Cut where these differ: "materials", "groups" or "objects" of an OBJ file, or the name of a
-        property of the faces of a PLY file.
+        property of the faces of a PLY file, "material" of glTF.
     triangulate : bool
         True writes the triangles that were computed on; False keeps polygons.
-    suffix : {".obj", ".ply"}
-        Format of the results.
+    suffix : {".obj", ".ply", ".gltf", ".glb"}, optional
+        Format of the results; the latter two of glTF files only. Left out, that of each mesh, or
+        OBJ where there is no writing it.
     root : path, optional
         Folder above the meshes: results keep their path below it. Left out, all results lie in
         `out_dir` itself.
@@ -209,7 +210,7 @@ def unwrap_batch(
     if triangulate:
         arguments += ["--triangulate"]
     depends = {**options, "labels": labels, "triangulate": triangulate}
-    task = _jobs.Task("unwrap", arguments, depends, threads)
+    task = _jobs.Task("unwrap", arguments, depends, threads, (".obj", ".ply", ".gltf", ".glb"))
     return _jobs.run_batch(
         task,
         paths,
