@@ -112,8 +112,9 @@ FilledSurface fill_holes(Surface surface, const Topology& topology, double limit
   FilledSurface filled{std::move(surface), 0, 0, 0};
   filled.real_vertices = filled.surface.vertex_count();
   filled.real_faces = filled.surface.face_count();
-  const std::vector<double> areas = component_areas(filled.surface, topology);
   const BoundaryLoops& loops = topology.loops;
+  if (loops.count() == 0) return filled;
+  const std::vector<double> areas = component_areas(filled.surface, topology);
   for (Index i = 0; i < loops.count(); ++i) {
     work.report(static_cast<double>(i) / loops.count());
     const Index component = topology.component_of_loop[i];

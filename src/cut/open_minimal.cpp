@@ -72,10 +72,11 @@ struct Graph {
         .subspan(loops.start[loop], loops.start[loop + 1] - loops.start[loop]);
   }
   bool is_joined_loop(Index n) const { return loop_of_vertex[n] != kNone; }
+  bool is_free(Index h) const { return locked.empty() || !locked[h]; }
   /// Infinite where the cut must not go: no path takes such an edge, and the spanning tree of the
   /// dual, which begins with the longest loops, crosses it.
   double length(Index h) const {
-    if (!locked.empty() && locked[h]) return std::numeric_limits<double>::infinity();
+    if (!is_free(h)) return std::numeric_limits<double>::infinity();
     return (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
   }
   Index start_node(Index h) const { return node[surface.origin(h)]; }
@@ -158,6 +159,7 @@ class Opening {
  private:
   void grow_tree(const std::vector<Index>& roots);
   Index farthest() const;
+  Index farthest_in_space();
   std::vector<Index> open_sphere();
   Cut open_from(const std::vector<Index>& roots);
   std::vector<Index> closing_edges();
@@ -212,10 +214,28 @@ Index Opening::farthest() const {
   return far;
 }
 
+/// The vertex with a free edge that is farthest in space from the first one: as good a root as the
+/// one of the longest path, for a tree less.
+Index Opening::farthest_in_space() {
+  const std::vector<Vec3>& positions = graph_.surface.positions;
+  Index far = vertices_.front();
+  double most = 0;
+  for (const Index v : vertices_) {
+    poll_();
+    const double distance_sq = (positions[v] - positions[vertices_.front()]).squaredNorm();
+    if (!(distance_sq > most)) continue;
+    bool is_free = false;
+    graph_.for_each_edge_at(v, [&](Index h) { is_free = is_free || graph_.is_free(h); });
+    if (!is_free) continue;
+    most = distance_sq;
+    far = v;
+  }
+  return far;
+}
+
 /// A path of two edges or more: along one alone, the sides of a cut would be one edge.
 std::vector<Index> Opening::open_sphere() {
-  grow_tree({vertices_.front()});
-  const Index root = farthest();
+  const Index root = farthest_in_space();
   grow_tree({root});
   // The two farthest nodes, those two edges away or more before the neighbours of the root.
   const auto rank = [&](Index n) {
