@@ -38,7 +38,8 @@ void PatchWork::straighten_boundary(Patch& patch) {
     Index after = position_[all[i]];
     for (; !patch.fixed[local(after)]; after = polygon.next(after)) part.push_back(local(after));
     if (before == after) continue;  // no line
-    const Vec2 start = polygon.start(before), way = polygon.start(after) - start;
+    const Vec2& start = polygon.start(before);
+    const Vec2 way = polygon.start(after) - start;
     const double steps = static_cast<double>(part.size() + 1);
     for (std::size_t k = 0; k < part.size(); ++k) {
       patch.uvs[part[k]] = start + (static_cast<double>(k + 1) / steps) * way;
