@@ -1,5 +1,7 @@
 #include "abi/unwrapped.h"
 
+#include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 
@@ -13,6 +15,21 @@ namespace {
 /// Straight angles are exactly that.
 double radians(double degrees) {
   return degrees / 180 * std::numbers::pi;
+}
+
+/// Per triangle of a polygon, bit k says whether its edge from corner k is no side of the polygon.
+std::vector<std::uint8_t> diagonals_of(const LoadedSurface& surface) {
+  std::vector<std::uint8_t> diagonals(surface.face_of_triangle.size(), 0);
+  for (Index t = 0; t < size_of(diagonals); ++t) {
+    const Index face = surface.face_of_triangle[t];
+    const Index last = surface.polygons.end(face) - surface.polygons.begin(face) - 1;
+    const Triangle& corners = surface.triangulation.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      const Index apart = std::abs(corners[(k + 1) % 3] - corners[k]);
+      if (apart != 1 && apart != last) diagonals[t] |= static_cast<std::uint8_t>(1 << k);
+    }
+  }
+  return diagonals;
 }
 
 /// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner.
@@ -83,6 +100,8 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   input.cuts.hard_angle = radians(hard_angle);
   AtlasOptions with_polygons = options;
   with_polygons.admit.polygons = surface.face_of_triangle;
+  const std::vector<std::uint8_t> diagonals = diagonals_of(surface);
+  with_polygons.diagonals = diagonals;
 
   Unwrapped result;
   result.atlas = unwrap(input, with_polygons, work);

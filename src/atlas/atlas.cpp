@@ -261,7 +261,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   });
   OpenedSurface opened;
   stage("cut", kAdmitted, kCut, [&](const Work& inner) {
-    opened = open_surface(admitted, input.cuts, options.fill_limit, options.admit.polygons, inner);
+    opened = open_surface(admitted, input.cuts, options.fill_limit,
+                          {options.admit.polygons, options.diagonals}, inner);
   });
   std::vector<MappedChart> maps;
   stage("flatten", kCut, kMapped,

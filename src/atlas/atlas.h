@@ -4,6 +4,8 @@
 
 #include <beltrami/beltrami.h>
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "admit/admit.h"
@@ -27,6 +29,9 @@ struct AtlasInput {
 
 struct AtlasOptions {
   AdmitOptions admit = {};
+  /// With polygons: per face, bit k says whether its edge from corner k is inside its polygon;
+  /// none: every edge between two faces of one polygon is.
+  std::span<const std::uint8_t> diagonals = {};
   /// A mesh that is one disk as it stands is not welded: its seams may run between vertices at one
   /// place.
   bool keep_disk = true;

@@ -19,32 +19,44 @@ namespace {
 // Where the stages end in the progress.
 constexpr double kParted = 0.2, kFilled = 0.3, kOpened = 0.7;
 
+/// Whether an edge lies inside a polygon: not where a side of it meets another side of the same.
+bool is_inside(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin) {
+  const auto is_diagonal = [&](Index of) {
+    if (polygons.diagonals.empty()) return true;
+    const Index face = of / 3;
+    const int k = admitted.reversed[face] ? 2 - of % 3 : of % 3;
+    return (polygons.diagonals[admitted.input_face[face]] >> k & 1) != 0;
+  };
+  const auto polygon = [&](Index of) { return polygons.polygon[admitted.input_face[of / 3]]; };
+  return polygon(h) == polygon(twin) && is_diagonal(h) && is_diagonal(twin);
+}
+
 /// The surface with what is given cut, but for the inside of polygons.
-SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, std::span<const Index> polygons,
+SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, const PolygonParts& polygons,
                   const Work& work) {
   const EdgeMarks marks = given_marks(admitted, cuts, work.part(0, 0.5));
   std::vector<Index> twin = admitted.surface.twin;
-  const auto polygon = [&](Index h) { return polygons[admitted.input_face[h / 3]]; };
   for (Index h = 0; h < size_of(twin); ++h) {
     if (!marks[h] || twin[h] == kNone) continue;
-    if (polygons.empty() || polygon(h) != polygon(admitted.surface.twin[h])) twin[h] = kNone;
+    if (polygons.polygon.empty() || !is_inside(admitted, polygons, h, admitted.surface.twin[h])) {
+      twin[h] = kNone;
+    }
   }
   return split_fans(admitted.surface.positions, admitted.surface.faces, twin, work.part(0.5, 1));
 }
 
-/// The edges that are not to be cut: between the triangles of one polygon, and the spokes of fans
+/// The edges that are not to be cut: inside polygons, and the spokes of fans
 /// over holes but for one each, by which a path may reach the centre.
 EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
-                       std::span<const Index> polygons) {
+                       const PolygonParts& polygons) {
   const Surface& surface = filled.surface;
-  if (polygons.empty() && filled.filled_loops == 0) return {};
+  if (polygons.polygon.empty() && filled.filled_loops == 0) return {};
   EdgeMarks locked(surface.twin.size(), false);
-  if (!polygons.empty()) {
-    const auto polygon = [&](Index h) { return polygons[admitted.input_face[h / 3]]; };
+  if (!polygons.polygon.empty()) {
     for (Index h = 0; h < 3 * filled.real_faces; ++h) {
       const Index twin = surface.twin[h];
       if (twin == kNone || twin >= 3 * filled.real_faces) continue;
-      if (polygon(h) == polygon(twin)) locked[h] = true;
+      if (is_inside(admitted, polygons, h, twin)) locked[h] = true;
     }
   }
   for (Index v = filled.real_vertices; v < surface.vertex_count(); ++v) {
@@ -59,7 +71,7 @@ EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
 }  // namespace
 
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           std::span<const Index> polygons, const Work& work) {
+                           const PolygonParts& polygons, const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {

@@ -2,6 +2,7 @@
 // must be.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,11 +25,17 @@ struct OpenedSurface {
   Index filled_holes = 0;
 };
 
+/// Which faces of the input are parts of polygons, and where.
+struct PolygonParts {
+  std::span<const Index> polygon;           ///< per face, or none
+  std::span<const std::uint8_t> diagonals;  ///< per face, bit k: its edge from corner k is inside;
+                                            ///< none: all are that lie between two of its faces
+};
+
 /// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
 /// the root of their component's area, and cuts what is no disk then along a short cut graph.
-/// `polygons`: per face of the input the polygon that it is a part of, which no cut divides; or
-/// none.
+/// No cut divides a polygon, if there is a way.
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           std::span<const Index> polygons, const Work& work);
+                           const PolygonParts& polygons, const Work& work);
 
 }  // namespace beltrami

@@ -1,6 +1,7 @@
 #include "cut/open_minimal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -72,11 +73,7 @@ struct Graph {
         .subspan(loops.start[loop], loops.start[loop + 1] - loops.start[loop]);
   }
   bool is_joined_loop(Index n) const { return loop_of_vertex[n] != kNone; }
-  bool is_free(Index h) const { return locked.empty() || !locked[h]; }
-  /// Infinite where the cut must not go: no path takes such an edge, and the spanning tree of the
-  /// dual, which begins with the longest loops, crosses it.
   double length(Index h) const {
-    if (!is_free(h)) return std::numeric_limits<double>::infinity();
     return (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
   }
   Index start_node(Index h) const { return node[surface.origin(h)]; }
@@ -164,14 +161,25 @@ class Opening {
   Cut open_from(const std::vector<Index>& roots);
   std::vector<Index> closing_edges();
   void strip_dual();
+  bool is_beyond_locks(const std::vector<Index>& closing) const;
   void take_path(Index n, std::vector<Index>& edges);
   void prune(const std::vector<Index>& roots, std::vector<Index>& edges);
+
+  bool is_free(Index h) const {
+    return !honours_locks_ || graph_.locked.empty() || !graph_.locked[h];
+  }
+  /// Infinite where the cut must not go: no path takes such an edge, and the spanning tree of the
+  /// dual, which begins with the longest loops, crosses it.
+  double length(Index h) const {
+    return is_free(h) ? graph_.length(h) : std::numeric_limits<double>::infinity();
+  }
 
   Graph& graph_;
   const Component& component_;
   std::span<const Index> vertices_;
   std::span<const Index> faces_;
   std::vector<Index> loop_nodes_;
+  bool honours_locks_ = true;  ///< until no cut is found that does
   PollSometimes poll_;
 };
 
@@ -195,7 +203,7 @@ void Opening::grow_tree(const std::vector<Index>& roots) {
     graph_.for_each_edge_at(n, [&, reached = reached, n = n](Index h) {
       poll_();  // a hub or a loop may have all edges
       const Index other = graph_.other_end(h, n);
-      const double through = reached + graph_.length(h);
+      const double through = reached + length(h);
       if (!(through < graph_.distance[other])) return;
       graph_.distance[other] = through;
       graph_.parent[other] = graph_.surface.edge(h);
@@ -225,7 +233,7 @@ Index Opening::farthest_in_space() {
     const double distance_sq = (positions[v] - positions[vertices_.front()]).squaredNorm();
     if (!(distance_sq > most)) continue;
     bool is_free = false;
-    graph_.for_each_edge_at(v, [&](Index h) { is_free = is_free || graph_.is_free(h); });
+    graph_.for_each_edge_at(v, [&](Index h) { is_free = is_free || this->is_free(h); });
     if (!is_free) continue;
     most = distance_sq;
     far = v;
@@ -252,6 +260,10 @@ std::vector<Index> Opening::open_sphere() {
       second = n;
     }
   }
+  if (second == kNone) {
+    honours_locks_ = false;  // a sphere has three vertices or more
+    return open_sphere();
+  }
   std::vector<Index> edges;
   take_path(far, edges);
   if (edges.size() == 1) take_path(second, edges);
@@ -271,6 +283,10 @@ Cut Opening::open_from(const std::vector<Index>& roots) {
   mark_tree(true);
   cut.edges = closing_edges();
   mark_tree(false);
+  if (honours_locks_ && is_beyond_locks(cut.edges)) {
+    honours_locks_ = false;
+    return open_from(roots);
+  }
   const std::size_t closing = cut.edges.size();
   for (std::size_t i = 0; i < closing; ++i) {
     const Index h = cut.edges[i];
@@ -281,7 +297,7 @@ Cut Opening::open_from(const std::vector<Index>& roots) {
   for (const Index v : vertices_) graph_.is_taken[v] = 0;
   prune(roots, cut.edges);
   cut.length = 0;
-  for (const Index h : cut.edges) cut.length += graph_.length(h);
+  for (const Index h : cut.edges) cut.length += length(h);
   return cut;
 }
 
@@ -301,9 +317,9 @@ std::vector<Index> Opening::closing_edges() {
     graph_.sets.make(face);
     graph_.for_each_crossing(face, [&](Index h, Index other) {
       if (graph_.crossings[other] == 0 || graph_.surface.edge(h) != h) return;
-      const double length = graph_.distance[graph_.start_node(h)] + graph_.length(h) +
-                            graph_.distance[graph_.end_node(h)];
-      crossings.push_back({length, h, face, other});
+      const double loop_length =
+          graph_.distance[graph_.start_node(h)] + length(h) + graph_.distance[graph_.end_node(h)];
+      crossings.push_back({loop_length, h, face, other});
     });
   }
   sort_interruptibly(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
@@ -336,6 +352,16 @@ void Opening::strip_dual() {
       if (count[other] > 0 && --count[other] == 1) leaves.push_back(other);
     });
   }
+}
+
+/// Whether the cut would have to take a locked edge, or reach what only these lead to.
+bool Opening::is_beyond_locks(const std::vector<Index>& closing) const {
+  const auto is_reached = [&](Index n) { return std::isfinite(graph_.distance[n]); };
+  const auto can_be_cut = [&](Index h) {
+    return is_free(h) && is_reached(graph_.start_node(h)) && is_reached(graph_.end_node(h));
+  };
+  return !std::all_of(loop_nodes_.begin(), loop_nodes_.end(), is_reached) ||
+         !std::all_of(closing.begin(), closing.end(), can_be_cut);
 }
 
 void Opening::take_path(Index n, std::vector<Index>& edges) {

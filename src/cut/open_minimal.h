@@ -14,9 +14,9 @@ namespace beltrami {
 /// loops are joined. Locked edges are not cut: diagonals of polygons, and what crosses a filled
 /// hole. The greedy system of loops of Erickson & Whittlesey (SODA 2005), from the best of three to
 /// six roots, the first of them all loops together. Time: as many shortest-path trees.
-/// Preconditions: `topology` is the surface's; locked edges, or none, form no loop in the dual and
-/// leave the vertices with a free edge connected; lengths far from the ends of the range of
-/// numbers.
+/// Where locked edges form loops in the dual, or part the vertices that have free ones, and leave
+/// no cut, all edges of that component may be cut. Preconditions: `topology` is the surface's;
+/// lengths far from the ends of the range of numbers.
 EdgeMarks open_minimal(const Surface& surface, const Topology& topology, const EdgeMarks& locked,
                        const Work& work);
 

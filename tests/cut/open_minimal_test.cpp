@@ -143,6 +143,23 @@ TEST(OpenMinimal, CutsNoLockedEdge) {
   }
 }
 
+TEST(OpenMinimal, CutsLockedEdgesWhereThereIsNoOtherWay) {
+  const Work work(1);
+  for (const TriangleList& mesh :
+       {meshes::tetrahedron(), meshes::torus(3), meshes::annulus(9), meshes::torus_with_hole(5)}) {
+    const Surface surface = build_surface(mesh.positions, mesh.faces, work);
+    for (const Index free : {kNone, 0}) {
+      EdgeMarks locked(surface.twin.size(), true);
+      if (free != kNone) locked[free] = false;
+      if (free != kNone && surface.twin[free] != kNone) locked[surface.twin[free]] = false;
+      const EdgeMarks marks = open_minimal(surface, topology_of(surface, work), locked, work);
+      const CutSurface cut = cut_into_charts(surface, marks, work);
+      EXPECT_TRUE(cut.non_disks.empty());
+      EXPECT_EQ(cut.charts.size(), 1u);
+    }
+  }
+}
+
 TEST(OpenMinimal, OpensWhateverIsAdmitted) {
   const Work work(1);
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
