@@ -228,6 +228,7 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
   Orientation orientation = orient(kept, gluing.twin, polygons, work);
   counts.one_sided_edges = orientation.one_sided_edges;
   admitted.reversed = std::move(orientation.reversed);
+  if (gluing.joined_in_polygons) part_double_edges(kept, gluing.twin);
   SplitSurface split = split_fans(positions, kept, gluing.twin, work);
   admitted.surface = std::move(split.surface);
   admitted.input_vertex = std::move(split.vertex);

@@ -62,6 +62,7 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
     gluing.twin[other] = one;
   };
   std::atomic<Index> crowded{0};
+  std::atomic<bool> joined{false};
   const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
   for_each_edge(work, buckets, faces, [&](std::span<const Spoke> edge) {
     if (edge.size() < 2) return;
@@ -80,11 +81,13 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
       while (last < crowd.size() && crowd[last][0] == crowd[first][0]) ++last;
       const std::size_t left =
           last - first > 2 ? join_in_polygons(crowd, first, last, join) : last - first;
+      if (left < last - first) joined = true;
       if (left == 2) join(crowd[first][2], crowd[first + 1][2]);
       if (left > 2) ++crowded;
     }
   });
   gluing.crowded_edges = crowded;
+  gluing.joined_in_polygons = joined;
   return gluing;
 }
 

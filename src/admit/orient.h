@@ -11,8 +11,9 @@ namespace beltrami {
 
 /// Half-edges 3 * face + corner, in pairs that may still run in the same direction.
 struct Gluing {
-  std::vector<Index> twin;  ///< per half-edge: the other one, or kNone
-  Index crowded_edges = 0;  ///< of more than two faces of a layer
+  std::vector<Index> twin;          ///< per half-edge: the other one, or kNone
+  Index crowded_edges = 0;          ///< of more than two faces of a layer, which part there
+  bool joined_in_polygons = false;  ///< whether two of one polygon did not part at such an edge
 };
 
 /// Glues the faces of a layer (one number per face) across edges that exactly two of them share,

@@ -1,5 +1,6 @@
 #include "mesh/split_fans.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -54,6 +55,31 @@ std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, const Work& w
 }
 
 }  // namespace
+
+void part_double_edges(const std::vector<Triangle>& faces, std::vector<Index>& twin) {
+  const Fans fans = walk_fans(faces, twin);
+  struct Side {
+    Index least, greatest;  // fans
+    Index halfedge;
+    auto ends() const { return std::pair(least, greatest); }
+  };
+  std::vector<Side> sides;
+  sides.reserve(twin.size());
+  for (Index h = 0; h < size_of(twin); ++h) {
+    const auto [least, greatest] = std::minmax(fans.of_corner[h], fans.of_corner[Surface::next(h)]);
+    sides.push_back({least, greatest, h});
+  }
+  sort_interruptibly(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.ends() != b.ends() ? a.ends() < b.ends() : a.halfedge < b.halfedge;
+  });
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].ends() == sides[first].ends()) ++last;
+    for (std::size_t i = first; last - first > 2 && i < last; ++i) {
+      const Index other = std::exchange(twin[sides[i].halfedge], kNone);
+      if (other != kNone) twin[other] = kNone;
+    }
+  }
+}
 
 SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         const std::vector<Index>& twin, const Work& work) {

@@ -15,6 +15,11 @@ struct SplitSurface {
   std::vector<Index> vertex;  ///< per vertex the one that it stands for, increasing
 };
 
+/// Parts what is glued where more than two sides run between the same two fans, so that split_fans
+/// takes it: no vertex may have two edges to another one. Preconditions: as there, but for the
+/// last.
+void part_double_edges(const std::vector<Triangle>& faces, std::vector<Index>& twin);
+
 /// Unites the corners of `faces` across glued half-edges: `twin` has the opposite one, or kNone.
 /// Fans at one vertex come in the order of their least corners. Two sides left apart that run
 /// between the same two fans are one edge in the result: a slit that nothing holds open closes.
