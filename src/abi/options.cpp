@@ -1,5 +1,6 @@
 #include "abi/options.h"
 
+#include <charconv>
 #include <string>
 #include <utility>
 
@@ -62,9 +63,11 @@ Injectivity injectivity_of(std::int32_t value) {
 std::string written(const OptionEntry& option, const Options& options) {
   const double value = option.get(options);
   const auto index = static_cast<std::size_t>(value);
-  const std::string text = index < option.choices.size()
-                               ? option.choices[index]
-                               : std::to_string(static_cast<std::int64_t>(value));
+  char number[32];  // the shortest text that reads back to the value
+  const std::string text =
+      index < option.choices.size()
+          ? option.choices[index]
+          : std::string(number, std::to_chars(number, number + sizeof number, value).ptr);
   return std::string(option.name) + "=" + text;
 }
 

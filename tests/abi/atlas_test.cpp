@@ -296,6 +296,17 @@ TEST(AbiAtlas, RefusesWhatCannotBe) {
   EXPECT_EQ(beltrami_atlas_stage_count(context.get()), 0);
 }
 
+TEST(AbiAtlas, AnOptionWithoutEffectIsNamedWithItsValue) {
+  const Context context = create();
+  const QuadCube cube;
+  beltrami_set_int(context.get(), BELTRAMI_OPTION_WELD, BELTRAMI_WELD_OFF);
+  beltrami_set_float(context.get(), BELTRAMI_OPTION_WELD_DISTANCE, 0.5);
+  EXPECT_EQ(unwrap(context, cube.view()), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_NE(message(context).find("weld-distance=0.5 has no effect with weld=off"),
+            std::string::npos)
+      << message(context);
+}
+
 TEST(AbiAtlas, VerticesThatNoFaceNamesMayBeAnything) {
   TriangleList mesh = meshes::with_unused_in_front(meshes::grid(2, 2), 2);
   mesh.positions[0].x() = std::nan("");
