@@ -167,18 +167,47 @@ std::vector<Index> polygons_of(const Admitted& admitted, const AdmitOptions& opt
   return polygons;
 }
 
-/// Drops the faces of further layers.
-void drop_copies(std::vector<Triangle>& faces, std::vector<Index>& layers, Admitted& admitted) {
+/// Whether two of the faces [begin, end) have the same vertices.
+bool has_twins(const std::vector<Triangle>& faces, Index begin, Index end) {
+  std::vector<Triangle> corners(faces.begin() + begin, faces.begin() + end);
+  for (Triangle& face : corners) std::sort(face.begin(), face.end());
+  std::sort(corners.begin(), corners.end());
+  return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+}
+
+/// Puts every polygon into one layer, the last of its faces', so that it stays in one piece; but
+/// one that lies on itself. Returns per face whether its whole polygon is made of copies.
+std::vector<bool> layer_polygons(const std::vector<Triangle>& faces,
+                                 const std::vector<Index>& polygons, std::vector<Index>& layers) {
+  std::vector<bool> is_copy(faces.size(), false);
+  for (Index begin = 0, end = 0; begin < size_of(faces); begin = end) {
+    end = begin + 1;
+    while (!polygons.empty() && end < size_of(faces) && polygons[end] == polygons[begin]) ++end;
+    const auto [least, most] = std::minmax_element(layers.begin() + begin, layers.begin() + end);
+    const Index last = *most;
+    if (last == 0) continue;
+    std::fill(is_copy.begin() + begin, is_copy.begin() + end, *least > 0);
+    if (!has_twins(faces, begin, end)) {
+      std::fill(layers.begin() + begin, layers.begin() + end, last);
+    }
+  }
+  return is_copy;
+}
+
+/// Drops the copies.
+void drop(const std::vector<bool>& is_copy, std::vector<Triangle>& faces,
+          std::vector<Index>& layers, Admitted& admitted) {
   Index kept = 0;
   for (Index f = 0; f < size_of(faces); ++f) {
-    if (layers[f] > 0) continue;
+    if (is_copy[f]) continue;
     faces[kept] = faces[f];
+    layers[kept] = layers[f];
     admitted.input_face[kept] = admitted.input_face[f];
     ++kept;
   }
   faces.resize(kept);
   admitted.input_face.resize(kept);
-  layers.assign(kept, 0);
+  layers.resize(kept);
 }
 
 void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
@@ -221,8 +250,14 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
   std::vector<Triangle> kept =
       faces_with_area(positions, welded(positions, faces, options, work, admitted), work, admitted);
   std::vector<Index> layers = layers_of(vertex_count, kept, work, admitted);
-  if (options.share_copies && counts.copies > 0) drop_copies(kept, layers, admitted);
-  const std::vector<Index> polygons = polygons_of(admitted, options);
+  std::vector<Index> polygons = polygons_of(admitted, options);
+  if (counts.copies > 0) {
+    const std::vector<bool> is_copy = layer_polygons(kept, polygons, layers);
+    if (options.share_copies) {
+      drop(is_copy, kept, layers, admitted);
+      polygons = polygons_of(admitted, options);
+    }
+  }
   Gluing gluing = glue(vertex_count, kept, layers, polygons, work);
   counts.crowded_edges = gluing.crowded_edges;
   Orientation orientation = orient(kept, gluing.twin, polygons, work);

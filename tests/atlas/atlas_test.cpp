@@ -379,6 +379,27 @@ TEST(Unwrap, CopiesShareUvsOnDemand) {
   }
 }
 
+TEST(Unwrap, APolygonWithACopyStaysInOnePiece) {
+  // Two quads that share a triangle, and one that has nothing to do with them.
+  const TriangleList mesh{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 1, 1}, {2, 0, 0}, {2, 1, 0}},
+      {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 4}, {1, 5, 6}, {1, 6, 2}}};
+  const std::vector<Index> polygons = {0, 0, 1, 1, 2, 2};
+  AtlasOptions options;
+  options.admit.polygons = polygons;
+  for (const bool share : {false, true}) {
+    options.admit.share_copies = share;
+    const Atlas atlas = unwrapped(mesh, options);
+    EXPECT_EQ(atlas.outcome, Outcome::kOk);
+    EXPECT_EQ(atlas.admitted.copies, 1);
+    for (const std::size_t f : {0, 2, 4}) {
+      EXPECT_EQ(atlas.chart_of_face[f], atlas.chart_of_face[f + 1]);
+      EXPECT_FALSE(atlas.excepted[f]);
+      EXPECT_FALSE(atlas.excepted[f + 1]);
+    }
+  }
+}
+
 TEST(Unwrap, FitsTheUnitSquareByAPowerOfTwo) {
   const TriangleList mesh = zoo();
   const Atlas atlas = unwrapped(mesh, {.unit_square = true});
