@@ -68,6 +68,9 @@ constexpr Status kStatuses[] = {
     BELTRAMI_STATUS(E_ZERO_AREA,
                     "The whole surface has no area, or too much for a number: check the vertex "
                     "positions."),
+    BELTRAMI_STATUS(E_PINS,
+                    "Pins ask for what no injective map was found to do: move or drop the corner "
+                    "named, or cut a seam."),
     BELTRAMI_STATUS(E_SOLVER,
                     "A linear system could not be solved: remove degenerate faces, or try another "
                     "method."),

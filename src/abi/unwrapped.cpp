@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "abi/pins.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
 #include "base/resources.h"
@@ -98,6 +99,7 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   LoadedSurface surface = read_surface(header, reading);
   AtlasInput input = atlas_input(header, surface, islands, reading);
   input.cuts.hard_angle = radians(hard_angle);
+  input.pins = read_pins(header, surface, options, reading);
   AtlasOptions with_polygons = options;
   with_polygons.admit.polygons = surface.face_of_triangle;
   const std::vector<std::uint8_t> diagonals = diagonals_of(surface);

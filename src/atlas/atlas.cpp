@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "atlas/map_charts.h"
 #include "atlas/measure.h"
 #include "atlas/open.h"
+#include "atlas/pin_conflicts.h"
+#include "atlas/pins.h"
 #include "atlas/place.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
@@ -65,7 +69,7 @@ class Collector {
   }
 
   void add(const AtlasChart& part, const std::vector<Vec2>& uvs);
-  void put_aside();
+  void put_aside(const std::vector<PinAside>& pins);
   void share();
 
  private:
@@ -110,8 +114,10 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
 }
 
 /// UV vertices for the faces that were set aside: each a point, where another face has a corner of
-/// theirs, if one has.
-void Collector::put_aside() {
+/// theirs, if one has, but for corners with pins.
+void Collector::put_aside(const std::vector<PinAside>& pins) {
+  std::map<std::pair<Index, int>, Vec2> pinned;
+  for (const PinAside& pin : pins) pinned[{pin.face, pin.corner}] = pin.place;
   for (const Index f : admitted_.set_aside) {
     const Triangle& face = faces_[f];
     const auto met =
@@ -119,8 +125,9 @@ void Collector::put_aside() {
     const Vec2 place = atlas_.uvs[met != face.end() ? uv_of_[*met] : 0];
     atlas_.excepted[f] = true;
     for (int k = 0; k < 3; ++k) {
+      const auto pin = pinned.find({f, k});
       atlas_.faces[f][k] = size_of(atlas_.uvs);
-      atlas_.uvs.push_back(place);
+      atlas_.uvs.push_back(pin != pinned.end() ? pin->second : place);
       atlas_.input_vertex.push_back(admitted_.welded(face[k]));
     }
   }
@@ -186,6 +193,10 @@ Outcome outcome_of(const Atlas& atlas, bool float32) {
   }
   if (!in_doubles) return Outcome::kNotInjective;
   if (atlas.certificate.injective()) return outcome;
+  // Pinned charts may lie on each other, in any numbers.
+  const bool pinned = std::any_of(atlas.charts.begin(), atlas.charts.end(),
+                                  [](const ChartInfo& chart) { return chart.pinned; });
+  if (pinned && outcome < Outcome::kNotInjective) return Outcome::kNotInjective;
   return float32 ? Outcome::kNotInjectiveFloat32 : Outcome::kNotInjective;
 }
 
@@ -202,8 +213,8 @@ void deliver(const Numbers& numbers, int exponent, Atlas& atlas) {
 
 /// The charts' outcomes, energies and counts, and the UVs of all corners.
 void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSurface& opened,
-              const std::vector<MappedChart>& maps, const std::vector<double>& scales,
-              const Work& work, Atlas& atlas) {
+              const std::vector<PinAside>& pins_aside, const std::vector<MappedChart>& maps,
+              const std::vector<double>& scales, const Work& work, Atlas& atlas) {
   atlas.admitted = admitted.counts;
   atlas.filled_holes = opened.filled_holes;
   Collector collector(input.faces, admitted, atlas);
@@ -212,9 +223,10 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
     ChartInfo& chart = atlas.charts.back();
     chart.outcome = maps[c].outcome;
     chart.error = maps[c].error;
-    chart.density = scales[c];
+    chart.density = scales[c] * maps[c].scale;
+    chart.pinned = maps[c].pinned();
   }
-  collector.put_aside();
+  collector.put_aside(pins_aside);
   collector.share();
   atlas.energy = measure_charts(opened.charts, maps, atlas.charts, work);
   atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
@@ -222,6 +234,31 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
   atlas.seam_over_root_area = atlas.seam_length / std::sqrt(area);
   atlas.utilisation = utilisation_of(atlas);
+}
+
+/// Throws Error PINS with the first pin that is proven not to go with those before it.
+void require_no_conflict(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
+                         const std::vector<Pin>& all) {
+  std::optional<PinConflict> first;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    auto conflict = find_conflict(charts[c], pins.of_chart[c], all);
+    if (conflict && (!first || conflict->pin < first->pin)) first = std::move(conflict);
+  }
+  if (first) throw unmet(all[first->pin], first->why);
+}
+
+/// Throws Error PINS with the first pin that could not be met together with those before it.
+void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& all) {
+  Index first = kNone;
+  for (const MappedChart& map : maps) {
+    if (map.failed_pin == kNone) continue;
+    first = first == kNone ? map.failed_pin : std::min(first, map.failed_pin);
+  }
+  if (first == kNone) return;
+  throw unmet(
+      all[first],
+      "cannot be met together with those before it: no way was found to bring them all into "
+      "place without folding a face");
 }
 
 }  // namespace
@@ -264,16 +301,20 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     opened = open_surface(admitted, input.cuts, options.fill_limit,
                           {options.admit.polygons, options.diagonals}, inner);
   });
+  const AssignedPins pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
+  require_no_conflict(opened.charts, pins, input.pins);
   std::vector<MappedChart> maps;
-  stage("flatten", kCut, kMapped,
-        [&](const Work& inner) { maps = map_charts(opened.charts, options.chart, inner); });
+  stage("flatten", kCut, kMapped, [&](const Work& inner) {
+    maps = map_charts(opened.charts, pins, options.chart, inner);
+    require_met(maps, input.pins);
+  });
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
     const std::vector<double> scales =
         scale_by_density(input.densities, admitted, opened.charts, maps);
     numbers.exponent =
         place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
-    assemble(input, admitted, opened, maps, scales, inner, atlas);
+    assemble(input, admitted, opened, pins.aside, maps, scales, inner, atlas);
   });
   stage("certify", kPlaced, 1,
         [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });

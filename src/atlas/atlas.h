@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "admit/admit.h"
+#include "atlas/pins.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
@@ -25,6 +26,7 @@ struct AtlasInput {
   std::vector<Triangle> faces;
   GivenCuts cuts = {};
   std::vector<double> densities = {};  ///< per face: lengths in the plane per length on the surface
+  std::vector<Pin> pins = {};          ///< their places single-precision numbers with `float32`
 };
 
 struct AtlasOptions {
@@ -44,9 +46,11 @@ struct AtlasOptions {
 
 struct ChartInfo {
   Index faces = 0;
-  Index first_face = 0;     ///< of the input, the least one
-  double area = 0;          ///< of the surface, in the input's unit squared
-  double density = 1;       ///< lengths in the plane were scaled by it: the mean of its faces
+  Index first_face = 0;  ///< of the input, the least one
+  double area = 0;       ///< of the surface, in the input's unit squared
+  double density = 1;    ///< lengths in the plane were scaled by it: the mean of its faces, or
+                         ///< what its pins ask for
+  bool pinned = false;
   Eigen::AlignedBox2d box;  ///< of its UVs
   Outcome outcome = Outcome::kOk;
   beltrami_status error = BELTRAMI_OK;      ///< why it has no map, but one point, where that is so
@@ -90,9 +94,12 @@ struct Atlas {
 /// Cuts the surface into disks, flattens each and lays them out in rows. A chart that rounding to
 /// single precision would fold is delivered in such numbers at once, mended. The same bits at any
 /// number of threads; powers of two of the input's unit scale the UVs alone. A chart that fails is
-/// named in its info; the others are not touched. Throws what admit does, Error OUT_OF_MEMORY where
-/// the charts are estimated to need more than the limit of the work, Cancelled, or std::bad_alloc.
-/// Precondition: densities finite and above 0.
+/// named in its info; the others are not touched. UV vertices with pins are delivered at their very
+/// numbers; charts with pins stay where these put them, above them the others. Throws what admit
+/// does, Error PINS with the corner of the first pin that no map of its chart meets together with
+/// those before it, proven or after all attempts; OUT_OF_MEMORY where the charts are estimated to
+/// need more than the limit of the work, Cancelled, or std::bad_alloc.
+/// Preconditions: densities finite and above 0; none, and no unit_square, with pins.
 Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& work);
 
 /// Judges the faces but for those excepted, and sets certificates and outcome: of the UVs as they

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "chart/hold.h"
 #include "chart/memory_estimate.h"
 #include "descend/flat_start.h"
 #include "mesh/chart.h"
@@ -24,57 +26,113 @@ namespace {
 constexpr Index kLargeChart = 20'000;
 /// Charts of so few faces unfold without distortion, and cannot overlap.
 constexpr Index kFewFaces = 2;
-
-MappedChart flattened(const Chart& chart, const ChartOptions& options, const Work& work) {
-  std::vector<Triangle> faces = chart.mesh.faces;
-  const std::vector<Index> order = arrange(chart.mesh.positions, faces, work).vertices;
-  DiskMesh disk = build_disk(in_order(chart.mesh.positions, order, work), std::move(faces), work);
-  const Normalisation frame = normalise(disk.positions, disk.faces, work);
-  const Flattening result = flatten(disk, frame, options, work);
-  MappedChart map{std::vector<Vec2>(result.uvs.size()), result.status};
-  for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[order[i]] = result.uvs[i];
-  return map;
-}
+/// So many pins are met by a similarity.
+constexpr std::size_t kFewPins = 2;
+/// Where the free map of a chart with pins ends in the progress.
+constexpr double kFree = 0.5;
 
 /// The faces unfolded, their longest edge along the first axis: in rows of slivers the numbers of
 /// the second one are small, and dense.
-MappedChart unfolded(const Chart& chart, const Work& work) {
+std::vector<Vec2> unfolded(const Chart& chart, const Work& work) {
   const DiskMesh& mesh = chart.mesh;
-  MappedChart map{unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, work))};
+  std::vector<Vec2> uvs = unfolding(mesh, rest_triangles(mesh.positions, mesh.faces, work));
   Complex longest = 0;
   for (Index h = 0; h < size_of(mesh.twin); ++h) {
-    const Vec2 edge = map.uvs[mesh.target(h)] - map.uvs[mesh.origin(h)];
+    const Vec2 edge = uvs[mesh.target(h)] - uvs[mesh.origin(h)];
     const Complex z(edge.x(), edge.y());
     if (std::norm(z) > std::norm(longest)) longest = z;
   }
   const Complex turn = std::conj(longest) / modulus(longest);
-  for (Vec2& w : map.uvs) {
+  for (Vec2& w : uvs) {
     const Complex turned = turn * Complex(w.x(), w.y());
     w = {turned.real(), turned.imag()};
+  }
+  return uvs;
+}
+
+/// Holds the pins of a map of the disk, whose vertex i is order[i] of the chart.
+void hold(const DiskMesh& disk, const Normalisation& frame, const std::vector<Index>& order,
+          const std::vector<ChartPin>& pins, const ChartOptions& options, const Work& work,
+          MappedChart& map) {
+  std::vector<Index> place_of(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = static_cast<Index>(i);
+  const auto scaled = [](const Vec2& w, int exponent) {
+    return Vec2(std::ldexp(w.x(), exponent), std::ldexp(w.y(), exponent));
+  };
+  std::vector<Vec2> free;
+  free.reserve(order.size());
+  for (const Index v : order) free.push_back(scaled(map.uvs[v], frame.exponent));
+  std::vector<HeldVertex> vertices;
+  for (const ChartPin& pin : pins) {
+    vertices.push_back({place_of[pin.vertex], scaled(pin.place, frame.exponent)});
+  }
+  const HeldMap held = hold_pins(disk, free, vertices, options, work);
+  if (held.failed != kNone) {
+    map.failed_pin = pins[held.failed].pin;
+    return;
+  }
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    map.uvs[order[i]] = scaled(held.uvs[i], -frame.exponent);
+  }
+  map.scale = held.scale;
+  if (!held.converged) map.outcome = std::max(map.outcome, Outcome::kNotConverged);
+}
+
+MappedChart flattened(const Chart& chart, const std::vector<ChartPin>& pins,
+                      const ChartOptions& options, const Work& work) {
+  std::vector<Triangle> faces = chart.mesh.faces;
+  const std::vector<Index> order = arrange(chart.mesh.positions, faces, work).vertices;
+  DiskMesh disk = build_disk(in_order(chart.mesh.positions, order, work), std::move(faces), work);
+  const Normalisation frame = normalise(disk.positions, disk.faces, work);
+  const double free = pins.empty() ? 1 : kFree;
+  MappedChart map;
+  if (disk.face_count() <= kFewFaces) {
+    map.uvs = unfolded(chart, work);
+  } else {
+    const Flattening result = flatten(disk, frame, options, work.part(0, free));
+    map.outcome = result.status;
+    map.uvs.resize(result.uvs.size());
+    for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[order[i]] = result.uvs[i];
+  }
+  if (!pins.empty()) hold(disk, frame, order, pins, options, work.part(free, 1), map);
+  return map;
+}
+
+MappedChart map_chart(const Chart& chart, const std::vector<ChartPin>& pins,
+                      const ChartOptions& options, const Work& work) {
+  MappedChart map;
+  try {
+    map = chart.mesh.face_count() <= kFewFaces && pins.empty()
+              ? MappedChart{unfolded(chart, work)}
+              : flattened(chart, pins, options, work);
+  } catch (const Error& error) {
+    map = {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
+           error.status()};
+  }
+  if (!pins.empty()) map.held.assign(map.uvs.size(), false);
+  for (const ChartPin& pin : pins) {
+    map.held[pin.vertex] = true;
+    map.uvs[pin.vertex] = pin.place;
   }
   return map;
 }
 
-MappedChart map_chart(const Chart& chart, const ChartOptions& options, const Work& work) {
-  try {
-    return chart.mesh.face_count() <= kFewFaces ? unfolded(chart, work)
-                                                : flattened(chart, options, work);
-  } catch (const Error& error) {
-    return {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
-            error.status()};
-  }
-}
-
-/// Throws Error OUT_OF_MEMORY where the largest chart alone exceeds the limit.
-void require_memory(const DiskMesh& largest, const ChartOptions& options, const Work& work) {
+/// Throws Error OUT_OF_MEMORY where a chart alone exceeds the limit. `bent`: by its pins, with
+/// Newton steps on all its faces.
+void require_memory(const DiskMesh& mesh, bool bent, const ChartOptions& options,
+                    const Work& work) {
   constexpr std::uint64_t kMebibyte = 1 << 20;
   const auto limit = static_cast<std::uint64_t>(work.memory_limit());
   if (limit == 0) return;
-  const std::uint64_t estimate = estimate_memory(largest, options, work.threads());
+  std::uint64_t estimate = estimate_memory(mesh, options, work.threads());
+  if (bent) {
+    ChartOptions newton = options;
+    newton.method = Method::kCm;
+    estimate = std::max(estimate, estimate_memory(mesh, newton, work.threads()));
+  }
   if (estimate <= limit) return;
   throw Error(BELTRAMI_E_OUT_OF_MEMORY,
-              "the largest chart, of " + std::to_string(largest.face_count()) +
-                  " faces, is estimated to need " +
+              "a chart, of " + std::to_string(mesh.face_count()) + " faces, is estimated to need " +
                   std::to_string((estimate + kMebibyte - 1) / kMebibyte) +
                   " MiB of memory, and the option memory-limit allows " +
                   std::to_string(limit / kMebibyte) + " MiB: raise it, or give more cuts");
@@ -82,7 +140,7 @@ void require_memory(const DiskMesh& largest, const ChartOptions& options, const 
 
 }  // namespace
 
-std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
+std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
                                     const ChartOptions& options, const Work& work) {
   std::vector<MappedChart> maps(charts.size());
   std::vector<Index> order(charts.size());
@@ -96,7 +154,15 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
     return static_cast<double>(of) / static_cast<double>(all);
   };
 
-  if (!order.empty()) require_memory(charts[order[0]].chart.mesh, options, work);
+  static const std::vector<ChartPin> kNoPins;
+  const auto pins_of = [&](Index c) -> const std::vector<ChartPin>& {
+    return pins.of_chart.empty() ? kNoPins : pins.of_chart[c];
+  };
+  for (const Index c : order) {
+    if (c == order[0] || pins_of(c).size() > kFewPins) {
+      require_memory(charts[c].chart.mesh, pins_of(c).size() > kFewPins, options, work);
+    }
+  }
 
   std::int64_t mapped = 0;
   std::int64_t large = 0;
@@ -106,8 +172,8 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
   };
   for (; large < size_of(order) && is_large(order[large]); ++large) {
     const Index c = order[large];
-    maps[c] =
-        map_chart(charts[c].chart, options, work.part(share(mapped), share(mapped + faces(c))));
+    maps[c] = map_chart(charts[c].chart, pins_of(c), options,
+                        work.part(share(mapped), share(mapped + faces(c))));
     mapped += faces(c);
   }
   std::atomic<std::int64_t> done{mapped};
@@ -115,7 +181,7 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
   const Work aside = work.aside();
   parallel_for(work, size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
     const Index c = order[large + i];
-    maps[c] = map_chart(charts[c].chart, options, aside);
+    maps[c] = map_chart(charts[c].chart, pins_of(c), options, aside);
     done += faces(c);
     if (std::this_thread::get_id() == caller) work.report(share(done));
   });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "atlas/open.h"
+#include "atlas/pins.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
@@ -18,14 +19,21 @@ struct MappedChart {
   Outcome outcome = Outcome::kOk;
   /// Why there is no map, where there is none: not injective then, all its UVs at one point.
   beltrami_status error = BELTRAMI_OK;
+  /// Per vertex, whether it is pinned, and lies in its place exactly; empty: the chart has no pins.
+  std::vector<bool> held = {};
+  double scale = 1;          ///< of a map with pins, see hold_pins; else 1
+  Index failed_pin = kNone;  ///< in the list of all pins: could not be met with those before it
+
+  bool pinned() const { return !held.empty(); }
 };
 
 /// Flattens every chart: large ones with all threads, one after the other, the rest side by side on
 /// one thread each, the largest first. Charts of up to two faces are laid flat as they are.
-/// Errors stay in the map of their chart. Throws Cancelled or std::bad_alloc, and Error
+/// Charts with pins are held by them, in their places at once. Errors stay in the map of their
+/// chart. Throws Cancelled or std::bad_alloc, and Error
 /// OUT_OF_MEMORY, before any work, where a chart is estimated to need more than the limit of the
 /// work.
-std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts,
+std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
                                     const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

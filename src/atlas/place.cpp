@@ -8,12 +8,16 @@
 #include "base/parallel.h"
 #include "base/types.h"
 #include "chart/flattening.h"
+#include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "repair/rounding.h"
 
 namespace beltrami {
 namespace {
+
+/// Between maps with pins and the others, of the size of those and of their numbers.
+constexpr double kGap = 1.0 / 1024, kRoundingGap = 1e-6;
 
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
   Eigen::AlignedBox2d box;
@@ -59,25 +63,81 @@ void round_chart(const DiskMesh& mesh, const Vec2& shift, int exponent, bool flo
   }
 }
 
+/// What an atlas asks of a chart: positive faces that do not overlap.
+bool is_sound(const AtlasChart& part, const std::vector<Vec2>& uvs, const Work& work) {
+  const std::vector<Triangle>& all = part.chart.mesh.faces;
+  const std::vector<Triangle> faces(all.begin(), all.begin() + part.real_faces);
+  return certify_atlas(faces, uvs, {}, work).injective();
+}
+
+/// As round_chart, with the pins where they are.
+void round_pinned(const AtlasChart& part, int exponent, bool float32, const Work& work,
+                  MappedChart& map) {
+  const DiskMesh& mesh = part.chart.mesh;
+  const Numbers doubles{.single = false, .exponent = exponent};
+  const Numbers floats{.single = true, .exponent = exponent};
+  map.uvs = round_map(mesh, map.uvs, map.uvs, map.held, doubles, work).uvs;
+  Rounded single = round_map(mesh, map.uvs, map.uvs, map.held, floats, work);
+  bool pins_stay = true;
+  for (std::size_t v = 0; v < map.uvs.size(); ++v) {
+    pins_stay = pins_stay && (!map.held[v] || single.uvs[v] == map.uvs[v]);
+  }
+  if (!is_sound(part, map.uvs, work)) {
+    map.outcome = Outcome::kNotInjective;
+  } else if (map.outcome > Outcome::kNotConverged) {
+    map.outcome = Outcome::kOk;
+  }
+  const bool mended = single.moved > 0 && single.certificate.injective() && pins_stay;
+  if (!float32 && !mended) return;
+  map.uvs = std::move(single.uvs);
+  if (float32 && map.outcome != Outcome::kNotInjective && !is_sound(part, map.uvs, work)) {
+    map.outcome = Outcome::kNotInjectiveFloat32;
+  }
+}
+
+/// Where the maps without pins move to: rows, above the box of those with pins.
+std::vector<Vec2> shifts_of(const std::vector<MappedChart>& maps, bool unit_square, int& exponent) {
+  std::vector<Vec2> shifts(maps.size(), Vec2::Zero()), sizes;
+  std::vector<Index> free;
+  Eigen::AlignedBox2d pinned;
+  for (Index c = 0; c < size_of(maps); ++c) {
+    const Eigen::AlignedBox2d box = box_of(maps[c].uvs);
+    if (maps[c].pinned()) {
+      pinned.extend(box);
+    } else {
+      free.push_back(c);
+      sizes.push_back(box.sizes());
+    }
+  }
+  if (free.empty() || (maps.size() == 1 && !unit_square)) return shifts;
+  const std::vector<Vec2> corners = place_in_rows(sizes);
+  if (unit_square) exponent = exponent_of_square(corners, sizes);
+  Vec2 origin = Vec2::Zero();
+  if (!pinned.isEmpty()) {
+    const double gap = std::max(kGap * pinned.sizes().maxCoeff(),
+                                kRoundingGap * pinned.max().cwiseAbs().maxCoeff());
+    origin = {pinned.min().x(), pinned.max().y() + gap};
+  }
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    shifts[free[i]] = origin + corners[i] - box_of(maps[free[i]].uvs).min();
+  }
+  return shifts;
+}
+
 }  // namespace
 
 int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_square, bool float32,
                std::vector<MappedChart>& maps, const Work& work) {
-  std::vector<Vec2> shifts(maps.size(), Vec2::Zero());
-  if (maps.size() > 1 || unit_square) {
-    std::vector<Vec2> sizes;
-    for (const MappedChart& map : maps) sizes.push_back(box_of(map.uvs).sizes());
-    shifts = place_in_rows(sizes);
-    if (unit_square) exponent = exponent_of_square(shifts, sizes);
-    for (std::size_t c = 0; c < maps.size(); ++c) shifts[c] -= box_of(maps[c].uvs).min();
-  }
+  const std::vector<Vec2> shifts = shifts_of(maps, unit_square, exponent);
   const Work of_chart = maps.size() == 1 ? work : work.aside();
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].error != BELTRAMI_OK) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
-      return;
+    } else if (maps[c].pinned()) {
+      round_pinned(charts[c], exponent, float32, of_chart, maps[c]);
+    } else {
+      round_chart(charts[c].chart.mesh, shifts[c], exponent, float32, of_chart, maps[c]);
     }
-    round_chart(charts[c].chart.mesh, shifts[c], exponent, float32, of_chart, maps[c]);
   });
   return exponent;
 }

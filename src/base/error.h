@@ -16,6 +16,7 @@ struct Element {
 
   static Element face(std::uint64_t index) { return {BELTRAMI_ELEMENT_FACE, index}; }
   static Element vertex(std::uint64_t index) { return {BELTRAMI_ELEMENT_VERTEX, index}; }
+  static Element corner(std::uint64_t index) { return {BELTRAMI_ELEMENT_CORNER, index}; }
 };
 
 /// A run that cannot go on: a negative status, a sentence that says what to do, and the element.

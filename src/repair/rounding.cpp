@@ -34,8 +34,12 @@ constexpr int kCrossingRounds = 4;
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
  public:
-  Rounding(const DiskMesh& mesh, const Numbers& numbers, std::vector<Vec2>& uvs, const Work& work)
-      : mesh_(mesh), numbers_(numbers), uvs_(uvs), work_(work) {}
+  /// The vertices `held`, per vertex of the first ones, do not move.
+  Rounding(const DiskMesh& mesh, const std::vector<bool>& held, const Numbers& numbers,
+           std::vector<Vec2>& uvs, const Work& work)
+      : mesh_(mesh), held_(held), numbers_(numbers), uvs_(uvs), work_(work) {
+    held_.resize(mesh.positions.size(), false);
+  }
 
   /// Tries to make `faces` positive, and never makes another face worse.
   void mend(std::vector<Index> faces) {
@@ -44,7 +48,7 @@ class Rounding {
       for (const Index face : faces) {
         poll_interrupt();
         for (const Index v : mesh_.faces[face]) {
-          if (!positive(face) && turns.take(v)) improve(v, spacing);
+          if (!positive(face) && !held_[v] && turns.take(v)) improve(v, spacing);
         }
       }
       keep_bad(faces);
@@ -130,7 +134,8 @@ class Rounding {
     for (const Index f : patch.mesh_faces) tried[f] = true;
     for (std::size_t v = 0; v < patch.fixed.size(); ++v) {
       // Those on the rim of the mesh, the circle of a ring among them, stay.
-      patch.fixed[v] = patch.fixed[v] || mesh_.on_boundary[patch.mesh_vertices[v]];
+      const Index own = patch.mesh_vertices[v];
+      patch.fixed[v] = patch.fixed[v] || mesh_.on_boundary[own] || held_[own];
     }
     double area = 0;
     for (const Triangle& t : patch.faces) {
@@ -148,6 +153,7 @@ class Rounding {
   static constexpr double kEquilateral = 0.43301270189221932;  // area for a side of 1
 
   const DiskMesh& mesh_;
+  std::vector<bool> held_;  // per vertex
   const Numbers numbers_;
   std::vector<Vec2>& uvs_;
   const Work work_;
@@ -203,8 +209,9 @@ std::int64_t faults(const Certificate& certificate) {
 }
 
 /// Mends boundary crossings, and flips that need the boundary to move. `uvs`: before rounding.
-void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Numbers& numbers,
-                    const Work& work, Rounded& result) {
+void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                    const std::vector<bool>& held, const Numbers& numbers, const Work& work,
+                    Rounded& result) {
   const auto surrounded = surround(mesh, uvs, work);
   if (!surrounded) return;
   std::vector<Vec2> places = result.uvs;
@@ -215,7 +222,7 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Nu
     auto faces = non_positive_faces(mesh.faces, places, work);
     const auto beside = faces_at_crossings(mesh, *surrounded, places);
     faces.insert(faces.end(), beside.begin(), beside.end());
-    Rounding(*surrounded, numbers, places, work).mend(std::move(faces));
+    Rounding(*surrounded, held, numbers, places, work).mend(std::move(faces));
     const std::vector<Vec2> mended(places.begin(),
                                    places.begin() + static_cast<std::ptrdiff_t>(uvs.size()));
     const Certificate after = certify(mesh.faces, mesh.boundary, mended, work);
@@ -272,6 +279,12 @@ bool Numbers::hold(const std::vector<Vec2>& places) const {
 
 Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<Vec2>& placed, const Numbers& numbers, const Work& work) {
+  return round_map(mesh, uvs, placed, {}, numbers, work);
+}
+
+Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<Vec2>& placed, const std::vector<bool>& held,
+                  const Numbers& numbers, const Work& work) {
   Rounded result;
   result.uvs.reserve(placed.size());
   for (const Vec2& w : placed) result.uvs.push_back(numbers.nearest(w));
@@ -284,11 +297,11 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   const std::vector<Vec2> nearest = result.uvs;
   auto bad = non_positive_faces(mesh.faces, result.uvs, work);
   if (!bad.empty() && exact.orientations.first_bad_face == kNone) {
-    Rounding(mesh, numbers, result.uvs, work).mend(std::move(bad));
+    Rounding(mesh, held, numbers, result.uvs, work).mend(std::move(bad));
     judge();
   }
   if (exact.injective() && !result.certificate.injective()) {
-    mend_with_ring(mesh, uvs, numbers, work, result);
+    mend_with_ring(mesh, uvs, held, numbers, work, result);
   }
   for (std::size_t v = 0; v < placed.size(); ++v) result.moved += result.uvs[v] != nearest[v];
   return result;

@@ -46,4 +46,9 @@ struct Rounded {
 Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<Vec2>& placed, const Numbers& numbers, const Work& work);
 
+/// The same, with the vertices `held` (per vertex, or empty) at the nearest number whatever folds.
+Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<Vec2>& placed, const std::vector<bool>& held,
+                  const Numbers& numbers, const Work& work);
+
 }  // namespace beltrami

@@ -40,7 +40,7 @@ TEST(MapCharts, KeepsAFailureToItsChart) {
   const std::vector<AtlasChart> charts = {chart_of(meshes::bumps(6, 6)), hopeless(),
                                           chart_of(meshes::triangle())};
   for (const int threads : {1, 2}) {
-    const std::vector<MappedChart> maps = map_charts(charts, {}, Work(threads));
+    const std::vector<MappedChart> maps = map_charts(charts, {}, {}, Work(threads));
     ASSERT_EQ(maps.size(), 3);
     expect_injective(charts[0], maps[0]);
     expect_injective(charts[2], maps[2]);
@@ -54,7 +54,7 @@ TEST(MapCharts, LaysUpToTwoFacesFlatInTheirShape) {
   const std::vector<AtlasChart> charts = {
       chart_of({{{1, 2, 3}, {4, 1, 0}, {0, 0, 7}}, {{0, 1, 2}}}),
       chart_of({{{0, 0, 0}, {3, 0, 1}, {2, 2, 5}, {-1, 4, 0}}, {{0, 1, 2}, {0, 2, 3}}})};
-  const std::vector<MappedChart> maps = map_charts(charts, {}, Work(1));
+  const std::vector<MappedChart> maps = map_charts(charts, {}, {}, Work(1));
   for (std::size_t c = 0; c < charts.size(); ++c) {
     const DiskMesh& mesh = charts[c].chart.mesh;
     const std::vector<Vec2>& uvs = maps[c].uvs;
@@ -78,8 +78,8 @@ TEST(MapCharts, GivesALargeChartTheSameBitsOnAllThreads) {
   std::vector<AtlasChart> charts;
   charts.push_back(chart_of(meshes::bumps(110, 100)));
   charts.push_back(chart_of(meshes::bumps(5, 5)));
-  const std::vector<MappedChart> one = map_charts(charts, {}, Work(1)),
-                                 two = map_charts(charts, {}, Work(2));
+  const std::vector<MappedChart> one = map_charts(charts, {}, {}, Work(1)),
+                                 two = map_charts(charts, {}, {}, Work(2));
   for (std::size_t c = 0; c < charts.size(); ++c) {
     expect_injective(charts[c], one[c]);
     EXPECT_EQ(one[c].uvs, two[c].uvs);

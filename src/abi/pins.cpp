@@ -1,0 +1,97 @@
+#include "abi/pins.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "abi/buffers.h"
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/types.h"
+
+namespace beltrami {
+namespace {
+
+void require_effect(const beltrami_surface& header, const AtlasOptions& options) {
+  const char* other = options.unit_square                ? "the option unit-square"
+                      : header.densities.data != nullptr ? "densities"
+                                                         : nullptr;
+  if (other == nullptr) return;
+  throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+              std::string("pins say how large charts are, and so do ") + other + ": leave one out");
+}
+
+/// Throws Error where the place of a pin is no number that can be delivered.
+void require_number(const Vec2& uv, const std::string& name, std::uint64_t corner, bool float32) {
+  if (!uv.allFinite()) {
+    throw Error(BELTRAMI_E_NON_FINITE, "the UV of " + name + " is infinite or not a number",
+                Element::corner(corner));
+  }
+  if (!float32) return;
+  for (const double x : uv) {
+    if (std::abs(x) <= std::numeric_limits<float>::max() && static_cast<float>(x) == x) continue;
+    throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+                "the UV of " + name +
+                    " is no single-precision number, which the option float32 asks for: round it, "
+                    "or leave float32 out",
+                Element::corner(corner));
+  }
+}
+
+}  // namespace
+
+std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& surface,
+                           const AtlasOptions& options, const Work& work) {
+  std::vector<Pin> pins;
+  if (header.pin_count == 0) return pins;
+  if (header.pin_count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
+    throw Error(BELTRAMI_E_INVALID_ARGUMENT, "there are " + std::to_string(header.pin_count) +
+                                                 " pins: at most 2^31 - 1 are possible");
+  }
+  require_effect(header, options);
+  const std::vector<std::uint64_t> corners =
+      read_integers(header.pins, header.pin_count, 1, "pins", work);
+  const std::vector<double> uvs =
+      read_numbers(header.pin_uvs, header.pin_count, 2, "pin UVs", work);
+  std::vector<Index> first(header.corner_count, kNone), next(corners.size(), kNone);
+  PollSometimes poll;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    poll();
+    if (corners[i] >= header.corner_count) {
+      throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                  "pin " + std::to_string(i) + " names corner " + std::to_string(corners[i]) +
+                      ", but there are " + std::to_string(header.corner_count) +
+                      " corners: they count from 0, face after face");
+    }
+    const std::string name =
+        "pin " + std::to_string(i) + " (corner " + std::to_string(corners[i]) + ")";
+    require_number({uvs[2 * i], uvs[2 * i + 1]}, name, corners[i], options.float32);
+  }
+  for (std::size_t i = corners.size(); i-- > 0;) {
+    next[i] = first[corners[i]];
+    first[corners[i]] = static_cast<Index>(i);
+  }
+  const std::vector<Triangle>& triangles = surface.triangulation.triangles;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    poll();
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = first[triangles[t][k]]; i != kNone; i = next[i]) {
+        const auto at = static_cast<std::size_t>(i);
+        pins.push_back({static_cast<Index>(t),
+                        k,
+                        {uvs[2 * at], uvs[2 * at + 1]},
+                        i,
+                        static_cast<Index>(corners[at])});
+      }
+    }
+  }
+  sort_interruptibly(pins.begin(), pins.end(), [](const Pin& a, const Pin& b) {
+    return std::pair(a.number, a.face) < std::pair(b.number, b.face);
+  });
+  return pins;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,22 @@
+// The caller's pins as pins of triangles.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <vector>
+
+#include "abi/surface.h"
+#include "atlas/atlas.h"
+#include "atlas/pins.h"
+#include "base/work.h"
+
+namespace beltrami {
+
+/// Reads the pins of a surface: one for each triangle that has the corner. Throws Error
+/// INVALID_ARGUMENT where pins come with densities or the unit square, or with the corner where a
+/// place is no single-precision number and the options ask for these; INDEX_OUT_OF_RANGE; or
+/// NON_FINITE with the corner.
+std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& surface,
+                           const AtlasOptions& options, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,290 @@
+#include "chart/hold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "chart/descent.h"
+#include "chart/pin_field.h"
+#include "chart/starts.h"
+#include "descend/contact.h"
+#include "descend/line_search.h"
+#include "descend/newton.h"
+#include "exact/certificate.h"
+#include "mesh/boundary.h"
+#include "mesh/rest_shape.h"
+#include "repair/untangle.h"
+
+namespace beltrami {
+namespace {
+
+/// Of the way to the first face without area, or the first touch: the rest is left to relax.
+constexpr double kShareOfWay = 0.6;
+constexpr int kMostSteps = 60;
+constexpr double kShortStep = 0.01;  ///< of what remains
+constexpr int kMostShortSteps = 6;   ///< in a row: stuck
+/// Between two steps, enough to make room for the next one.
+constexpr int kRelaxingSteps = 4;
+constexpr double kRelaxed = 1e-2;
+/// Places nearer to each other than that, relative to the size of the map, are so for roundoff.
+constexpr double kRoundoff = 1e-12;
+/// Where the parts end in the progress.
+constexpr double kThere = 0.5;
+
+using Pins = std::span<const HeldVertex>;
+
+/// The similarity w = turn * (z - from) + to.
+struct Similarity {
+  Complex turn = 1;
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+
+  Vec2 to_plane(const Vec2& z) const { return times(turn, z - from) + to; }
+  Vec2 to_map(const Vec2& w) const { return times(quotient(1, turn), w - to) + from; }
+
+ private:
+  static Vec2 times(Complex factor, const Vec2& z) {
+    return {factor.real() * z.x() - factor.imag() * z.y(),
+            factor.real() * z.y() + factor.imag() * z.x()};
+  }
+};
+
+/// That takes the spread of the pins' vertices in the map to that of their places, and turns it to
+/// where it fits best. Mirrored places fit none: then it hardly matters.
+Similarity best_similarity(const std::vector<Vec2>& uvs, Pins pins) {
+  Similarity best;
+  if (pins.size() == 1) {
+    best.from = uvs[pins[0].vertex];
+    best.to = pins[0].place;
+    return best;
+  }
+  const auto count = static_cast<double>(pins.size());
+  for (const HeldVertex& pin : pins) {
+    best.from += uvs[pin.vertex] / count;
+    best.to += pin.place / count;
+  }
+  double along = 0, across = 0, spread = 0, places = 0;
+  for (const HeldVertex& pin : pins) {
+    const Vec2 z = uvs[pin.vertex] - best.from, w = pin.place - best.to;
+    along += z.dot(w);
+    across += z.x() * w.y() - z.y() * w.x();
+    spread += z.squaredNorm();
+    places += w.squaredNorm();
+  }
+  const Complex turn(along, across);
+  const double length = modulus(turn), scale = std::sqrt(places / spread);
+  if (length > 0) best.turn = turn / length;
+  if (scale > 0 && std::isfinite(scale)) best.turn *= scale;
+  return best;
+}
+
+double size_of_map(const std::vector<Vec2>& uvs) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& w : uvs) box.extend(w);
+  return box.sizes().norm();
+}
+
+/// The way of one map to some pins, in the unit of the mesh.
+class Way {
+ public:
+  Way(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, const ChartOptions& options,
+      const Work& work)
+      : mesh_(mesh),
+        rest_(rest),
+        options_(options),
+        work_(work),
+        contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)) {}
+
+  void set_pins(const Similarity& frame, Pins pins) {
+    held_.assign(mesh_.positions.size(), false);
+    vertices_.clear();
+    targets_.clear();
+    for (const HeldVertex& pin : pins) {
+      held_[pin.vertex] = true;
+      vertices_.push_back(pin.vertex);
+      targets_.push_back(frame.to_map(pin.place));
+    }
+  }
+
+  bool fits(const std::vector<Vec2>& uvs) const {
+    double farthest = 0;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      farthest = std::max(farthest, (uvs[vertices_[i]] - targets_[i]).norm());
+    }
+    return farthest <= kRoundoff * size_of_map(uvs);
+  }
+
+  /// Brings the pins of a map whose faces are positive to their targets. Where it cannot, returns
+  /// false.
+  bool go(std::vector<Vec2>& uvs) const;
+
+  /// Minimises the energy with the pins held. Returns whether it converged.
+  bool relax(int steps, double tolerance, bool simple, const Work& work,
+             std::vector<Vec2>& uvs) const;
+
+  bool keeps_simple(const std::vector<Vec2>& uvs) const {
+    return keeps_boundary_simple(options_) && contact_.is_simple(uvs);
+  }
+
+ private:
+  bool positive(const std::vector<Vec2>& uvs) const {
+    return non_positive_faces(mesh_.faces, uvs, work_).empty();
+  }
+  void put_in_place(std::vector<Vec2>& uvs) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) uvs[vertices_[i]] = targets_[i];
+  }
+  std::vector<Vec2> remaining(const std::vector<Vec2>& uvs) const {
+    std::vector<Vec2> displacements;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      displacements.push_back(targets_[i] - uvs[vertices_[i]]);
+    }
+    return displacements;
+  }
+  bool boundary_is_held() const {
+    return std::all_of(mesh_.boundary.begin(), mesh_.boundary.end(),
+                       [&](Index v) { return held_[v]; });
+  }
+
+  bool embed(std::vector<Vec2>& uvs) const;
+  bool walk(bool simple, std::vector<Vec2>& uvs) const;
+  bool untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const;
+
+  const DiskMesh& mesh_;
+  const std::vector<RestTriangle>& rest_;
+  const ChartOptions& options_;
+  const Work work_;
+  const BoundaryContact contact_;
+  std::vector<bool> held_;  // per vertex
+  std::vector<Index> vertices_;
+  std::vector<Vec2> targets_;
+};
+
+bool Way::relax(int steps, double tolerance, bool simple, const Work& work,
+                std::vector<Vec2>& uvs) const {
+  NewtonOptions newton = newton_options(options_);
+  newton.max_iterations = steps;
+  newton.tolerance = std::max(tolerance, newton.tolerance);
+  const auto minimise = [&] {
+    return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
+  };
+  if (!simple) return minimise().converged;
+  if (!contact_.is_pressed(uvs)) {
+    newton.admissible = [&](const std::vector<Vec2>& map) { return contact_.is_simple(map); };
+    NewtonResult free = minimise();
+    if (!free.refused) return free.converged;
+    uvs = std::move(free.admitted);
+    newton.admissible = nullptr;
+  }
+  newton.contact = &contact_;
+  return minimise().converged;
+}
+
+/// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
+bool Way::embed(std::vector<Vec2>& uvs) const {
+  PinField field(mesh_, vertices_, work_);
+  std::vector<Vec2> trial = field.harmonic(targets_);
+  if (!positive(trial)) return false;
+  uvs = std::move(trial);
+  return true;
+}
+
+bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
+  PinField field(mesh_, vertices_, work_);
+  std::vector<Vec2> trial(uvs.size());
+  int short_steps = 0;
+  for (int step = 0; step < kMostSteps && short_steps < kMostShortSteps; ++step) {
+    work_.report(kThere * step / kMostSteps);
+    const std::vector<Vec2> direction = field.extend(uvs, remaining(uvs));
+    const auto move = [&](double length) {
+      for (std::size_t v = 0; v < uvs.size(); ++v) trial[v] = uvs[v] + length * direction[v];
+      if (length == 1) put_in_place(trial);
+      return positive(trial) && (!simple || contact_.is_simple(trial));
+    };
+    double reach =
+        std::min(first_singular_step(mesh_.faces, uvs, direction, work_), 1 / kShareOfWay);
+    if (simple) reach = contact_.first_touch(uvs, direction, reach);
+    if (reach > 1 && move(1)) {
+      uvs.swap(trial);
+      return true;
+    }
+    double length = kShareOfWay * std::min(reach, 1.0);
+    while (length > kRoundoff && !move(length)) length *= 0.5;
+    if (!(length > kRoundoff)) return false;
+    uvs.swap(trial);
+    short_steps = length < kShortStep ? short_steps + 1 : 0;
+    // Without time nothing would make room.
+    const Work patient = work_.out_of_time() ? Work(1) : work_.aside();
+    relax(kRelaxingSteps, kRelaxed, simple, patient, uvs);
+  }
+  return false;
+}
+
+/// From a map with folds.
+bool Way::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
+  put_in_place(uvs);
+  const Work patient = work_.out_of_time() ? Work(1) : work_;
+  if (!positive(uvs) && !untangle(mesh_.faces, rest_, held_, uvs, patient)) return false;
+  result = std::move(uvs);
+  return true;
+}
+
+bool Way::go(std::vector<Vec2>& uvs) const {
+  if (boundary_is_held() && embed(uvs)) return true;
+  std::vector<Vec2> trial = uvs;
+  if (keeps_simple(trial) && walk(true, trial)) {
+    uvs.swap(trial);
+    return true;
+  }
+  trial = uvs;
+  if (walk(false, trial)) {
+    uvs.swap(trial);
+    return true;
+  }
+  // From where it got stuck, and from the start.
+  return untangle_all(std::move(trial), uvs) || untangle_all(uvs, uvs);
+}
+
+/// The map that meets the pins; nothing where none was found. `relaxed`: and has the least energy.
+std::optional<HeldMap> meet(Way& way, const std::vector<Vec2>& start, Pins pins, bool relaxed,
+                            const ChartOptions& options, const Work& work) {
+  const Similarity frame = best_similarity(start, pins);
+  way.set_pins(frame, pins);
+  HeldMap map{start, modulus(frame.turn)};
+  if (!way.fits(start)) {
+    if (!way.go(map.uvs)) return std::nullopt;
+    if (relaxed) {
+      map.converged = way.relax(options.max_iterations, 0, way.keeps_simple(map.uvs),
+                                work.part(kThere, 1), map.uvs);
+    }
+  }
+  for (Vec2& w : map.uvs) w = frame.to_plane(w);
+  for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
+  return map;
+}
+
+}  // namespace
+
+HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work) {
+  const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
+  std::vector<Vec2> start = uvs;
+  if (pins.size() > 2 && !non_positive_faces(mesh.faces, start, work).empty()) {
+    start = start_map(mesh, rest, options, work);
+  }
+  Way way(mesh, rest, options, work);
+  if (auto met = meet(way, start, pins, true, options, work)) return *std::move(met);
+  // One pin is always met.
+  std::size_t met = 1, failed = pins.size();
+  while (failed - met > 1) {
+    const std::size_t middle = met + (failed - met) / 2;
+    (meet(way, start, Pins(pins).first(middle), false, options, work) ? met : failed) = middle;
+  }
+  HeldMap none;
+  none.failed = static_cast<Index>(met);
+  return none;
+}
+
+}  // namespace beltrami

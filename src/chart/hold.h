@@ -1,0 +1,40 @@
+// A map with some of its vertices held at given places.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "chart/options.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+
+/// A vertex and where it is to be.
+struct HeldVertex {
+  Index vertex;
+  Vec2 place;
+};
+
+struct HeldMap {
+  std::vector<Vec2> uvs;  ///< one per vertex, those held exactly in their places; else none
+  double scale = 1;       ///< of the map against the surface: lengths per length
+  bool converged = true;  ///< the optimisation was not cut short
+  /// Where not all could be met: the first that could not be together with those before it.
+  Index failed = kNone;
+};
+
+/// Puts a map in place by the similarity that fits the pins best, which keeps its orientation, and
+/// bends it from there in steps that fold no face until every pin is met; then minimises the energy
+/// against the surface at that scale with the pins held. Where the steps get stuck, all pins are
+/// put in place at once and the folds are untangled; where that fails as well, pins are taken in
+/// their order as far as it goes, which `failed` tells. Every face of the result is positive but
+/// for roundoff; its boundary stays simple where that was asked for and the steps got there so. A
+/// limit of time ends the minimising, not the way to the pins. Preconditions: a mesh of about unit
+/// area; pins of different vertices, finite, one at least; not all faces without area. Throws Error
+/// SOLVER, Cancelled or std::bad_alloc.
+HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work);
+
+}  // namespace beltrami
