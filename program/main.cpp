@@ -56,6 +56,12 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
           "--uv-set", arguments.uv_set,
           "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
       ->type_name("NUMBER");
+  command
+      ->add_option("--pins", arguments.pins,
+                   "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
+                   "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
+                   "after another count from 0, UVs are in the unit of IN")
+      ->type_name("FILE");
   command->add_flag("--triangulate", arguments.triangulate,
                     "Write the triangles that were computed on, in the orientation in which their\n"
                     "UVs are positive");

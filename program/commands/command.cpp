@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <new>
 
+#include "commands/report.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
 #include "process/descriptor.h"
@@ -99,7 +100,7 @@ void require_ok(beltrami_status status, const std::string& path, const char* mes
   std::string text = path + ": " + (*message ? message : beltrami_status_advice(status));
   if (element != BELTRAMI_NO_ELEMENT && element_kind != BELTRAMI_ELEMENT_NONE) {
     const std::string name =
-        (element_kind == BELTRAMI_ELEMENT_FACE ? "face " : "vertex ") + std::to_string(element);
+        std::string(element_name(element_kind)) + " " + std::to_string(element);
     const bool named = text.find(name) != std::string::npos;
     text += named ? " (counted from 0)" : " (" + name + ", counted from 0)";
   }

@@ -24,7 +24,8 @@ struct FlattenArguments {
 
 struct UnwrapArguments {
   std::string input, output;
-  std::string seams, labels;    ///< a path, and what labels faces; or ""
+  std::string seams, pins;      ///< paths, or "" for none
+  std::string labels;           ///< what labels faces, or ""
   std::string report, picture;  ///< paths, or "" for none
   std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
   bool triangulate = false;     ///< write the triangles that were computed on

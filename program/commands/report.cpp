@@ -48,8 +48,7 @@ std::uint64_t peak_memory_bytes() {
 
 Json element_json(const Report& report) {
   if (report.element_kind == BELTRAMI_ELEMENT_NONE) return nullptr;
-  return {{"kind", report.element_kind == BELTRAMI_ELEMENT_FACE ? "face" : "vertex"},
-          {"index", element(report.element)}};
+  return {{"kind", element_name(report.element_kind)}, {"index", element(report.element)}};
 }
 
 Json input_json(const Report& report) {
@@ -288,6 +287,11 @@ void append_memory(const Report& report, std::string& text) {
 }
 
 }  // namespace
+
+const char* element_name(std::int32_t kind) {
+  if (kind == BELTRAMI_ELEMENT_CORNER) return "corner";
+  return kind == BELTRAMI_ELEMENT_FACE ? "face" : "vertex";
+}
 
 void Report::set_input(const MeshFile& file, const Surface& surface) {
   vertices = file.vertex_count();

@@ -80,6 +80,9 @@ struct Report {
 /// The JSON text, with a final line end.
 std::string to_json(const Report& report);
 
+/// "face", "vertex" or "corner".
+const char* element_name(std::int32_t kind);
+
 /// The line on stderr that says what of the input `written` does not keep; "" if it keeps all.
 std::string to_note(const Report& report, const std::string& written);
 

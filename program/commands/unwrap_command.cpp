@@ -15,6 +15,7 @@
 #include "files/face_labels.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
+#include "files/pins.h"
 #include "files/point_numbers.h"
 #include "files/split_mesh.h"
 #include "files/surface_view.h"
@@ -33,6 +34,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options.emplace_back("seams", arguments.seams);
   report.options.emplace_back("labels", arguments.labels);
   report.options.emplace_back("uv-set", std::to_string(arguments.uv_set));
+  report.options.emplace_back("pins", arguments.pins);
   report.options.emplace_back("triangulate", arguments.triangulate);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
@@ -70,8 +72,10 @@ class Unwrapping {
                     ": glTF is written from glTF alone, whose faces are triangles: use the "
                     "extension .obj or .ply, or leave out --triangulate");
     }
-    require_distinct({arguments_.input, arguments_.seams, arguments_.report, arguments_.picture});
-    require_distinct({arguments_.output, arguments_.seams, arguments_.report, arguments_.picture});
+    for (const std::string& mesh : {arguments_.input, arguments_.output}) {
+      require_distinct(
+          {mesh, arguments_.seams, arguments_.pins, arguments_.report, arguments_.picture});
+    }
     const std::vector<std::string> written = {arguments_.output, arguments_.report,
                                               arguments_.picture};
     if (!arguments_.quiet) require_apart_from_stdout(written);
@@ -98,6 +102,7 @@ class Unwrapping {
     }
     if (!arguments_.labels.empty()) labels_ = face_labels(file_, arguments_.labels);
     if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
+    if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
     report_.vertices = file_.vertex_count();
     report_.faces = file_.polygons.size();
     clock.finish();
@@ -111,6 +116,11 @@ class Unwrapping {
     if (!labels_.empty()) surface.face_labels = {labels_.data(), 0, BELTRAMI_U64, 0};
     if (!seams_.empty()) surface.seams = {seams_.data(), 0, BELTRAMI_U32, 0};
     surface.seam_count = seams_.size() / 2;
+    surface.pin_count = pins_.corners.size();
+    if (surface.pin_count > 0) {
+      surface.pins = {pins_.corners.data(), 0, BELTRAMI_U64, 0};
+      surface.pin_uvs = {pins_.uvs.data(), 0, BELTRAMI_F64, 0};
+    }
     const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
       static_cast<ProgressBar*>(bar)->show(fraction, stage);
       return interrupted();
@@ -267,8 +277,11 @@ class Unwrapping {
   }
 
   void require(beltrami_status status) const {
-    require_ok(status, arguments_.input, beltrami_error_message(context_.get()),
-               beltrami_error_element_kind(context_.get()), beltrami_error_element(context_.get()));
+    const std::int32_t kind = beltrami_error_element_kind(context_.get());
+    const bool of_pins = kind == BELTRAMI_ELEMENT_CORNER;
+    const std::string message = with_lines(beltrami_error_message(context_.get()), pins_);
+    require_ok(status, of_pins ? arguments_.pins : arguments_.input, message.c_str(), kind,
+               beltrami_error_element(context_.get()));
   }
 
   const UnwrapArguments& arguments_;
@@ -279,6 +292,7 @@ class Unwrapping {
   MeshFile file_;
   std::vector<std::uint64_t> labels_;
   std::vector<std::uint32_t> seams_;
+  Pins pins_;
   std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
 };
 
@@ -289,9 +303,10 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   report.command = "unwrap";
   report.input_path = arguments.input;
   note_options(arguments, options, report);
-  return run_guarded(report, arguments.report,
-                     {arguments.input, arguments.output, arguments.seams, arguments.picture},
-                     [&] { return Unwrapping(arguments, options, report).run(); });
+  return run_guarded(
+      report, arguments.report,
+      {arguments.input, arguments.output, arguments.seams, arguments.pins, arguments.picture},
+      [&] { return Unwrapping(arguments, options, report).run(); });
 }
 
 }  // namespace beltrami::cli

@@ -13,6 +13,7 @@
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"
+#include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
@@ -24,6 +25,8 @@ namespace {
 /// Of the way to the first face without area, or the first touch: the rest is left to relax.
 constexpr double kShareOfWay = 0.6;
 constexpr int kMostSteps = 60;
+/// Of the way to the first touch: pins may have the boundary touch itself.
+constexpr double kAllButThere = 1 - 1e-9;
 constexpr double kShortStep = 0.01;  ///< of what remains
 constexpr int kMostShortSteps = 6;   ///< in a row: stuck
 /// Between two steps, enough to make room for the next one.
@@ -120,15 +123,18 @@ class Way {
   /// false.
   bool go(std::vector<Vec2>& uvs) const;
 
-  /// Minimises the energy with the pins held. Returns whether it converged.
-  bool relax(int steps, double tolerance, bool simple, const Work& work,
-             std::vector<Vec2>& uvs) const;
+  /// Minimises the energy with the pins held, without overlaps where there are none. Returns
+  /// whether it converged.
+  bool relax(const Work& work, std::vector<Vec2>& uvs) const;
 
+ private:
   bool keeps_simple(const std::vector<Vec2>& uvs) const {
     return keeps_boundary_simple(options_) && contact_.is_simple(uvs);
   }
-
- private:
+  /// Whether no two faces overlap, though the boundary may touch itself.
+  bool is_sound(const std::vector<Vec2>& uvs) const {
+    return certify_atlas(mesh_.faces, uvs, {}, work_).injective();
+  }
   bool positive(const std::vector<Vec2>& uvs) const {
     return non_positive_faces(mesh_.faces, uvs, work_).empty();
   }
@@ -147,6 +153,9 @@ class Way {
                        [&](Index v) { return held_[v]; });
   }
 
+  bool minimise(int steps, double tolerance, bool simple, const Work& work,
+                std::vector<Vec2>& uvs) const;
+  bool minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const;
   bool embed(std::vector<Vec2>& uvs) const;
   bool walk(bool simple, std::vector<Vec2>& uvs) const;
   bool untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const;
@@ -161,24 +170,39 @@ class Way {
   std::vector<Vec2> targets_;
 };
 
-bool Way::relax(int steps, double tolerance, bool simple, const Work& work,
-                std::vector<Vec2>& uvs) const {
+bool Way::minimise(int steps, double tolerance, bool simple, const Work& work,
+                   std::vector<Vec2>& uvs) const {
   NewtonOptions newton = newton_options(options_);
   newton.max_iterations = steps;
   newton.tolerance = std::max(tolerance, newton.tolerance);
-  const auto minimise = [&] {
-    return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
-  };
-  if (!simple) return minimise().converged;
+  const auto run = [&] { return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work); };
+  if (!simple) return run().converged;
   if (!contact_.is_pressed(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact_.is_simple(map); };
-    NewtonResult free = minimise();
+    NewtonResult free = run();
     if (!free.refused) return free.converged;
     uvs = std::move(free.admitted);
     newton.admissible = nullptr;
   }
   newton.contact = &contact_;
-  return minimise().converged;
+  return run().converged;
+}
+
+/// From a map whose boundary touches itself, to the last one before it overlaps.
+bool Way::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
+  NewtonOptions newton = newton_options(options_);
+  newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
+  NewtonResult result = minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
+  if (result.refused) uvs = std::move(result.admitted);
+  return result.converged && !result.refused;
+}
+
+bool Way::relax(const Work& work, std::vector<Vec2>& uvs) const {
+  const bool simple = keeps_simple(uvs);
+  if (!simple && keeps_boundary_simple(options_) && is_sound(uvs)) {
+    return minimise_soundly(work, uvs);
+  }
+  return minimise(options_.max_iterations, 0, simple, work, uvs);
 }
 
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
@@ -195,17 +219,19 @@ bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
   std::vector<Vec2> trial(uvs.size());
   int short_steps = 0;
   for (int step = 0; step < kMostSteps && short_steps < kMostShortSteps; ++step) {
-    work_.report(kThere * step / kMostSteps);
+    const Work inner = work_.part(kThere * step / kMostSteps, kThere * step / kMostSteps);
+    inner.report(0);
     const std::vector<Vec2> direction = field.extend(uvs, remaining(uvs));
     const auto move = [&](double length) {
       for (std::size_t v = 0; v < uvs.size(); ++v) trial[v] = uvs[v] + length * direction[v];
       if (length == 1) put_in_place(trial);
-      return positive(trial) && (!simple || contact_.is_simple(trial));
+      if (!positive(trial)) return false;
+      return !simple || (length == 1 ? is_sound(trial) : contact_.is_simple(trial));
     };
-    double reach =
-        std::min(first_singular_step(mesh_.faces, uvs, direction, work_), 1 / kShareOfWay);
+    const double singular = first_singular_step(mesh_.faces, uvs, direction, work_);
+    double reach = std::min(singular, 1 / kShareOfWay);
     if (simple) reach = contact_.first_touch(uvs, direction, reach);
-    if (reach > 1 && move(1)) {
+    if (singular > 1 && reach >= kAllButThere && move(1)) {
       uvs.swap(trial);
       return true;
     }
@@ -215,8 +241,8 @@ bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
     uvs.swap(trial);
     short_steps = length < kShortStep ? short_steps + 1 : 0;
     // Without time nothing would make room.
-    const Work patient = work_.out_of_time() ? Work(1) : work_.aside();
-    relax(kRelaxingSteps, kRelaxed, simple, patient, uvs);
+    const Work patient = work_.out_of_time() ? Work(1) : inner;
+    minimise(kRelaxingSteps, kRelaxed, simple, patient, uvs);
   }
   return false;
 }
@@ -224,7 +250,7 @@ bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
 /// From a map with folds.
 bool Way::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
   put_in_place(uvs);
-  const Work patient = work_.out_of_time() ? Work(1) : work_;
+  const Work patient = work_.out_of_time() ? Work(1) : work_.part(kThere, kThere);
   if (!positive(uvs) && !untangle(mesh_.faces, rest_, held_, uvs, patient)) return false;
   result = std::move(uvs);
   return true;
@@ -248,16 +274,13 @@ bool Way::go(std::vector<Vec2>& uvs) const {
 
 /// The map that meets the pins; nothing where none was found. `relaxed`: and has the least energy.
 std::optional<HeldMap> meet(Way& way, const std::vector<Vec2>& start, Pins pins, bool relaxed,
-                            const ChartOptions& options, const Work& work) {
+                            const Work& work) {
   const Similarity frame = best_similarity(start, pins);
   way.set_pins(frame, pins);
   HeldMap map{start, modulus(frame.turn)};
   if (!way.fits(start)) {
     if (!way.go(map.uvs)) return std::nullopt;
-    if (relaxed) {
-      map.converged = way.relax(options.max_iterations, 0, way.keeps_simple(map.uvs),
-                                work.part(kThere, 1), map.uvs);
-    }
+    if (relaxed) map.converged = way.relax(work.part(kThere, 1), map.uvs);
   }
   for (Vec2& w : map.uvs) w = frame.to_plane(w);
   for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
@@ -275,12 +298,12 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     start = start_map(mesh, rest, options, work);
   }
   Way way(mesh, rest, options, work);
-  if (auto met = meet(way, start, pins, true, options, work)) return *std::move(met);
+  if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
   // One pin is always met.
   std::size_t met = 1, failed = pins.size();
   while (failed - met > 1) {
     const std::size_t middle = met + (failed - met) / 2;
-    (meet(way, start, Pins(pins).first(middle), false, options, work) ? met : failed) = middle;
+    (meet(way, start, Pins(pins).first(middle), false, work) ? met : failed) = middle;
   }
   HeldMap none;
   none.failed = static_cast<Index>(met);

@@ -232,6 +232,19 @@ TEST(Pins, LetTheBoundaryTouchItself) {
   EXPECT_GT(atlas.certificate.touching_places, 0);
 }
 
+TEST(Pins, LetTwoVerticesOfTheBoundaryMeet) {
+  const Index n = 8;
+  const TriangleList mesh = meshes::grid(n, n);
+  std::vector<Pin> pins;
+  pin_vertex(mesh, corner_of_grid(n, 0, 0), {0, 0}, pins);
+  pin_vertex(mesh, corner_of_grid(n, n, 0), {1, 0}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 0, n), {0, 0}, pins);
+  const Atlas atlas = unwrapped(mesh, pins);
+  EXPECT_EQ(uv_of(atlas, pins[0]), uv_of(atlas, pins[2]));
+  EXPECT_TRUE(atlas.certificate.injective());
+  EXPECT_EQ(atlas.certificate.touching_places, 1);
+}
+
 TEST(Pins, LeaveTheOtherChartsRoom) {
   TriangleList mesh = meshes::together({meshes::bumps(6, 6), meshes::bumps(7, 5)});
   for (std::size_t v = 49; v < mesh.positions.size(); ++v) mesh.positions[v].z() += 20;

@@ -1,8 +1,10 @@
 // beltrami unwrap, end to end.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
@@ -102,6 +104,55 @@ TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
   ASSERT_EQ(run({"unwrap", in, islands, "--hard-angle", "45"}).exit_code, 0);
   EXPECT_EQ(charts(islands, {"--cut", "islands"}), 6);
   EXPECT_EQ(charts(islands, {}), 1);
+}
+
+/// A grid of 2 x 2 quads in a plane.
+const std::string kGrid =
+    "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
+    "f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n";
+
+TEST(Unwrap, HoldsPins) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kGrid), out = directory.path("out.obj");
+  const std::string pins = directory.file(
+      "pins", "# the corners\nv 0 0.1 0\nc 5 2.25 0\n\nv 8 2 2.5  # the last one\r\nv 4 1 1.25\n");
+  const Outcome outcome = run({"unwrap", in, out, "--pins", pins});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const MeshFile mesh = read_mesh(out, Content::kUvs);
+  const auto uv = [&](std::size_t corner) {
+    const std::size_t i = mesh.corner_uvs.of_corner[corner];
+    return std::pair(mesh.corner_uvs.values[2 * i], mesh.corner_uvs.values[2 * i + 1]);
+  };
+  EXPECT_EQ(uv(0), std::pair(0.1, 0.0));
+  EXPECT_EQ(uv(5), std::pair(2.25, 0.0));
+  EXPECT_EQ(uv(14), std::pair(2.0, 2.5));
+  for (const std::size_t corner : {2, 7, 9, 12}) EXPECT_EQ(uv(corner), std::pair(1.0, 1.25));
+}
+
+TEST(Unwrap, NamesThePinThatIsWrong) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kGrid), out = directory.path("out.obj");
+  const auto error = [&](const std::string& pins) {
+    const Outcome outcome = run({"unwrap", in, out, "--pins", directory.file("pins", pins)});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.err_lines(), 1);
+    EXPECT_EQ(directory.read("out.obj"), "") << "nothing is written";
+    return outcome.err;
+  };
+  const auto expect = [&](const std::string& pins, const std::string& text) {
+    const std::string found = error(pins);
+    EXPECT_NE(found.find(text), std::string::npos) << found;
+  };
+  expect("v 0 0 0\nw 1 0 0\n", "pins: line 2: 'w' is no pin");
+  expect("v 0 0\n", "line 1: v is missing");
+  expect("v 0 0 0 0\n", "one");
+  expect("v 9 0 0\n", "line 1: there is no vertex 9: there are 9");
+  expect("c 16 0 0\n", "there is no corner 16");
+  expect("c -1 0 0\n", "there is no corner -1");
+  expect("v 0 0 inf\n", "the pin of line 1 (corner 0) is infinite");
+  expect("v 4 0 0\n\nc 7 0 1\n", "the pin of line 3 (corner 7) is to lie at");
+  expect("v 4 0 0\nv 0 1 1\nv 1 0 0\n",
+         "the pin of line 3 (corner 1) cannot be met together with those before it");
 }
 
 TEST(Unwrap, SaysWhatIsWrong) {

@@ -9,7 +9,7 @@
  *
  * Statuses: 0 means that every promise was kept; above 0 there is a result, with a reservation;
  * below 0 there is no new result. After a failure the context keeps a sentence that says what to
- * do, and the face or vertex concerned.
+ * do, and the face, vertex or corner concerned.
  *
  * Structs: the caller sets `struct_size` to sizeof of the struct that it was compiled with. The
  * library reads and writes only the fields that this size covers.
@@ -89,6 +89,9 @@ enum {
   BELTRAMI_E_GENUS = -30,               /* has handles: cut them open first */
   BELTRAMI_E_ZERO_AREA = -31,           /* the whole surface has no area, or overflows */
 
+  /* The pins of a surface cannot be met. Corner: the first that cannot, with those before it. */
+  BELTRAMI_E_PINS = -32,
+
   /* A linear system could not be solved. */
   BELTRAMI_E_SOLVER = -40
 };
@@ -98,7 +101,8 @@ enum {
   BELTRAMI_ELEMENT_FORCE_SIGNED_ = -1,
   BELTRAMI_ELEMENT_NONE = 0,
   BELTRAMI_ELEMENT_FACE = 1,
-  BELTRAMI_ELEMENT_VERTEX = 2
+  BELTRAMI_ELEMENT_VERTEX = 2,
+  BELTRAMI_ELEMENT_CORNER = 3 /* of the faces of a beltrami_surface, one after another */
 };
 
 /* ---- Library ---------------------------------------------------------------------------- */
@@ -511,6 +515,13 @@ typedef struct beltrami_surface {
                                 * their vertices; pairs that are no edge are ignored */
   uint64_t seam_count;
   const int32_t* cancel; /* as in beltrami_mesh */
+
+  /* Pins, for beltrami_unwrap: corners whose UVs are given. The UV vertex of the corner is
+   * delivered at exactly these numbers, which with the option float32 must be single-precision
+   * numbers. Pins of corners that share a UV vertex must agree. */
+  beltrami_buffer pins;    /* optional: pin_count items of 1, U32 or U64: corners */
+  beltrami_buffer pin_uvs; /* pin_count items of 2, F32 or F64, in the unit of positions */
+  uint64_t pin_count;
 } beltrami_surface;
 
 /* Cuts polygons into triangles as every function below does: by ears, the best-shaped first. Writes
@@ -526,9 +537,21 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
  * for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
  * surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
  * earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
- * NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which)
- * or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE,
- * ZERO_AREA, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. */
+ * NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which;
+ * or charts with pins lie on each other: the certificate says where) or NOT_INJECTIVE_FLOAT32;
+ * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, CANCELLED,
+ * OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL.
+ *
+ * Charts with pins stay where the pins put them, and the others lie above their box. With one pin
+ * the free map is moved there, with two it is turned and scaled as well; with more its energy is
+ * minimised with the pins held, at the scale of the similarity that fits them best, which is the
+ * chart's density then: never mirrored. The certificate judges pins like all else; where the
+ * boundary of a chart is pinned so that it touches itself, that is no overlap. Where pins cannot be
+ * met the call fails with PINS and the corner of the first pin that cannot be met together with
+ * those before it: what is proven before the flattening first (two UV vertices at one place, a face
+ * turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
+ * to reach them without folding a face. Pins go with neither the option unit-square nor densities:
+ * INVALID_ARGUMENT. Pins of faces without area set their corners alone. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);
@@ -579,7 +602,7 @@ typedef struct beltrami_chart {
   uint64_t triangles;
   uint64_t first_face;        /* of the input, the least */
   double area;                /* on the surface, in its unit squared */
-  double density;             /* mean of its faces' densities; 1 without */
+  double density;             /* mean of its faces' densities, or what its pins ask for; else 1 */
   double symmetric_dirichlet; /* as of the atlas */
   double max;
   double box[4]; /* of its UVs: least u, least v, greatest u, greatest v */
