@@ -30,8 +30,10 @@ constexpr double kAllButThere = 1 - 1e-9;
 constexpr double kShortStep = 0.01;  ///< of what remains
 constexpr int kMostShortSteps = 6;   ///< in a row: stuck
 /// Between two steps, enough to make room for the next one.
-constexpr int kRelaxingSteps = 4;
+constexpr int kRelaxingSteps = 10, kRelaxingProxies = 2;
 constexpr double kRelaxed = 1e-2;
+/// Relative decrease in the last step: leaves the energy a thousandth too high.
+constexpr double kTolerance = 1e-3;
 /// Places nearer to each other than that, relative to the size of the map, are so for roundoff.
 constexpr double kRoundoff = 1e-12;
 /// Where the parts end in the progress.
@@ -153,11 +155,25 @@ class Way {
                        [&](Index v) { return held_[v]; });
   }
 
-  bool minimise(int steps, double tolerance, bool simple, const Work& work,
-                std::vector<Vec2>& uvs) const;
+  /// Composite majorization alone: the start is near the minimum.
+  NewtonOptions last_steps() const {
+    NewtonOptions newton = newton_options(options_);
+    newton.proxy_steps = 0;
+    newton.tolerance = std::max(newton.tolerance, kTolerance);
+    return newton;
+  }
+  NewtonOptions relaxing_steps() const {
+    NewtonOptions newton = newton_options(options_);
+    newton.max_iterations = kRelaxingSteps;
+    newton.proxy_steps = kRelaxingProxies;
+    newton.tolerance = std::max(newton.tolerance, kRelaxed);
+    return newton;
+  }
+  bool minimise(NewtonOptions newton, bool simple, const Work& work, std::vector<Vec2>& uvs) const;
   bool minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const;
   bool embed(std::vector<Vec2>& uvs) const;
-  bool walk(bool simple, std::vector<Vec2>& uvs) const;
+  enum class End { kMet, kStuck, kTouched };
+  End walk(bool simple, std::vector<Vec2>& uvs) const;
   bool untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const;
 
   const DiskMesh& mesh_;
@@ -170,11 +186,8 @@ class Way {
   std::vector<Vec2> targets_;
 };
 
-bool Way::minimise(int steps, double tolerance, bool simple, const Work& work,
+bool Way::minimise(NewtonOptions newton, bool simple, const Work& work,
                    std::vector<Vec2>& uvs) const {
-  NewtonOptions newton = newton_options(options_);
-  newton.max_iterations = steps;
-  newton.tolerance = std::max(tolerance, newton.tolerance);
   const auto run = [&] { return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work); };
   if (!simple) return run().converged;
   if (!contact_.is_pressed(uvs)) {
@@ -190,7 +203,7 @@ bool Way::minimise(int steps, double tolerance, bool simple, const Work& work,
 
 /// From a map whose boundary touches itself, to the last one before it overlaps.
 bool Way::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
-  NewtonOptions newton = newton_options(options_);
+  NewtonOptions newton = last_steps();
   newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
   NewtonResult result = minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
   if (result.refused) uvs = std::move(result.admitted);
@@ -202,7 +215,7 @@ bool Way::relax(const Work& work, std::vector<Vec2>& uvs) const {
   if (!simple && keeps_boundary_simple(options_) && is_sound(uvs)) {
     return minimise_soundly(work, uvs);
   }
-  return minimise(options_.max_iterations, 0, simple, work, uvs);
+  return minimise(last_steps(), simple, work, uvs);
 }
 
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
@@ -214,10 +227,12 @@ bool Way::embed(std::vector<Vec2>& uvs) const {
   return true;
 }
 
-bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
+/// `simple`: whether the boundary may not touch itself; kTouched: it was in the way.
+Way::End Way::walk(bool simple, std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
   std::vector<Vec2> trial(uvs.size());
   int short_steps = 0;
+  bool touched = false;
   for (int step = 0; step < kMostSteps && short_steps < kMostShortSteps; ++step) {
     const Work inner = work_.part(kThere * step / kMostSteps, kThere * step / kMostSteps);
     inner.report(0);
@@ -231,20 +246,21 @@ bool Way::walk(bool simple, std::vector<Vec2>& uvs) const {
     const double singular = first_singular_step(mesh_.faces, uvs, direction, work_);
     double reach = std::min(singular, 1 / kShareOfWay);
     if (simple) reach = contact_.first_touch(uvs, direction, reach);
+    touched = touched || reach < std::min(singular, 1.0) || (simple && contact_.is_pressed(uvs));
     if (singular > 1 && reach >= kAllButThere && move(1)) {
       uvs.swap(trial);
-      return true;
+      return End::kMet;
     }
     double length = kShareOfWay * std::min(reach, 1.0);
     while (length > kRoundoff && !move(length)) length *= 0.5;
-    if (!(length > kRoundoff)) return false;
+    if (!(length > kRoundoff)) break;
     uvs.swap(trial);
     short_steps = length < kShortStep ? short_steps + 1 : 0;
     // Without time nothing would make room.
     const Work patient = work_.out_of_time() ? Work(1) : inner;
-    minimise(kRelaxingSteps, kRelaxed, simple, patient, uvs);
+    minimise(relaxing_steps(), simple, patient, uvs);
   }
-  return false;
+  return touched ? End::kTouched : End::kStuck;
 }
 
 /// From a map with folds.
@@ -259,12 +275,13 @@ bool Way::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
 bool Way::go(std::vector<Vec2>& uvs) const {
   if (boundary_is_held() && embed(uvs)) return true;
   std::vector<Vec2> trial = uvs;
-  if (keeps_simple(trial) && walk(true, trial)) {
-    uvs.swap(trial);
-    return true;
+  End end = End::kTouched;
+  if (keeps_simple(trial)) end = walk(true, trial);
+  if (end == End::kTouched) {
+    trial = uvs;
+    end = walk(false, trial);
   }
-  trial = uvs;
-  if (walk(false, trial)) {
+  if (end == End::kMet) {
     uvs.swap(trial);
     return true;
   }

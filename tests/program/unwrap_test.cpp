@@ -120,8 +120,10 @@ TEST(Unwrap, HoldsPins) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const MeshFile mesh = read_mesh(out, Content::kUvs);
   const auto uv = [&](std::size_t corner) {
-    const std::size_t i = mesh.corner_uvs.of_corner[corner];
-    return std::pair(mesh.corner_uvs.values[2 * i], mesh.corner_uvs.values[2 * i + 1]);
+    const auto& [values, of_corner] = mesh.corner_uvs;
+    const std::vector<double>& uvs = of_corner.empty() ? mesh.uvs : values;
+    const std::size_t i = of_corner.empty() ? mesh.polygons.corners()[corner] : of_corner[corner];
+    return std::pair(uvs[2 * i], uvs[2 * i + 1]);
   };
   EXPECT_EQ(uv(0), std::pair(0.1, 0.0));
   EXPECT_EQ(uv(5), std::pair(2.25, 0.0));
