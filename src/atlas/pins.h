@@ -1,7 +1,6 @@
 // Pins: from corners of the input to vertices of charts.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -9,7 +8,6 @@
 #include "atlas/open.h"
 #include "base/error.h"
 #include "base/types.h"
-#include "base/work.h"
 
 namespace beltrami {
 
