@@ -24,7 +24,8 @@ namespace {
 
 /// Of the way to the first face without area, or the first touch: the rest is left to relax.
 constexpr double kShareOfWay = 0.6;
-constexpr int kMostSteps = 60;
+constexpr Index kMostSteps = 60, kLeastMostSteps = 15;
+constexpr Index kMostFaceSteps = 6'000'000;  ///< of large maps fewer
 /// Of the way to the first touch: pins may have the boundary touch itself.
 constexpr double kAllButThere = 1 - 1e-9;
 constexpr double kShortStep = 0.01;  ///< of what remains
@@ -231,10 +232,11 @@ bool Way::embed(std::vector<Vec2>& uvs) const {
 Way::End Way::walk(bool simple, std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
   std::vector<Vec2> trial(uvs.size());
+  const int most = std::clamp(kMostFaceSteps / mesh_.face_count(), kLeastMostSteps, kMostSteps);
   int short_steps = 0;
   bool touched = false;
-  for (int step = 0; step < kMostSteps && short_steps < kMostShortSteps; ++step) {
-    const Work inner = work_.part(kThere * step / kMostSteps, kThere * step / kMostSteps);
+  for (int step = 0; step < most && short_steps < kMostShortSteps; ++step) {
+    const Work inner = work_.part(kThere * step / most, kThere * step / most);
     inner.report(0);
     const std::vector<Vec2> direction = field.extend(uvs, remaining(uvs));
     const auto move = [&](double length) {
@@ -318,12 +320,12 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
   // One pin is always met.
   std::size_t met = 1, failed = pins.size();
-  while (failed - met > 1) {
+  while (failed - met > 1 && !work.out_of_time()) {
     const std::size_t middle = met + (failed - met) / 2;
     (meet(way, start, Pins(pins).first(middle), false, work) ? met : failed) = middle;
   }
   HeldMap none;
-  none.failed = static_cast<Index>(met);
+  none.failed = static_cast<Index>(failed) - 1;
   return none;
 }
 

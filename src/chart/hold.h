@@ -20,7 +20,8 @@ struct HeldMap {
   std::vector<Vec2> uvs;  ///< one per vertex, those held exactly in their places; else none
   double scale = 1;       ///< of the map against the surface: lengths per length
   bool converged = true;  ///< the optimisation was not cut short
-  /// Where not all could be met: the first that could not be together with those before it.
+  /// Where not all could be met: the first that could not be together with those before it, or
+  /// where the time was up a later one.
   Index failed = kNone;
 };
 

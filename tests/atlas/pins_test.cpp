@@ -369,8 +369,22 @@ TEST(Pins, CannotRunClockwise) {
   expect_refused(fan, around, size_of(around) - 1, "clockwise");
 }
 
-TEST(Pins, ThatCannotBeReachedAreNamedInOrder) {
-  // The neighbours of a vertex inside are held in a triangle that does not go round it.
+TEST(Pins, InsideCannotLieOutside) {
+  // Nothing proves it before the attempt.
+  const Index n = 4;
+  const TriangleList mesh = meshes::grid(n, n);
+  std::vector<Pin> pins;
+  for (const Index v : boundary_of(mesh)) {
+    pin_vertex(mesh, v, mesh.positions[v].head<2>(), pins);
+  }
+  pin_vertex(mesh, corner_of_grid(n, 1, 2), {0.25, 0.5}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 3, 2), {2, 0.5}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 2, 2), {0.5, 0.5}, pins);
+  expect_refused(mesh, pins, size_of(pins) - 2, "no way was found");
+}
+
+TEST(Pins, OfAFanHaveTheirOrder) {
+  // The hub lies beyond the rim; what comes after it does not matter.
   const TriangleList mesh = meshes::fan(6);
   std::vector<Pin> pins;
   const std::vector<Index> loop = boundary_of(mesh);
