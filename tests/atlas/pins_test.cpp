@@ -371,15 +371,15 @@ TEST(Pins, CannotRunClockwise) {
 
 TEST(Pins, InsideCannotLieOutside) {
   // Nothing proves it before the attempt.
-  const Index n = 4;
+  const Index n = 6;
   const TriangleList mesh = meshes::grid(n, n);
   std::vector<Pin> pins;
   for (const Index v : boundary_of(mesh)) {
     pin_vertex(mesh, v, mesh.positions[v].head<2>(), pins);
   }
-  pin_vertex(mesh, corner_of_grid(n, 1, 2), {0.25, 0.5}, pins);
-  pin_vertex(mesh, corner_of_grid(n, 3, 2), {2, 0.5}, pins);
-  pin_vertex(mesh, corner_of_grid(n, 2, 2), {0.5, 0.5}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 2, 2), {0.3, 0.3}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 3, 3), {2, 0.5}, pins);
+  pin_vertex(mesh, corner_of_grid(n, 4, 4), {0.7, 0.7}, pins);
   expect_refused(mesh, pins, size_of(pins) - 2, "no way was found");
 }
 
