@@ -154,9 +154,9 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts, const
     return static_cast<double>(of) / static_cast<double>(all);
   };
 
-  static const std::vector<ChartPin> kNoPins;
+  const std::vector<ChartPin> no_pins;
   const auto pins_of = [&](Index c) -> const std::vector<ChartPin>& {
-    return pins.of_chart.empty() ? kNoPins : pins.of_chart[c];
+    return pins.of_chart.empty() ? no_pins : pins.of_chart[c];
   };
   for (const Index c : order) {
     if (c == order[0] || pins_of(c).size() > kFewPins) {
