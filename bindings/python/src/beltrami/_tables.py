@@ -324,7 +324,7 @@ class Chart:
     area : float
         On the surface, in its unit squared.
     density : float
-        Mean of its faces' densities; 1 without.
+        Mean of its faces' densities, or what its pins ask for; else 1.
     symmetric_dirichlet : float
         As of the atlas.
     max : float

@@ -51,6 +51,8 @@ pub const BELTRAMI_E_BOUNDARIES: _bindgen_ty_1 = -29;
 pub const BELTRAMI_E_GENUS: _bindgen_ty_1 = -30;
 /// the whole surface has no area, or overflows
 pub const BELTRAMI_E_ZERO_AREA: _bindgen_ty_1 = -31;
+/// The pins of a surface cannot be met. Corner: the first that cannot, with those before it.
+pub const BELTRAMI_E_PINS: _bindgen_ty_1 = -32;
 /// A linear system could not be solved.
 pub const BELTRAMI_E_SOLVER: _bindgen_ty_1 = -40;
 pub type _bindgen_ty_1 = ::core::ffi::c_int;
@@ -58,6 +60,8 @@ pub const BELTRAMI_ELEMENT_FORCE_SIGNED_: _bindgen_ty_2 = -1;
 pub const BELTRAMI_ELEMENT_NONE: _bindgen_ty_2 = 0;
 pub const BELTRAMI_ELEMENT_FACE: _bindgen_ty_2 = 1;
 pub const BELTRAMI_ELEMENT_VERTEX: _bindgen_ty_2 = 2;
+/// of the faces of a beltrami_surface, one after another
+pub const BELTRAMI_ELEMENT_CORNER: _bindgen_ty_2 = 3;
 /// What an element index counts.
 pub type _bindgen_ty_2 = ::core::ffi::c_int;
 extern "C" {
@@ -910,11 +914,16 @@ pub struct beltrami_surface {
     pub seam_count: u64,
     /// as in beltrami_mesh
     pub cancel: *const i32,
+    /// optional: pin_count items of 1, U32 or U64: corners
+    pub pins: beltrami_buffer,
+    /// pin_count items of 2, F32 or F64, in the unit of positions
+    pub pin_uvs: beltrami_buffer,
+    pub pin_count: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 216usize];
+    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 272usize];
     [
         "Alignment of beltrami_surface",
     ][::core::mem::align_of::<beltrami_surface>() - 8usize];
@@ -960,6 +969,15 @@ const _: () = {
     [
         "Offset of field: beltrami_surface::cancel",
     ][::core::mem::offset_of!(beltrami_surface, cancel) - 208usize];
+    [
+        "Offset of field: beltrami_surface::pins",
+    ][::core::mem::offset_of!(beltrami_surface, pins) - 216usize];
+    [
+        "Offset of field: beltrami_surface::pin_uvs",
+    ][::core::mem::offset_of!(beltrami_surface, pin_uvs) - 240usize];
+    [
+        "Offset of field: beltrami_surface::pin_count",
+    ][::core::mem::offset_of!(beltrami_surface, pin_count) - 264usize];
 };
 impl Default for beltrami_surface {
     fn default() -> Self {
@@ -989,9 +1007,21 @@ extern "C" {
  for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
  surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
  earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
- NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which)
- or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE,
- ZERO_AREA, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL.*/
+ NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which;
+ or charts with pins lie on each other: the certificate says where) or NOT_INJECTIVE_FLOAT32;
+ errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, CANCELLED,
+ OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL.
+
+ Charts with pins stay where the pins put them, and the others lie above their box. With one pin
+ the free map is moved there, with two it is turned and scaled as well; with more its energy is
+ minimised with the pins held, at the scale of the similarity that fits them best, which is the
+ chart's density then: never mirrored. The certificate judges pins like all else; where the
+ boundary of a chart is pinned so that it touches itself, that is no overlap. Where pins cannot be
+ met the call fails with PINS and the corner of the first pin that cannot be met together with
+ those before it: what is proven before the flattening first (two UV vertices at one place, a face
+ turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
+ to reach them without folding a face. Pins go with neither the option unit-square nor densities:
+ INVALID_ARGUMENT. Pins of faces without area set their corners alone.*/
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
@@ -1176,7 +1206,7 @@ pub struct beltrami_chart {
     pub first_face: u64,
     /// on the surface, in its unit squared
     pub area: f64,
-    /// mean of its faces' densities; 1 without
+    /// mean of its faces' densities, or what its pins ask for; else 1
     pub density: f64,
     /// as of the atlas
     pub symmetric_dirichlet: f64,
