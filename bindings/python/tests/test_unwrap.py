@@ -455,3 +455,26 @@ def test_triangles_of_polygons():
     assert all({1, 3} < set(triangle) for triangle in triangles.tolist())
     assert beltrami.triangulate(chevron, [[0, 1, 2, 1]]).first_repeating == 0
     assert (beltrami.triangulate(*grid(3)).triangles == grid(3)[1]).all()
+
+
+def test_pins_are_met_to_the_bit():
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0.25], [0, 1, 0]])
+    corners, uvs = [0, 1, 2, 5], np.array([[0.1, 0.2], [1.3, 0.0], [1.1, 1.2], [-0.2, 0.9]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    atlas = beltrami.unwrap(vertices, faces, pins=(corners, uvs))
+    assert atlas.certificate.injective
+    np.testing.assert_array_equal(np.asarray(atlas.corner_uvs).reshape(-1, 2)[corners], uvs)
+
+
+def test_pins_that_no_map_meets_are_named():
+    vertices, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    with pytest.raises(beltrami.PinError) as caught:
+        beltrami.unwrap(vertices, faces, pins=([0, 2, 1], [[0, 0], [1, 0], [0, 1]]))
+    assert caught.value.element_kind == "corner"
+    assert caught.value.element in (0, 1, 2)
+    with pytest.raises(ValueError, match="there are 3"):
+        beltrami.unwrap(vertices, faces, pins=([3], [[0, 0]]))
+    with pytest.raises(ValueError, match="shape"):
+        beltrami.unwrap(vertices, faces, pins=([0], [0, 0]))
+    with pytest.raises(TypeError, match="pair"):
+        beltrami.unwrap(vertices, faces, pins=[0])

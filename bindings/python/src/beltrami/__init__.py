@@ -32,6 +32,7 @@ from ._errors import (
     NotADiskError,
     NotInjectiveWarning,
     OutOfMemoryError,
+    PinError,
     SolverError,
     UnsupportedError,
 )
@@ -78,6 +79,7 @@ __all__ = [
     "Options",
     "OutOfMemoryError",
     "Parameterization",
+    "PinError",
     "Report",
     "SceneAtlases",
     "SolverError",

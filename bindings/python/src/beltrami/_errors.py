@@ -14,7 +14,7 @@ class BeltramiError(RuntimeError):
         Its name, such as "BELTRAMI_E_CLOSED".
     element : int | None
         The face or vertex of the input that the failure is about, counted from 0.
-    element_kind : {"face", "vertex"} | None
+    element_kind : {"face", "vertex", "corner"} | None
         What `element` counts.
     """
 
@@ -95,6 +95,13 @@ class NotADiskError(MeshError):
     """
 
 
+class PinError(BeltramiError):
+    """Corners cannot be held where they were pinned: no injective map does that.
+
+    Its element is the first corner that cannot be met together with those before it.
+    """
+
+
 class NotInjectiveWarning(UserWarning):
     """A result is not injective: its certificate says where."""
 
@@ -119,5 +126,6 @@ ERRORS: dict[str, type[BeltramiError]] = {
     "BELTRAMI_E_BOUNDARIES": NotADiskError,
     "BELTRAMI_E_GENUS": NotADiskError,
     "BELTRAMI_E_ZERO_AREA": MeshError,
+    "BELTRAMI_E_PINS": PinError,
     "BELTRAMI_E_SOLVER": SolverError,
 }

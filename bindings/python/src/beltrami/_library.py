@@ -32,7 +32,11 @@ _TYPES = {
     "i8": lib.BELTRAMI_U64,
     "u8": lib.BELTRAMI_U64,
 }
-_KINDS = {lib.BELTRAMI_ELEMENT_FACE: "face", lib.BELTRAMI_ELEMENT_VERTEX: "vertex"}
+_KINDS = {
+    lib.BELTRAMI_ELEMENT_FACE: "face",
+    lib.BELTRAMI_ELEMENT_VERTEX: "vertex",
+    lib.BELTRAMI_ELEMENT_CORNER: "corner",
+}
 #: What takes an option.
 RUN, UNWRAP = lib.BELTRAMI_CALL_RUN, lib.BELTRAMI_CALL_UNWRAP
 

@@ -162,6 +162,27 @@ def seams(values: Any) -> Array:
     return np.ascontiguousarray(array.astype(f"={array.dtype.kind}{size}", copy=False))
 
 
+def pins(values: Any, faces: Polygons) -> tuple[Array, Array]:
+    """Return corners (k,) and their UVs (k, 2). Raises TypeError, ValueError."""
+    if not isinstance(values, tuple) or len(values) != 2:
+        raise TypeError("pins are a pair: the numbers of corners, and their UVs")
+    corners, uvs = np.asarray(values[0]), np.asarray(values[1], np.float64)
+    if corners.size == 0 and uvs.size == 0:
+        return np.empty(0, np.uint64), np.empty((0, 2))
+    if corners.dtype.kind not in "iu" or corners.ndim != 1:
+        raise TypeError(f"the corners of pins must be (k,) integers, not {corners.dtype}")
+    if uvs.shape != (len(corners), 2):
+        raise ValueError(
+            f"the UVs of pins must have the shape ({len(corners)}, 2), not {uvs.shape}"
+        )
+    odd = np.flatnonzero((corners < 0) | (corners >= faces.corner_count))
+    if len(odd):
+        raise ValueError(
+            f"pin {odd[0]} names corner {corners[odd[0]]}, but there are {faces.corner_count}"
+        )
+    return np.ascontiguousarray(corners, np.uint64), np.ascontiguousarray(uvs)
+
+
 def _of_faces(name: str, array: Array, faces: Polygons) -> Array:
     if array.shape != (len(faces),):
         raise ValueError(

@@ -26,6 +26,7 @@ class Surface:
     labels: Array | None = None
     densities: Array | None = None
     seams: Array | None = None
+    pins: tuple[Array, Array] | None = None  # corners and UVs
 
     def struct(self) -> Any:
         """Return the ``beltrami_surface``, which is good as long as the arrays are."""
@@ -45,6 +46,9 @@ class Surface:
         if self.seams is not None and len(self.seams):
             surface.seams = buffer(self.seams)
             surface.seam_count = len(self.seams)
+        if self.pins is not None and len(self.pins[0]):
+            surface.pins, surface.pin_uvs = buffer(self.pins[0]), buffer(self.pins[1])
+            surface.pin_count = len(self.pins[0])
         return surface
 
     def explain(self, error: BeltramiError) -> None:

@@ -41,6 +41,7 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
+    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     progress: Progress = None,
     **options: Unpack[UnwrapOptions],
 ) -> Atlas: ...
@@ -53,6 +54,7 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
+    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     progress: Progress = None,
     **options: Unpack[UnwrapOptions],
 ) -> Any: ...
@@ -64,6 +66,7 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
+    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     # options: parameters
     method: MethodChoice = "beltrami",
     energy: EnergyChoice = "symmetric-dirichlet",
@@ -114,6 +117,10 @@ def unwrap(
         Above 0: how much larger a face is to be in the plane. A chart has the mean of its faces.
     seams : (k, 2) array_like of integers, optional
         Edges to cut, by their vertices; pairs that are no edge are ignored.
+    pins : tuple of (k,) array_like of integers and (k, 2) array_like of floats, optional
+        Corners to hold, counted from 0 face after face, and the UVs that they get, to the bit: a
+        chart takes the scale of its pins. Raises `PinError`, with the corner, where no injective
+        map meets them.
     progress : bool or callable, optional
         As for `parameterize`.
 
@@ -237,7 +244,8 @@ def unwrap(
     if faces is None and isinstance(vertices, (str, os.PathLike)):
         vertices = _trimesh.load(vertices)
     if faces is None and _trimesh.is_scene(vertices):
-        if any(values is not None for values in (corner_uvs, face_labels, densities, seams)):
+        of_faces = (corner_uvs, face_labels, densities, seams, pins)
+        if any(values is not None for values in of_faces):
             raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
         return _unwrap_scene(vertices, given, progress)
     mesh = None
@@ -249,7 +257,7 @@ def unwrap(
         mesh, vertices, faces = vertices, vertices.vertices, vertices.faces
         if corner_uvs is None and cut == "islands":
             corner_uvs = _trimesh.corner_uvs(mesh)
-    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams)
+    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams, pins)
     with hook_for(progress) as hook:
         atlas = _unwrap(surface, given, hook, mesh)
     _warn(atlas, "")
@@ -257,7 +265,13 @@ def unwrap(
 
 
 def _surface(
-    vertices: npt.ArrayLike, faces: Any, corner_uvs: Any, labels: Any, densities: Any, seams: Any
+    vertices: npt.ArrayLike,
+    faces: Any,
+    corner_uvs: Any,
+    labels: Any,
+    densities: Any,
+    seams: Any,
+    pins: Any = None,
 ) -> Surface:
     points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
     return Surface(
@@ -267,6 +281,7 @@ def _surface(
         None if labels is None else _polygons.labels(labels, polygons),
         None if densities is None else _polygons.densities(densities, polygons),
         None if seams is None else _polygons.seams(seams),
+        None if pins is None else _polygons.pins(pins, polygons),
     )
 
 

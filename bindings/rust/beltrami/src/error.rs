@@ -7,7 +7,7 @@ use std::os::raw::c_char;
 
 use beltrami_sys as sys;
 
-/// A face or vertex of the caller's mesh, counted from 0.
+/// A face, vertex or corner of the caller's mesh, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Element {
@@ -15,6 +15,8 @@ pub enum Element {
     Face(usize),
     /// The index of a vertex.
     Vertex(usize),
+    /// The index of a corner of a surface: of one vertex of one face, face after face.
+    Corner(usize),
 }
 
 impl Element {
@@ -24,6 +26,7 @@ impl Element {
         match kind {
             sys::BELTRAMI_ELEMENT_FACE => Some(Element::Face(index)),
             sys::BELTRAMI_ELEMENT_VERTEX => Some(Element::Vertex(index)),
+            sys::BELTRAMI_ELEMENT_CORNER => Some(Element::Corner(index)),
             _ => None,
         }
     }
@@ -34,6 +37,7 @@ impl fmt::Display for Element {
         match self {
             Element::Face(index) => write!(formatter, "face {index}"),
             Element::Vertex(index) => write!(formatter, "vertex {index}"),
+            Element::Corner(index) => write!(formatter, "corner {index}"),
         }
     }
 }
@@ -109,6 +113,8 @@ error_kinds! {
     Genus = BELTRAMI_E_GENUS,
     /// The whole surface has no area, or its area overflows.
     ZeroArea = BELTRAMI_E_ZERO_AREA,
+    /// Corners cannot be held where they were pinned: no injective map does that.
+    Pins = BELTRAMI_E_PINS,
     /// A linear system could not be solved.
     Solver = BELTRAMI_E_SOLVER,
     /// There is a map, but it is not injective: only what asks for injectivity fails so, see

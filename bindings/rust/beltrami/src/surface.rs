@@ -140,6 +140,7 @@ pub struct Surface<'a> {
     face_labels: Option<Integers<'a>>,
     densities: Option<Reals<'a>>,
     seams: Option<Edges<'a>>,
+    pins: Option<(Integers<'a>, Uvs<'a>)>,
 }
 
 impl<'a> Surface<'a> {
@@ -167,6 +168,7 @@ impl<'a> Surface<'a> {
             face_labels: None,
             densities: None,
             seams: None,
+            pins: None,
         }
     }
 
@@ -193,6 +195,16 @@ impl<'a> Surface<'a> {
     /// Edges to cut; pairs that are no edge are ignored.
     pub fn seams(mut self, seams: impl Into<Edges<'a>>) -> Self {
         self.seams = Some(seams.into());
+        self
+    }
+
+    /// Corners to hold, counted from 0 face after face, and the UVs that they get, to the bit: a
+    /// chart takes the scale of its pins. Unwrapping fails with
+    /// [`ErrorKind::Pins`](crate::ErrorKind::Pins), and the corner, where no injective map meets
+    /// them, and with [`ErrorKind::InvalidArgument`](crate::ErrorKind::InvalidArgument) where there
+    /// are not as many UVs as corners.
+    pub fn pins(mut self, corners: impl Into<Integers<'a>>, uvs: impl Into<Uvs<'a>>) -> Self {
+        self.pins = Some((corners.into(), uvs.into()));
         self
     }
 
@@ -235,6 +247,9 @@ impl<'a> Surface<'a> {
         require("corner UVs", self.corner_uvs.map(|uvs| uvs.len()), corners, "corner")?;
         require("face labels", self.face_labels.map(|labels| labels.len()), faces, "face")?;
         require("densities", self.densities.map(|densities| densities.len()), faces, "face")?;
+        if let Some((pinned, uvs)) = &self.pins {
+            require("UVs of pins", Some(uvs.len()), pinned.len(), "pin")?;
+        }
         let (indices, face_sizes) = match self.corners {
             Corners::Triangles(faces) => (faces.0.raw(), sys::beltrami_buffer::default()),
             Corners::Polygons { sizes, vertices } => (vertices.0.raw(), sizes.0.raw()),
@@ -254,6 +269,9 @@ impl<'a> Surface<'a> {
             densities: optional(self.densities.map(|densities| densities.0)),
             seams: optional(self.seams.map(|seams| seams.0)),
             seam_count: self.seams.map_or(0, |seams| seams.0.len as u64),
+            pins: optional(self.pins.map(|(corners, _)| corners.0)),
+            pin_uvs: optional(self.pins.map(|(_, uvs)| uvs.0)),
+            pin_count: self.pins.map_or(0, |(corners, _)| corners.0.len as u64),
             cancel: token.number(),
             ..Default::default()
         })

@@ -144,6 +144,24 @@ fn densities_scale_charts() {
 }
 
 #[test]
+fn pins_are_met_or_named() {
+    let positions = [[0.0_f64, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.25], [0.0, 1.0, 0.0]];
+    let faces = [[0_u32, 1, 2], [0, 2, 3]];
+    let (corners, uvs) = ([0_u32, 1, 2], [[0.1, 0.2], [1.3, 0.0], [1.1, 1.2]]);
+    let mut unwrapper = Unwrapper::new().unwrap();
+    let surface = Surface::new(&positions, &faces);
+    let atlas = unwrapper.unwrap(&surface.pins(&corners, &uvs)).unwrap();
+    assert!(atlas.certificate().injective);
+    assert_eq!(atlas.corner_uvs::<[f64; 2]>()[..3], uvs);
+    let turned = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
+    let error = unwrapper.unwrap(&surface.pins(&corners, &turned)).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Pins);
+    assert!(matches!(error.element, Some(Element::Corner(0..=2))), "{error}");
+    let error = unwrapper.unwrap(&surface.pins(&corners, &turned[..2])).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::InvalidArgument);
+}
+
+#[test]
 fn faces_without_area_get_a_point() {
     let faces = [&TETRAHEDRON_FACES[..], &[[0, 0, 1]]].concat();
     let mut unwrapper = Unwrapper::new().unwrap();
