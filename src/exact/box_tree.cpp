@@ -17,7 +17,7 @@ std::uint32_t leaves_for(Index items) {
 }  // namespace
 
 BoxTree::BoxTree(const std::vector<Box2>& boxes)
-    : leaf_count_(static_cast<Index>(leaves_for(size_of(boxes)))) {
+    : item_count_(size_of(boxes)), leaf_count_(static_cast<Index>(leaves_for(item_count_))) {
   boxes_.resize(2 * static_cast<std::size_t>(leaf_count_));
   std::copy(boxes.begin(), boxes.end(), boxes_.begin() + leaf_count_);
   for (Index node = leaf_count_ - 1; node > 0; --node) {

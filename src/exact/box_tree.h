@@ -31,7 +31,7 @@ class BoxTree {
       if (!look()) return false;
       if (!boxes_[node].intersects(box)) continue;
       if (node >= leaf_count_) {
-        if (!visit(node - leaf_count_)) return false;
+        if (is_item(node) && !visit(node - leaf_count_)) return false;
         continue;
       }
       stack_.push_back(2 * node + 1);
@@ -51,7 +51,8 @@ class BoxTree {
       if (!look()) return false;
       if (a != b && !boxes_[a].intersects(boxes_[b])) continue;
       if (a >= leaf_count_) {
-        if (a != b && !visit(a - leaf_count_, b - leaf_count_)) return false;
+        if (a == b || !is_item(a) || !is_item(b)) continue;
+        if (!visit(a - leaf_count_, b - leaf_count_)) return false;
         continue;
       }
       const auto push = [&](Index first, Index second) {
@@ -73,7 +74,10 @@ class BoxTree {
     return node;
   }
 
-  Index leaf_count_;
+  /// Empty boxes fill the tree up, and meet those that reach to the ends of the numbers.
+  bool is_item(Index node) const { return node - leaf_count_ < item_count_; }
+
+  Index item_count_, leaf_count_;
   std::vector<Box2> boxes_;
   std::vector<Index> stack_;
   PollSometimes poll_;
