@@ -1,5 +1,7 @@
 #include "atlas/pins.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -74,8 +76,14 @@ Vec2 scaled(const Pin& pin, int exponent) {
   return place;
 }
 
+/// The shortest text that reads back to the value, whatever the host's locale.
+std::string written(double x) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
+}
+
 std::string written(const Vec2& uv) {
-  return "(" + std::to_string(uv.x()) + ", " + std::to_string(uv.y()) + ")";
+  return "(" + written(uv.x()) + ", " + written(uv.y()) + ")";
 }
 
 }  // namespace
