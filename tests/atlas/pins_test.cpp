@@ -12,6 +12,8 @@
 
 #include "atlas/atlas.h"
 #include "base/error.h"
+#include "base/work.h"
+#include "chart/flattening.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
