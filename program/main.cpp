@@ -41,15 +41,16 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->add_option("OUT", arguments.output,
                    "Mesh with UVs to write: .obj or .ply; .gltf or .glb where IN is glTF")
       ->required();
-  options.add_to(*command);
   command
       ->add_option("--seams", arguments.seams,
                    "Edges to cut: a text of pairs of vertex numbers, counted from 0")
+      ->group("Charts")
       ->type_name("FILE");
   command
       ->add_option("--labels", arguments.labels,
                    "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
                    "or a property of the faces of a PLY file")
+      ->group("Charts")
       ->type_name("NAME");
   command
       ->add_option(
@@ -61,7 +62,9 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
                    "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
                    "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
                    "after another count from 0, UVs are in the unit of IN")
+      ->group("Charts")
       ->type_name("FILE");
+  options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,
                     "Write the triangles that were computed on, in the orientation in which their\n"
                     "UVs are positive");

@@ -144,9 +144,12 @@ Options::Options(std::int32_t call) {
 void Options::add_to(CLI::App& command) {
   for (Option& option : options_) {
     const std::string flag = std::string("--") + option.info.name;
+    const char* group = option.info.calls == BELTRAMI_CALL_UNWRAP ? "Charts" : "Flattening";
     if (option.is_flag()) {
-      command.add_flag_callback(
-          flag, [&option] { option.integer = 1; }, help_text(option));
+      command
+          .add_flag_callback(
+              flag, [&option] { option.integer = 1; }, help_text(option))
+          ->group(group);
       continue;
     }
     const auto parse = [&option, flag](const std::string& text) {
@@ -155,6 +158,7 @@ void Options::add_to(CLI::App& command) {
       option.given = true;
     };
     command.add_option_function<std::string>(flag, parse, help_text(option))
+        ->group(group)
         ->type_name(option.info.type == BELTRAMI_TYPE_CHOICE  ? joined_choices(option, "|")
                     : option.info.type == BELTRAMI_TYPE_FLOAT ? "X"
                     : option.is_byte_count()                  ? "BYTES"

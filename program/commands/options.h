@@ -41,6 +41,7 @@ class Options {
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
 
+  /// In the help, what only unwrap takes stands under "Charts".
   void add_to(CLI::App& command);
   /// Throws Failure with the library's words if it refuses a value.
   void apply_to(beltrami_context* context) const;
