@@ -67,10 +67,14 @@ class Unwrapping {
     const MeshFormat format = format_of(arguments_.input);
     if (!writes_gltf()) {
       require_writable_format(arguments_.output);
-    } else if (format != MeshFormat::kGltf || arguments_.triangulate) {
+    } else if (format != MeshFormat::kGltf) {
       throw Failure(arguments_.output +
-                    ": glTF is written from glTF alone, whose faces are triangles: use the "
-                    "extension .obj or .ply, or leave out --triangulate");
+                    ": glTF is written from glTF alone, with all that a scene has: use the "
+                    "extension .obj or .ply");
+    } else if (arguments_.triangulate) {
+      throw Failure(arguments_.output +
+                    ": the faces of glTF are triangles, in the winding that they have: leave out "
+                    "--triangulate, or use the extension .obj or .ply");
     }
     for (const std::string& mesh : {arguments_.input, arguments_.output}) {
       require_distinct(
