@@ -88,6 +88,11 @@ void require_distinct(const std::vector<std::string>& paths);
 /// would be lost with what was there before them.
 void require_apart_from_stdout(const std::vector<std::string>& paths);
 
+/// Whether a status refuses a mesh for its topology: it is no disk, and may be unwrapped.
+inline bool says_no_disk(beltrami_status status) {
+  return status <= BELTRAMI_E_REPEATED_VERTEX && status >= BELTRAMI_E_GENUS;
+}
+
 /// Runs `body`, which returns the exit code. Its failures become one line on stderr, an exit code,
 /// and a report at `report_path`, unless that is "" or one of `others`, which must not be lost.
 int run_guarded(Report& report, const std::string& report_path,

@@ -18,8 +18,7 @@ namespace {
 
 /// What takes a mesh that is no disk.
 const char* advice_to_unwrap(beltrami_status status) {
-  const bool is_no_disk = status <= BELTRAMI_E_REPEATED_VERTEX && status >= BELTRAMI_E_GENUS;
-  return is_no_disk ? " (or give it to beltrami unwrap, which takes any mesh)" : "";
+  return says_no_disk(status) ? " (or give it to beltrami unwrap, which takes any mesh)" : "";
 }
 
 void note_options(const FlattenArguments& arguments, const Options& options, Report& report) {

@@ -12,7 +12,7 @@
 #include "commands/progress_bar.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
-#include "files/face_labels.h"
+#include "files/given_cuts.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/pins.h"

@@ -25,19 +25,20 @@ void require_effect(const beltrami_surface& header, const AtlasOptions& options)
 }
 
 /// Throws Error where the place of a pin is no number that can be delivered.
-void require_number(const Vec2& uv, const std::string& name, std::uint64_t corner, bool float32) {
-  if (!uv.allFinite()) {
-    throw Error(BELTRAMI_E_NON_FINITE, "the UV of " + name + " is infinite or not a number",
-                Element::corner(corner));
+void require_number(const Pin& pin, bool float32) {
+  const auto corner = Element::corner(static_cast<std::uint64_t>(pin.of_caller));
+  if (!pin.uv.allFinite()) {
+    throw Error(BELTRAMI_E_NON_FINITE, "the UV of " + name_of(pin) + " is infinite or not a number",
+                corner);
   }
   if (!float32) return;
-  for (const double x : uv) {
+  for (const double x : pin.uv) {
     if (std::abs(x) <= std::numeric_limits<float>::max() && static_cast<float>(x) == x) continue;
     throw Error(BELTRAMI_E_INVALID_ARGUMENT,
-                "the UV of " + name +
+                "the UV of " + name_of(pin) +
                     " is no single-precision number, which the option float32 asks for: round it, "
                     "or leave float32 out",
-                Element::corner(corner));
+                corner);
   }
 }
 
@@ -66,9 +67,12 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
                       ", but there are " + std::to_string(header.corner_count) +
                       " corners: they count from 0, face after face");
     }
-    const std::string name =
-        "pin " + std::to_string(i) + " (corner " + std::to_string(corners[i]) + ")";
-    require_number({uvs[2 * i], uvs[2 * i + 1]}, name, corners[i], options.float32);
+    require_number({kNone,
+                    0,
+                    {uvs[2 * i], uvs[2 * i + 1]},
+                    static_cast<Index>(i),
+                    static_cast<Index>(corners[i])},
+                   options.float32);
   }
   for (std::size_t i = corners.size(); i-- > 0;) {
     next[i] = first[corners[i]];

@@ -51,7 +51,7 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
   const bool by_angle = cuts.hard_angle < std::numbers::pi;
   const double cosine = portable::cos(cuts.hard_angle);
   const auto input_vertex = [&](Index v) { return admitted.input_vertex[v]; };
-  /// The UV of the corner that a half-edge starts from.
+  // Of the corner that a half-edge starts from.
   const auto uv = [&](Index h) {
     const Index face = h / 3;
     return cuts.corner_uvs[3 * static_cast<std::size_t>(admitted.input_face[face]) +

@@ -1,4 +1,4 @@
-#include "files/face_labels.h"
+#include "files/given_cuts.h"
 
 #include <algorithm>
 #include <array>

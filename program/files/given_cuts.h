@@ -1,4 +1,4 @@
-// What a file says of its faces, as numbers: where these differ, seams may run.
+// Cuts that the user gives: labels of faces that a file has, and edges in a file of their own.
 #pragma once
 
 #include <cstdint>
