@@ -1010,8 +1010,8 @@ extern "C" {
  NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which;
  or charts with pins lie on each other: the certificate says where) or NOT_INJECTIVE_FLOAT32;
  errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, CANCELLED,
- OUT_OF_MEMORY (also before any chart is flattened, if one of the largest is estimated to need more
- than the option memory-limit), INVALID_STATE (during a run), INTERNAL.
+ OUT_OF_MEMORY (also before any chart is flattened, if one of the largest is estimated to need
+ more than the option memory-limit), INVALID_STATE (during a run), INTERNAL.
 
  Charts with pins stay where the pins put them, and the others lie above their box. With one pin
  the free map is moved there, with two it is turned and scaled as well; with more its energy is
