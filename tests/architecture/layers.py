@@ -17,9 +17,10 @@ LIBRARY = [
     {"base"},
     {"mesh", "exact"},
     {"admit", "energy", "linear", "prolong", "ring", "simplify"},
-    {"cut", "descend"},
+    {"descend"},
     {"flatten", "repair"},
     {"chart"},
+    {"cut"},
     {"atlas"},
     {"abi"},
 ]
