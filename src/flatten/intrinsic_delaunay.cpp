@@ -18,8 +18,8 @@ constexpr std::int64_t kBetweenReports = 1 << 16;
 
 class Flipper {
  public:
-  Flipper(const DiskMesh& mesh, std::vector<Cotangents> cotangents)
-      : faces_(mesh.faces), twin_(mesh.twin), cotangents_(std::move(cotangents)) {
+  Flipper(const Surface& surface, std::vector<Cotangents> cotangents)
+      : faces_(surface.faces), twin_(surface.twin), cotangents_(std::move(cotangents)) {
     for (Index h = size_of(twin_) - 1; h >= 0; --h) {
       if (twin_[h] > h) pending_.push_back(h);
     }
@@ -55,8 +55,8 @@ class Flipper {
   double cotangent(Index corner) const { return cotangents_[corner / 3][corner % 3]; }
 
   bool is_delaunay(Index h) const {
-    const double here = cotangent(DiskMesh::previous(h));
-    const double there = cotangent(DiskMesh::previous(twin_[h]));
+    const double here = cotangent(Surface::previous(h));
+    const double there = cotangent(Surface::previous(twin_[h]));
     return here + there >= -kCocircular * (std::abs(here) + std::abs(there) + 1);
   }
 
@@ -70,7 +70,7 @@ class Flipper {
   /// False after the last face.
   bool advance(Fan& fan) const {
     if (!fan.clockwise) {
-      const Index onward = twin_[DiskMesh::previous(fan.out)];
+      const Index onward = twin_[Surface::previous(fan.out)];
       if (onward == fan.first) return false;
       if (onward != kNone) {
         fan.out = onward;
@@ -81,20 +81,19 @@ class Flipper {
     }
     const Index back = twin_[fan.out];
     if (back == kNone) return false;
-    fan.out = DiskMesh::next(back);
+    fan.out = Surface::next(back);
     return true;
   }
 
   bool at_face(const Fan& fan, Index vertex) const {
-    return origin(DiskMesh::next(fan.out)) == vertex ||
-           origin(DiskMesh::previous(fan.out)) == vertex;
+    return origin(Surface::next(fan.out)) == vertex || origin(Surface::previous(fan.out)) == vertex;
   }
 
   /// Whether the two vertices opposite to an edge are neighbours. Goes around both side by side,
   /// since one may be a hub; either fan has the answer.
   bool joined_already(Index h) {
-    Fan one{DiskMesh::previous(h), DiskMesh::previous(h)};
-    Fan other{DiskMesh::previous(twin_[h]), DiskMesh::previous(twin_[h])};
+    Fan one{Surface::previous(h), Surface::previous(h)};
+    Fan other{Surface::previous(twin_[h]), Surface::previous(twin_[h])};
     const Index r = origin(one.first), s = origin(other.first);
     while (true) {
       poll_();
@@ -106,8 +105,8 @@ class Flipper {
   /// Replaces the edge P-Q between the faces PQR and QPS by R-S.
   void flip(Index h) {
     const Index t = twin_[h], f = h / 3, g = t / 3;
-    const Index qr = DiskMesh::next(h), rp = DiskMesh::previous(h);
-    const Index ps = DiskMesh::next(t), sq = DiskMesh::previous(t);
+    const Index qr = Surface::next(h), rp = Surface::previous(h);
+    const Index ps = Surface::next(t), sq = Surface::previous(t);
     const Index p = origin(h), q = origin(t), r = origin(rp), s = origin(sq);
     const double ap = cotangent(h), aq = cotangent(qr), bp = cotangent(ps), bq = cotangent(t);
     const Index twin_qr = twin_[qr], twin_rp = twin_[rp], twin_ps = twin_[ps], twin_sq = twin_[sq];
@@ -151,9 +150,9 @@ class Flipper {
 
 }  // namespace
 
-DelaunayTriangulation intrinsic_delaunay(const DiskMesh& mesh, std::vector<Cotangents> cotangents,
+DelaunayTriangulation intrinsic_delaunay(const Surface& surface, std::vector<Cotangents> cotangents,
                                          const Work& work) {
-  return Flipper(mesh, std::move(cotangents)).run(work);
+  return Flipper(surface, std::move(cotangents)).run(work);
 }
 
 }  // namespace beltrami

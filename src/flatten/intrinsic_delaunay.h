@@ -8,7 +8,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "flatten/laplacian.h"
-#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 
@@ -25,7 +25,7 @@ struct DelaunayTriangulation {
 /// to at least zero. Only the conformal class of each face enters: at a flip both faces are scaled
 /// to agree on their common edge, which makes the new cotangents a rational function of the old
 /// ones (the formulas printed in the paper misplace a root). Ends after finitely many flips.
-DelaunayTriangulation intrinsic_delaunay(const DiskMesh& mesh, std::vector<Cotangents> cotangents,
+DelaunayTriangulation intrinsic_delaunay(const Surface& surface, std::vector<Cotangents> cotangents,
                                          const Work& work);
 
 }  // namespace beltrami

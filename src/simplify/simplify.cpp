@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/interrupt.h"
@@ -348,6 +349,8 @@ CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, 
   }
   ShrinkingSurface surface = make_surface(fine, vertices, work);
   surface.keeps_history = true;
+  surface.fine_face.resize(surface.faces.size());
+  std::iota(surface.fine_face.begin(), surface.fine_face.end(), 0);
   run_passes(surface, target_faces, work);
   std::vector<Vec3> positions;
   positions.reserve(surface.fine_vertex.size());
@@ -355,6 +358,7 @@ CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, 
   CoarseSurface coarse;
   coarse.mesh = build_surface(std::move(positions), std::move(surface.faces), work);
   coarse.fine_vertex = std::move(surface.fine_vertex);
+  coarse.fine_face = std::move(surface.fine_face);
   coarse.history = std::move(surface.history);
   return coarse;
 }

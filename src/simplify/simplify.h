@@ -30,6 +30,7 @@ CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work);
 struct CoarseSurface {
   Surface mesh;
   std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
+  std::vector<Index> fine_face;    ///< per coarse face: the fine face that it was, increasing
   CollapseHistory history;
 };
 

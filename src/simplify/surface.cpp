@@ -192,6 +192,22 @@ ShrinkingSurface make_surface(const Surface& mesh, const VertexLoops& loops, con
   return surface;
 }
 
+namespace {
+
+void drop_removed_faces(ShrinkingSurface& surface) {
+  const auto is_removed = [](const Triangle& face) { return face[0] == kNone; };
+  if (surface.keeps_history) {
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+      if (!is_removed(surface.faces[f])) surface.fine_face[kept++] = surface.fine_face[f];
+    }
+    surface.fine_face.resize(kept);
+  }
+  std::erase_if(surface.faces, is_removed);
+}
+
+}  // namespace
+
 void compact(ShrinkingSurface& surface, const Work& work) {
   const std::vector<Index> kept_vertices =
       parallel_filter(work, surface.vertex_count(), kGrain,
@@ -208,7 +224,7 @@ void compact(ShrinkingSurface& surface, const Work& work) {
   const auto renumber = [&](Index& v) { v = v == kNone ? kNone : renumbered[v]; };
   // Arrays that have nothing to do with each other.
   const std::function<void()> tasks[] = {
-      [&] { std::erase_if(surface.faces, [](const Triangle& face) { return face[0] == kNone; }); },
+      [&] { drop_removed_faces(surface); },
       [&] { move_down(surface.quadric); },
       [&] { move_down(surface.site); },
       [&] {

@@ -33,6 +33,7 @@ struct ShrinkingSurface {
   std::vector<Index> fine_vertex;
   std::vector<Index> collapsed_into;  ///< per fine vertex: the next one on the way, or itself
   std::vector<Triangle> faces;        ///< a removed one has kNone as its first corner
+  std::vector<Index> fine_face;       ///< per face, with the history
   Index live_faces = 0;
   std::vector<Index> loop_of;  ///< per fine vertex: the boundary loop, or kNone
   bool keeps_history = false;

@@ -1,0 +1,30 @@
+// What a cut is worth in truth: the charts along it flattened, each without regard to its own
+// overlaps.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+/// The charts of a surface and locally injective maps of them.
+struct LocalMaps {
+  CutSurface cut;
+  std::vector<std::vector<Vec2>> uvs;  ///< per chart, one per vertex, in the unit of the surface
+  std::vector<double> energies;  ///< per face of the surface: symmetric Dirichlet, NaN if virtual,
+                                 ///< without area or folded
+  double energy = 2;             ///< their mean by area
+};
+
+/// Flattens every chart of the surface cut along `seams`, by composite majorization to `tolerance`.
+/// Charts that were cut out of those of `before` start from their maps. `real_faces`: those after
+/// them weigh nothing in the energy. Precondition: all pieces are disks. Throws Error SOLVER.
+LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
+                      double tolerance, const LocalMaps* before, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,217 @@
+#include "cut/seam_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+namespace {
+
+/// Ends of paths are looked for at so many places, and so many of these are looked at closely.
+constexpr std::size_t kCandidates = 12, kTried = 5;
+/// They are so far apart, in roots of the area.
+constexpr double kApart = 0.04;
+/// A path costs at least so much, in roots of the area: short ones are worth little to the eye.
+constexpr double kLeastCost = 0.02;
+/// Gains below that are rounding.
+constexpr double kLeastGain = 1e-7;
+constexpr int kExchanges = 8;
+
+}  // namespace
+
+SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
+                       EdgeMarks seams, const Work& work)
+    : surface_(surface),
+      cost_(cost),
+      degree_(surface.positions.size()),
+      anchored_(surface.positions.size(), false),
+      model_(surface, real_faces, work),
+      scale_(std::sqrt(surface_area(surface, work))) {
+  take(std::move(seams));
+}
+
+void SeamSearch::take(EdgeMarks seams) {
+  seams_ = std::move(seams);
+  std::fill(degree_.begin(), degree_.end(), 0);
+  cost_of_seams_ = 0;
+  for (Index h = 0; h < size_of(seams_); ++h) {
+    if (!seams_[h] || surface_.edge(h) != h) continue;
+    ++degree_[surface_.origin(h)];
+    ++degree_[surface_.target(h)];
+    cost_of_seams_ += cost_[h];
+  }
+  refresh();
+}
+
+void SeamSearch::mark(Index halfedge, bool is) {
+  seams_[halfedge] = is;
+  if (surface_.twin[halfedge] != kNone) seams_[surface_.twin[halfedge]] = is;
+  const Index change = is ? 1 : -1;
+  degree_[surface_.origin(halfedge)] += change;
+  degree_[surface_.target(halfedge)] += change;
+  cost_of_seams_ += change * cost_[halfedge];
+}
+
+void SeamSearch::refresh() {
+  std::vector<bool> pinned(degree_.size());
+  for (std::size_t v = 0; v < degree_.size(); ++v) pinned[v] = degree_[v] > 0;
+  model_.pin(pinned);
+}
+
+/// Local extremes of the factor, and of what pinning them would gain, the best for their cost.
+std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
+  const std::vector<double> gains = model_.gains();
+  const std::vector<double>& u = model_.factors();
+  std::vector<std::pair<double, Index>> found;
+  for (Index v = 0; v < surface_.vertex_count(); ++v) {
+    if (surface_.on_boundary[v] || degree_[v] > 0 || surface_.outgoing[v] == kNone) continue;
+    if (!std::isfinite(paths.costs()[v]) || !(gains[v] > 0)) continue;
+    bool is_peak = true, is_extreme = true;
+    surface_.for_each_outgoing(v, [&](Index h) {
+      const Index other = surface_.target(h);
+      is_peak = is_peak && gains[v] >= gains[other];
+      is_extreme = is_extreme && std::abs(u[v]) >= std::abs(u[other]);
+    });
+    if (is_peak || is_extreme) {
+      found.emplace_back(-gains[v] / (paths.costs()[v] + kLeastCost * scale_), v);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<Index> apart;
+  for (const auto& [score, v] : found) {
+    if (apart.size() == kCandidates) break;
+    const bool is_near = std::any_of(apart.begin(), apart.end(), [v = v, this](Index other) {
+      return (surface_.positions[v] - surface_.positions[other]).norm() < kApart * scale_;
+    });
+    if (!is_near) apart.push_back(v);
+  }
+  return apart;
+}
+
+bool SeamSearch::extend_once() {
+  std::vector<bool> root(degree_.size());
+  for (std::size_t v = 0; v < root.size(); ++v) {
+    root[v] = degree_[v] > 0 || surface_.on_boundary[v];
+  }
+  const SeamPaths paths(surface_, root, cost_);
+  std::vector<Index> ends = candidates(paths);
+  if (ends.size() > kTried) ends.resize(kTried);
+  double best = 0;
+  SeamPath chosen;
+  for (const Index v : ends) {
+    SeamPath path = paths.from(v);
+    const double gain = model_.energy() - model_.energy_with(path.vertices);
+    if (!(gain > kLeastGain)) continue;
+    const double worth = gain / (path.cost + kLeastCost * scale_);
+    if (worth <= best) continue;
+    best = worth;
+    chosen = std::move(path);
+  }
+  if (chosen.halfedges.empty()) return false;
+  for (const Index h : chosen.halfedges) mark(h, true);
+  anchored_[chosen.vertices.front()] = true;
+  refresh();
+  return true;
+}
+
+bool SeamSearch::extend(double target) {
+  while (model_.energy() > target) {
+    poll_interrupt();
+    if (!extend_once()) return false;
+  }
+  return true;
+}
+
+SeamSearch::Branch SeamSearch::branch_from(Index tip) const {
+  Branch branch;
+  Index v = tip, last = kNone;
+  for (;;) {
+    branch.vertices.push_back(v);
+    Index along = kNone;
+    surface_.for_each_outgoing(v, [&](Index h) {
+      if (seams_[h] && surface_.edge(h) != last) along = h;
+    });
+    if (along == kNone) return {};
+    last = surface_.edge(along);
+    branch.halfedges.push_back(along);
+    branch.cost += cost_[along];
+    v = surface_.target(along);
+    if (surface_.on_boundary[v] || degree_[v] > 2) return branch;
+    if (degree_[v] == 1) return {};  // a seam alone: something has to open the surface
+  }
+}
+
+void SeamSearch::judge(Branch& branch) const {
+  branch.energy = model_.energy_without(branch.vertices);
+  branch.worth = (branch.energy - model_.energy()) / (branch.cost + kLeastCost * scale_);
+}
+
+void SeamSearch::remove(const Branch& branch) {
+  for (const Index h : branch.halfedges) mark(h, false);
+  refresh();
+}
+
+std::vector<SeamSearch::Branch> SeamSearch::branches() const {
+  std::vector<Branch> found;
+  for (Index v = 0; v < surface_.vertex_count(); ++v) {
+    if (degree_[v] != 1 || surface_.on_boundary[v]) continue;
+    Branch whole = branch_from(v);
+    if (whole.halfedges.empty()) continue;
+    judge(whole);
+    found.push_back(std::move(whole));
+  }
+  std::sort(found.begin(), found.end(), [](const Branch& a, const Branch& b) {
+    return std::pair(a.worth, a.vertices.front()) < std::pair(b.worth, b.vertices.front());
+  });
+  return found;
+}
+
+void SeamSearch::exchange(double target) {
+  for (int round = 0; round < kExchanges; ++round) {
+    const EdgeMarks seams_before = seams_;
+    const std::vector<bool> anchors_before = anchored_;
+    const double cost_before = cost_of_seams_;
+    const std::vector<Branch> all = branches();
+    if (all.empty()) return;
+    const std::size_t removed = std::max<std::size_t>(1, all.size() / 4);
+    for (std::size_t i = 0; i < removed; ++i) {
+      // Two branches may end at one node, and the second then goes on.
+      for (const Index h : all[i].halfedges) mark(h, false);
+    }
+    refresh();
+    extend(target);
+    if (model_.energy() <= target && cost_of_seams_ < cost_before * (1 - 1e-9)) continue;
+    anchored_ = anchors_before;
+    take(seams_before);
+    return;
+  }
+}
+
+void SeamSearch::shrink(double target) {
+  for (;;) {
+    poll_interrupt();
+    const Branch* best = nullptr;
+    std::vector<Branch> all = branches();
+    for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+      const std::size_t half = all[i].vertices.size() / 2;
+      if (half == 0) continue;
+      Branch end;
+      end.vertices.assign(all[i].vertices.begin(), all[i].vertices.begin() + half);
+      end.halfedges.assign(all[i].halfedges.begin(), all[i].halfedges.begin() + half);
+      for (const Index h : end.halfedges) end.cost += cost_[h];
+      judge(end);
+      all.push_back(std::move(end));
+    }
+    for (const Branch& branch : all) {
+      if (branch.energy > target) continue;
+      if (best == nullptr || branch.worth < best->worth) best = &branch;
+    }
+    if (best == nullptr) return;
+    remove(*best);
+  }
+}
+
+}  // namespace beltrami

@@ -1,0 +1,72 @@
+// Where seams are worth their length, by the conformal model.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/conformal_model.h"
+#include "cut/edge_marks.h"
+#include "cut/seam_paths.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+/// Seams that grow and shrink. What they leave of a surface are the same pieces as at the start:
+/// they grow by trees, and lose branches only.
+class SeamSearch {
+ public:
+  /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
+  /// where no seam may be. Keeps references to `surface` and `cost`.
+  SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
+             EdgeMarks seams, const Work& work);
+
+  /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
+  /// by what is gained for the cost. False where nothing helps any more.
+  bool extend(double target);
+
+  /// Takes back branches that are worth less for their cost than what extend() would put in their
+  /// place, and extends to `target` again, as long as that shortens the seams.
+  void exchange(double target);
+
+  /// Takes back branches, or their ends, that are worth the least, as long as the energy of the
+  /// model stays at most `target`.
+  void shrink(double target);
+
+  double energy() const { return model_.energy(); }
+  double cost() const { return cost_of_seams_; }
+  const EdgeMarks& seams() const { return seams_; }
+  /// Per vertex, whether a path was made to it.
+  const std::vector<bool>& anchors() const { return anchored_; }
+
+  /// Takes other seams, which have been moved; their anchors are where they were.
+  void take(EdgeMarks seams);
+
+ private:
+  struct Branch {
+    std::vector<Index> halfedges, vertices;  ///< from its tip; the vertices that go with it
+    double cost = 0;
+    double energy = 0;  ///< of the model without it
+    double worth = 0;   ///< energy gained for the cost
+  };
+
+  void refresh();
+  std::vector<Index> candidates(const SeamPaths& paths) const;
+  bool extend_once();
+  void mark(Index halfedge, bool is);
+  std::vector<Branch> branches() const;
+  Branch branch_from(Index tip) const;
+  void judge(Branch& branch) const;
+  void remove(const Branch& branch);
+
+  const Surface& surface_;
+  const std::vector<double>& cost_;
+  EdgeMarks seams_;
+  std::vector<Index> degree_;  ///< per vertex: seams at it
+  std::vector<bool> anchored_;
+  ConformalModel model_;
+  double scale_;  ///< root of the area
+  double cost_of_seams_ = 0;
+};
+
+}  // namespace beltrami

@@ -1,0 +1,24 @@
+// The shortest seams with which a surface flattens to a distortion that is asked for.
+#pragma once
+
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/edge_marks.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+/// What is asked of seams.
+struct SeamTarget {
+  double energy = 2.05;  ///< mean symmetric Dirichlet energy of the maps, above 2
+};
+
+/// Marks seams that make disks of all components, so short as they are found, along which the maps
+/// have the energy asked for. All of it is decided on a coarse surface, by a model of the maps and
+/// then by maps, and carried to the fine one. `real_faces`: those after them are virtual, they
+/// weigh and cost nothing. `locked`: edges that are not to be cut where there is a way, or none.
+/// Preconditions: `topology` is the surface's; area about 1. Throws Error SOLVER.
+EdgeMarks search_seams(const Surface& surface, Index real_faces, const Topology& topology,
+                       const EdgeMarks& locked, const SeamTarget& target, const Work& work);
+
+}  // namespace beltrami
