@@ -8,6 +8,7 @@
 
 #include "abi/buffers.h"
 #include "abi/context.h"
+#include "abi/failure.h"
 #include "abi/reports.h"
 #include "abi/unwrapped.h"
 #include "atlas/atlas.h"
@@ -64,7 +65,7 @@ beltrami_atlas describe(const Unwrapped& result) {
 beltrami_chart describe(const Unwrapped& result, const ChartInfo& chart) {
   beltrami_chart report{};
   report.status = status_of(chart.outcome);
-  report.error = chart.error;
+  report.error = chart.error ? status_of(*chart.error) : BELTRAMI_OK;
   report.triangles = count(chart.faces);
   report.first_face = result.face_of(chart.first_face);
   report.area = chart.area;
@@ -97,9 +98,9 @@ void write_uvs(void* out, std::int32_t type, std::uint64_t stride, std::size_t i
 
 template <class Item>
 [[noreturn]] void refuse_index(const char* what, Item index, std::size_t size) {
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string("there is no ") + what + " " +
-                                               std::to_string(index) + ": there are " +
-                                               std::to_string(size) + ", counted from 0");
+  throw Error(Fault::kInvalidArgument, std::string("there is no ") + what + " " +
+                                           std::to_string(index) + ": there are " +
+                                           std::to_string(size) + ", counted from 0");
 }
 
 }  // namespace
@@ -135,8 +136,9 @@ beltrami_status beltrami_get_atlas_certificate(beltrami_context* context, int32_
   return get(context, [&](const Unwrapped& result) {
     beltrami::require_sized(out, "out");
     if (type != BELTRAMI_F32 && type != BELTRAMI_F64) {
-      throw beltrami::Error(BELTRAMI_E_INVALID_ARGUMENT, "the type is " + std::to_string(type) +
-                                                             ": give BELTRAMI_F32 or BELTRAMI_F64");
+      throw beltrami::Error(
+          beltrami::Fault::kInvalidArgument,
+          "the type is " + std::to_string(type) + ": give BELTRAMI_F32 or BELTRAMI_F64");
     }
     const beltrami::Atlas& atlas = result.atlas;
     beltrami_atlas_certificate report = beltrami::describe_atlas(

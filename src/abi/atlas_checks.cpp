@@ -148,8 +148,8 @@ beltrami_status beltrami_check_atlas(const beltrami_surface* surface, int32_t al
   });
   if (status < 0) {
     report = beltrami::empty_atlas_certificate();
-    report.error_element = failure.element().index;
-    report.error_element_kind = failure.element().kind;
+    report.error_element = failure.element();
+    report.error_element_kind = failure.element_kind();
   }
   beltrami::write_sized(out, report);
   return status;

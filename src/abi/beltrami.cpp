@@ -122,6 +122,7 @@ void write_uvs(const LoadedMesh& mesh, const std::vector<Vec2>& uvs, Writer& wri
 
 using beltrami::enter;
 using beltrami::Error;
+using beltrami::Fault;
 using beltrami::guarded;
 
 uint32_t beltrami_version(void) {
@@ -171,11 +172,11 @@ const char* beltrami_error_message(const beltrami_context* context) {
 }
 
 uint64_t beltrami_error_element(const beltrami_context* context) {
-  return context != nullptr ? context->failure.element().index : BELTRAMI_NO_ELEMENT;
+  return context != nullptr ? context->failure.element() : BELTRAMI_NO_ELEMENT;
 }
 
 int32_t beltrami_error_element_kind(const beltrami_context* context) {
-  return context != nullptr ? context->failure.element().kind : BELTRAMI_ELEMENT_NONE;
+  return context != nullptr ? context->failure.element_kind() : BELTRAMI_ELEMENT_NONE;
 }
 
 int32_t beltrami_option_find(const char* name) {
@@ -229,7 +230,7 @@ beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh
 
 beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes) {
   return enter(context, [&](beltrami_context& self) {
-    if (bytes == nullptr) throw Error(BELTRAMI_E_INVALID_ARGUMENT, "bytes is NULL");
+    if (bytes == nullptr) throw Error(Fault::kInvalidArgument, "bytes is NULL");
     *bytes = self.estimate_memory();
     return BELTRAMI_OK;
   });
@@ -327,7 +328,7 @@ beltrami_status beltrami_get_stage(beltrami_context* context, int32_t index, bel
     beltrami::require_sized(out, "out");
     const std::vector<beltrami::StageStatistics>& stages = self.results().statistics.stages;
     if (index < 0 || static_cast<std::size_t>(index) >= stages.size()) {
-      throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+      throw Error(Fault::kInvalidArgument,
                   "there is no stage " + std::to_string(index) + ": the last run had " +
                       std::to_string(stages.size()) + " stages, counted from 0");
     }

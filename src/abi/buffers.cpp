@@ -14,7 +14,7 @@ constexpr std::uint64_t kMaxFaces = 700'000'000;  // 3 half-edges each fit an In
 constexpr std::int64_t kGrain = 16384;
 
 [[noreturn]] void refuse(const std::string& message) {
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
+  throw Error(Fault::kInvalidArgument, message);
 }
 
 std::size_t element_size(std::int32_t type) {
@@ -92,7 +92,7 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
   const auto f = static_cast<std::size_t>(outside);
   int k = 0;
   while (in_range(outside, k)) ++k;
-  throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+  throw Error(Fault::kIndexOutOfRange,
               "face " + std::to_string(f) + " names vertex " +
                   std::to_string(reader.read<Integer>(f, k)) + ", but there are " +
                   std::to_string(vertex_count) + " vertices: indices count from 0",
@@ -138,7 +138,7 @@ beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
   if (mesh.struct_size < sizeof mesh) mesh.cancel = nullptr;  // half a pointer is none
   if (mesh.flags != 0) refuse("the field `flags` of the mesh is not 0");
   if (mesh.vertex_count == 0 || mesh.face_count == 0) {
-    throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");
+    throw Error(Fault::kEmpty, "the mesh has no vertices or no faces: there is nothing to do");
   }
   if (mesh.vertex_count > kMaxVertices || mesh.face_count > kMaxFaces) {
     refuse("the mesh has " + std::to_string(mesh.vertex_count) + " vertices and " +
@@ -175,7 +175,7 @@ std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_coun
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) {
       const auto vertex = static_cast<std::uint64_t>(original[i]);
-      throw Error(BELTRAMI_E_NON_FINITE,
+      throw Error(Fault::kNonFinite,
                   "the UV of vertex " + std::to_string(vertex) + " is infinite or not a number",
                   Element::vertex(vertex));
     }

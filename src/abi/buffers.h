@@ -40,14 +40,14 @@ template <class Struct>
 std::uint32_t require_sized(const Struct* theirs, const char* what) {
   static_assert(kFirstSize<Struct> > 0 && std::is_trivially_copyable_v<Struct>);
   if (theirs == nullptr) {
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string(what) + " is NULL");
+    throw Error(Fault::kInvalidArgument, std::string(what) + " is NULL");
   }
   std::uint32_t size = 0;
   std::memcpy(&size, theirs, sizeof size);
   if (size < kFirstSize<Struct>) {
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string("struct_size of ") + what + " is " +
-                                                 std::to_string(size) +
-                                                 ": set it to sizeof the struct");
+    throw Error(Fault::kInvalidArgument, std::string("struct_size of ") + what + " is " +
+                                             std::to_string(size) +
+                                             ": set it to sizeof the struct");
   }
   return size;
 }

@@ -60,8 +60,8 @@ beltrami_status check(Scope scope, const beltrami_mesh* mesh, const beltrami_buf
   status = guarded(failure, [&] { return judge(scope, mesh, uvs, report); });
   if (status < 0) {
     report = empty_certificate();
-    report.error_element = failure.element().index;
-    report.error_element_kind = failure.element().kind;
+    report.error_element = failure.element();
+    report.error_element_kind = failure.element_kind();
   }
   write_sized(out, report);
   return status;

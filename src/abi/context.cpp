@@ -78,7 +78,7 @@ void require_within_limit(std::uint64_t estimate, std::int64_t limit) {
   constexpr std::uint64_t kMebibyte = 1 << 20;
   const auto allowed = static_cast<std::uint64_t>(limit);
   if (limit == 0 || estimate <= allowed) return;
-  throw Error(BELTRAMI_E_OUT_OF_MEMORY,
+  throw Error(Fault::kOutOfMemory,
               "the run is estimated to need " +
                   std::to_string((estimate + kMebibyte - 1) / kMebibyte) +
                   " MiB of memory, and the option memory-limit allows " +
@@ -112,7 +112,8 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs, const Work& work,
 
 std::uint64_t beltrami_context::estimate_memory() const {
   if (!mesh) {
-    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no mesh yet: call beltrami_set_mesh");
+    throw beltrami::Error(beltrami::Fault::kInvalidState,
+                          "there is no mesh yet: call beltrami_set_mesh");
   }
   return beltrami::estimate_memory(mesh->input.disk, beltrami::chart_options(options),
                                    options.threads);
@@ -156,14 +157,16 @@ beltrami_status beltrami_context::unwrap(const beltrami_surface* surface,
 
 const beltrami::Unwrapped& beltrami_context::atlas() const {
   if (!unwrapped) {
-    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no atlas yet: call beltrami_unwrap");
+    throw beltrami::Error(beltrami::Fault::kInvalidState,
+                          "there is no atlas yet: call beltrami_unwrap");
   }
   return *unwrapped;
 }
 
 const beltrami::Flattening& beltrami_context::results() const {
   if (!flattening) {
-    throw beltrami::Error(BELTRAMI_E_INVALID_STATE, "there is no result yet: call beltrami_run");
+    throw beltrami::Error(beltrami::Fault::kInvalidState,
+                          "there is no result yet: call beltrami_run");
   }
   return *flattening;
 }

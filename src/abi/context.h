@@ -69,7 +69,7 @@ beltrami_status enter(beltrami_context* context, Body&& body) noexcept {
   if (context == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
   return guarded(context->failure, [&]() -> beltrami_status {
     if (context->running) {
-      throw Error(BELTRAMI_E_INVALID_STATE,
+      throw Error(Fault::kInvalidState,
                   "a run is under way on this context: only beltrami_cancel is possible");
     }
     return body(*context);

@@ -47,7 +47,7 @@ InputDisk read_disk(const beltrami_mesh& mesh, const Work& work) {
     positions = read_positions(mesh, input.original, work);
     input.disk = build_disk(std::move(positions), std::move(triangles.faces), work);
   } catch (const Error& error) {
-    if (error.element().kind != BELTRAMI_ELEMENT_NONE) {
+    if (error.element().kind != ElementKind::kNothing) {
       fail_in_input_numbers(mesh, input, read_positions(mesh, input.original, work), work);
     }
     throw;
@@ -64,7 +64,7 @@ InputDisk read_topology(const beltrami_mesh& mesh, const Work& work) {
     input.disk = build_disk(positions, std::move(triangles.faces), work);
   } catch (const Error& error) {
     const bool renumbered = input.original.size() != mesh.vertex_count;
-    if (renumbered && error.element().kind != BELTRAMI_ELEMENT_NONE) {
+    if (renumbered && error.element().kind != ElementKind::kNothing) {
       fail_in_input_numbers(mesh, input, positions, work);
     }
     throw;

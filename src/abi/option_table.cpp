@@ -294,14 +294,14 @@ std::string number(double value) {
 const OptionEntry& require_option(std::int32_t key, bool is_float) {
   const OptionEntry* option = find_option(key);
   if (option == nullptr) {
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT, "there is no option with key " + std::to_string(key) +
-                                                 ": keys run from 0 to " +
-                                                 std::to_string(std::size(kOptions) - 1));
+    throw Error(Fault::kInvalidArgument, "there is no option with key " + std::to_string(key) +
+                                             ": keys run from 0 to " +
+                                             std::to_string(std::size(kOptions) - 1));
   }
   if (is_float != (option->type == BELTRAMI_TYPE_FLOAT)) {
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT, std::string("the option ") + option->name +
-                                                 " is set by beltrami_set_" +
-                                                 (is_float ? "int" : "float"));
+    throw Error(Fault::kInvalidArgument, std::string("the option ") + option->name +
+                                             " is set by beltrami_set_" +
+                                             (is_float ? "int" : "float"));
   }
   return *option;
 }
@@ -317,7 +317,7 @@ const OptionEntry& require_option(std::int32_t key, bool is_float) {
     separator = ", ";
   }
   if (!option.choices.empty()) message += ")";
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
+  throw Error(Fault::kInvalidArgument, message);
 }
 
 }  // namespace

@@ -76,9 +76,9 @@ void refuse_if_set(const Options& options, std::int32_t key, const std::string& 
                    const char* instead) {
   const OptionEntry& option = *find_option(key);
   if (option.get(options) == option.get(Options{})) return;
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT, "the option " + written(option, options) +
-                                               " has no effect with " + where + ": leave it out, " +
-                                               instead);
+  throw Error(Fault::kInvalidArgument, "the option " + written(option, options) +
+                                           " has no effect with " + where + ": leave it out, " +
+                                           instead);
 }
 
 }  // namespace

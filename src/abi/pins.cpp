@@ -20,7 +20,7 @@ void require_effect(const beltrami_surface& header, const AtlasOptions& options)
                       : header.densities.data != nullptr ? "densities"
                                                          : nullptr;
   if (other == nullptr) return;
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+  throw Error(Fault::kInvalidArgument,
               std::string("pins say how large charts are, and so do ") + other + ": leave one out");
 }
 
@@ -28,13 +28,13 @@ void require_effect(const beltrami_surface& header, const AtlasOptions& options)
 void require_number(const Pin& pin, bool float32) {
   const auto corner = Element::corner(static_cast<std::uint64_t>(pin.of_caller));
   if (!pin.uv.allFinite()) {
-    throw Error(BELTRAMI_E_NON_FINITE, "the UV of " + name_of(pin) + " is infinite or not a number",
+    throw Error(Fault::kNonFinite, "the UV of " + name_of(pin) + " is infinite or not a number",
                 corner);
   }
   if (!float32) return;
   for (const double x : pin.uv) {
     if (std::abs(x) <= std::numeric_limits<float>::max() && static_cast<float>(x) == x) continue;
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+    throw Error(Fault::kInvalidArgument,
                 "the UV of " + name_of(pin) +
                     " is no single-precision number, which the option float32 asks for: round it, "
                     "or leave float32 out",
@@ -49,8 +49,8 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
   std::vector<Pin> pins;
   if (header.pin_count == 0) return pins;
   if (header.pin_count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT, "there are " + std::to_string(header.pin_count) +
-                                                 " pins: at most 2^31 - 1 are possible");
+    throw Error(Fault::kInvalidArgument, "there are " + std::to_string(header.pin_count) +
+                                             " pins: at most 2^31 - 1 are possible");
   }
   require_effect(header, options);
   const std::vector<std::uint64_t> corners =
@@ -62,10 +62,10 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
   for (std::size_t i = 0; i < corners.size(); ++i) {
     poll();
     if (corners[i] >= header.corner_count) {
-      throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                  "pin " + std::to_string(i) + " names corner " + std::to_string(corners[i]) +
-                      ", but there are " + std::to_string(header.corner_count) +
-                      " corners: they count from 0, face after face");
+      throw Error(Fault::kIndexOutOfRange, "pin " + std::to_string(i) + " names corner " +
+                                               std::to_string(corners[i]) + ", but there are " +
+                                               std::to_string(header.corner_count) +
+                                               " corners: they count from 0, face after face");
     }
     require_number({kNone,
                     0,

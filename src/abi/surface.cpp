@@ -18,7 +18,7 @@ constexpr std::uint64_t kMaxVertices = std::numeric_limits<Index>::max();
 constexpr std::uint64_t kMaxTriangles = 700'000'000;  // 3 half-edges each fit an Index
 
 [[noreturn]] void refuse(const std::string& message) {
-  throw Error(BELTRAMI_E_INVALID_ARGUMENT, message);
+  throw Error(Fault::kInvalidArgument, message);
 }
 
 bool is_given(const beltrami_buffer& buffer) {
@@ -34,7 +34,7 @@ std::vector<Index> read_ends(const beltrami_surface& header, const Work& work) {
   std::uint64_t end = 0;
   for (std::size_t f = 0; f < sizes.size(); ++f) {
     if (sizes[f] < 3 || sizes[f] > header.corner_count - end) {
-      throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+      throw Error(Fault::kInvalidArgument,
                   "face " + std::to_string(f) + " has " + std::to_string(sizes[f]) + " corners: " +
                       (sizes[f] < 3 ? "a face has 3 or more"
                                     : "with it there are more than corner_count says"),
@@ -65,7 +65,7 @@ std::vector<Index> to_vertices(const std::vector<std::uint64_t>& indices, const 
               : static_cast<std::size_t>(
                     std::upper_bound(shape.ends.begin(), shape.ends.end(), corner) -
                     shape.ends.begin());
-      throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+      throw Error(Fault::kIndexOutOfRange,
                   "face " + std::to_string(face) + " names vertex " + std::to_string(indices[c]) +
                       ", but there are " + std::to_string(vertex_count) +
                       " vertices: indices count from 0",
@@ -97,7 +97,7 @@ void require_finite_where_used(const Polygons& polygons, std::vector<Vec3>& posi
     if (positions[v].allFinite()) continue;
     if (used[v]) {
       throw Error(
-          BELTRAMI_E_NON_FINITE,
+          Fault::kNonFinite,
           "vertex " + std::to_string(v) + " has a coordinate that is infinite or not a number",
           Element::vertex(v));
     }
@@ -157,7 +157,7 @@ std::vector<double> read_densities(const beltrami_surface& header, const Work& w
       read_numbers(header.densities, header.face_count, 1, "densities", work);
   for (std::size_t f = 0; f < densities.size(); ++f) {
     if (densities[f] > 0 && std::isfinite(densities[f])) continue;
-    throw Error(BELTRAMI_E_INVALID_ARGUMENT,
+    throw Error(Fault::kInvalidArgument,
                 "the density of face " + std::to_string(f) + " is no finite number above 0",
                 Element::face(f));
   }
@@ -171,10 +171,10 @@ std::vector<std::array<Index, 2>> read_seams(const beltrami_surface& header, con
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     for (const std::uint64_t vertex : {ends[i], ends[i + 1]}) {
       if (vertex < header.vertex_count) continue;
-      throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                  "seam " + std::to_string(i / 2) + " names vertex " + std::to_string(vertex) +
-                      ", but there are " + std::to_string(header.vertex_count) +
-                      " vertices: indices count from 0");
+      throw Error(Fault::kIndexOutOfRange, "seam " + std::to_string(i / 2) + " names vertex " +
+                                               std::to_string(vertex) + ", but there are " +
+                                               std::to_string(header.vertex_count) +
+                                               " vertices: indices count from 0");
     }
     seams.push_back({static_cast<Index>(ends[i]), static_cast<Index>(ends[i + 1])});
   }
@@ -187,8 +187,7 @@ beltrami_surface read_surface_header(const beltrami_surface* theirs) {
   beltrami_surface header = read_sized(theirs, "the surface");
   if (header.flags != 0) refuse("the field `flags` of the surface is not 0");
   if (header.vertex_count == 0 || header.face_count == 0) {
-    throw Error(BELTRAMI_E_EMPTY,
-                "the surface has no vertices or no faces: there is nothing to do");
+    throw Error(Fault::kEmpty, "the surface has no vertices or no faces: there is nothing to do");
   }
   if (!is_given(header.face_sizes)) {
     if (header.corner_count != 0 && header.corner_count != 3 * header.face_count) {
@@ -240,7 +239,7 @@ std::vector<Vec2> read_corner_uvs(const beltrami_surface& header, const LoadedSu
       uvs.emplace_back(numbers[2 * static_cast<std::size_t>(c)],
                        numbers[2 * static_cast<std::size_t>(c) + 1]);
       if (uvs.back().allFinite()) continue;
-      throw Error(BELTRAMI_E_NON_FINITE,
+      throw Error(Fault::kNonFinite,
                   "a UV of face " + std::to_string(f) + " is infinite or not a number",
                   Element::face(static_cast<std::uint64_t>(f)));
     }

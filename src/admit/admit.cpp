@@ -113,7 +113,7 @@ std::vector<Triangle> faces_with_area(const std::vector<Vec3>& positions,
     ++(names_twice(faces[f]) ? admitted.counts.repeated_faces : admitted.counts.faces_without_area);
   }
   if (kept.empty()) {
-    throw Error(BELTRAMI_E_ZERO_AREA,
+    throw Error(Fault::kZeroArea,
                 "the surface has no area: every face is degenerate (check the vertex positions)");
   }
   return kept;

@@ -2,14 +2,14 @@
 // judged together. The place that knows the order of the stages.
 #pragma once
 
-#include <beltrami/beltrami.h>
-
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "admit/admit.h"
 #include "atlas/pins.h"
+#include "base/error.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
@@ -53,7 +53,7 @@ struct ChartInfo {
   bool pinned = false;
   Eigen::AlignedBox2d box;  ///< of its UVs
   Outcome outcome = Outcome::kOk;
-  beltrami_status error = BELTRAMI_OK;      ///< why it has no map, but one point, where that is so
+  std::optional<Fault> error;               ///< why it has no map, but one point, where that is so
   double symmetric_dirichlet = 0, max = 0;  ///< as those of the atlas
 };
 

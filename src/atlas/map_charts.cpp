@@ -107,7 +107,7 @@ MappedChart map_chart(const Chart& chart, const std::vector<ChartPin>& pins,
               : flattened(chart, pins, options, work);
   } catch (const Error& error) {
     map = {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
-           error.status()};
+           error.fault()};
   }
   if (!pins.empty()) map.held.assign(map.uvs.size(), false);
   for (const ChartPin& pin : pins) {
@@ -131,7 +131,7 @@ void require_memory(const DiskMesh& mesh, bool bent, const ChartOptions& options
     estimate = std::max(estimate, estimate_memory(mesh, newton, work.threads()));
   }
   if (estimate <= limit) return;
-  throw Error(BELTRAMI_E_OUT_OF_MEMORY,
+  throw Error(Fault::kOutOfMemory,
               "a chart, of " + std::to_string(mesh.face_count()) + " faces, is estimated to need " +
                   std::to_string((estimate + kMebibyte - 1) / kMebibyte) +
                   " MiB of memory, and the option memory-limit allows " +

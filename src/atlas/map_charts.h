@@ -1,12 +1,12 @@
 // One chart -> its map, and all of them side by side.
 #pragma once
 
-#include <beltrami/beltrami.h>
-
+#include <optional>
 #include <vector>
 
 #include "atlas/open.h"
 #include "atlas/pins.h"
+#include "base/error.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
@@ -18,7 +18,7 @@ struct MappedChart {
   std::vector<Vec2> uvs;  ///< one per vertex of the chart, in its unit
   Outcome outcome = Outcome::kOk;
   /// Why there is no map, where there is none: not injective then, all its UVs at one point.
-  beltrami_status error = BELTRAMI_OK;
+  std::optional<Fault> error = {};
   /// Per vertex, whether it is pinned, and lies in its place exactly; empty: the chart has no pins.
   std::vector<bool> held = {};
   double scale = 1;          ///< of a map with pins, see hold_pins; else 1

@@ -91,7 +91,7 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
                    work.part(kFilled, kOpened));
   CutSurface cut = cut_into_charts(filled.surface, marks, work.part(kOpened, 1));
   if (!cut.non_disks.empty()) {
-    throw Error(BELTRAMI_E_INTERNAL, "a chart of the cut surface is no disk, please report it");
+    throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
   }
   OpenedSurface opened;
   opened.filled_holes = filled.filled_loops;

@@ -93,7 +93,7 @@ std::string name_of(const Pin& pin) {
 }
 
 Error unmet(const Pin& pin, const std::string& why) {
-  return {BELTRAMI_E_PINS, name_of(pin) + " " + why,
+  return {Fault::kPins, name_of(pin) + " " + why,
           Element::corner(static_cast<std::uint64_t>(pin.of_caller))};
 }
 

@@ -131,7 +131,7 @@ int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_sq
   const std::vector<Vec2> shifts = shifts_of(maps, unit_square, exponent);
   const Work of_chart = maps.size() == 1 ? work : work.aside();
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
-    if (maps[c].error != BELTRAMI_OK) {
+    if (maps[c].error) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
     } else if (maps[c].pinned()) {
       round_pinned(charts[c], exponent, float32, of_chart, maps[c]);

@@ -103,7 +103,7 @@ Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std
     try {
       made = attempt(mesh, frame, way, options, work);
     } catch (const Error& error) {
-      if (error.status() != BELTRAMI_E_SOLVER) throw;
+      if (error.fault() != Fault::kSolver) throw;
       failure = error;
     }
     spent.seconds = wall_seconds() - spent.seconds;

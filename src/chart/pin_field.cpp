@@ -154,7 +154,7 @@ std::vector<Vec2> PinField::harmonic(const std::vector<Vec2>& displacements) {
       solver_ = make_spd_solver({}, work_);
       solver_->analyze(laplacian_->matrix(), laplacian_->places(mesh_.positions));
       if (!solver_->factorize(laplacian_->matrix())) {
-        throw Error(BELTRAMI_E_SOLVER, "the linear system of the pins is not definite");
+        throw Error(Fault::kSolver, "the linear system of the pins is not definite");
       }
     }
   }

@@ -36,7 +36,7 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
   const auto solver = make_spd_solver({}, work);
   solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver->factorize(laplacian.matrix())) {
-    throw Error(BELTRAMI_E_SOLVER, "the linear system of the Tutte embedding is not definite");
+    throw Error(Fault::kSolver, "the linear system of the Tutte embedding is not definite");
   }
   const DenseMatrix solution = solver->solve(rhs);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -271,7 +271,7 @@ BoundaryFirstResult flatten_boundary_first(const DiskMesh& mesh,
   // takes a second factorization, of the whole Laplacian, and lets go of the lengths.
   places -= laplacian.solve(laplacian_times(mesh, rest, metric, places));
   if (!places.allFinite()) {
-    throw Error(BELTRAMI_E_SOLVER,
+    throw Error(Fault::kSolver,
                 "boundary first flattening went out of the range of floating point: the faces of "
                 "the mesh are too degenerate; try the method cm");
   }

@@ -50,7 +50,7 @@ std::unique_ptr<SpdSolver> factorize_laplacian(MeshMatrix& laplacian,
 void refactorize_laplacian(SpdSolver& solver, MeshMatrix& laplacian) {
   poll_interrupt();
   if (factorize_shifted(solver, laplacian.matrix()) >= 0) return;
-  throw Error(BELTRAMI_E_SOLVER,
+  throw Error(Fault::kSolver,
               "the Laplacian of the fine mesh is not definite in floating point: its faces are too "
               "degenerate; try the method cm");
 }

@@ -95,8 +95,8 @@ class CholmodSolver final : public SpdSolver {
   void require_success() const {
     if (common_.status >= CHOLMOD_OK) return;
     if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw Error(BELTRAMI_E_SOLVER, "CHOLMOD could not treat the linear system (status " +
-                                       std::to_string(common_.status) + ")");
+    throw Error(Fault::kSolver, "CHOLMOD could not treat the linear system (status " +
+                                    std::to_string(common_.status) + ")");
   }
 
   mutable cholmod_common common_;

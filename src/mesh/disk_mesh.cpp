@@ -23,7 +23,7 @@ void require_one_component(const Surface& surface, const Work& work) {
   const auto outside =
       parallel_find(work, size_of(least), kGrain, [&](std::int64_t f) { return least[f] != 0; });
   if (outside == size_of(least)) return;
-  throw Error(BELTRAMI_E_COMPONENTS,
+  throw Error(Fault::kComponents,
               "face " + std::to_string(outside) +
                   " is not connected to face 0: flatten each component on its own",
               Element::face(outside));
@@ -33,7 +33,7 @@ void require_one_component(const Surface& surface, const Work& work) {
 void trace_boundary(DiskMesh& mesh, const Work& work) {
   const BoundaryLoops loops = boundary_loops(mesh, work);
   if (loops.count() == 0) {
-    throw Error(BELTRAMI_E_CLOSED,
+    throw Error(Fault::kClosed,
                 "the surface is closed, it has no boundary: cut it open along a seam first");
   }
   mesh.boundary.reserve(loops.start[1]);
@@ -45,7 +45,7 @@ void trace_boundary(DiskMesh& mesh, const Work& work) {
       other = std::min(other, mesh.origin(loops.halfedge[i]));
     }
     throw Error(
-        BELTRAMI_E_BOUNDARIES,
+        Fault::kBoundaries,
         "vertex " + std::to_string(other) +
             " lies on a second boundary loop: fill the hole, or cut from it to the boundary",
         Element::vertex(other));
@@ -53,8 +53,8 @@ void trace_boundary(DiskMesh& mesh, const Work& work) {
   const std::int64_t edges = edge_count(mesh.face_count(), size_of(mesh.boundary));
   const std::int64_t euler = mesh.vertex_count() - edges + mesh.face_count();
   if (euler != 1) {
-    throw Error(BELTRAMI_E_GENUS, "the surface has " + std::to_string((1 - euler) / 2) +
-                                      " handle(s), genus above 0: cut them open first");
+    throw Error(Fault::kGenus, "the surface has " + std::to_string((1 - euler) / 2) +
+                                   " handle(s), genus above 0: cut them open first");
   }
 }
 
@@ -132,7 +132,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
   // The extent first, so that the area of a mesh of any unit neither under- nor overflows.
   const double extent = (0.5 * high - 0.5 * low).maxCoeff();
   if (!(extent > 0)) {
-    throw Error(BELTRAMI_E_ZERO_AREA, "all vertices coincide: the surface has no area");
+    throw Error(Fault::kZeroArea, "all vertices coincide: the surface has no area");
   }
   const auto for_each_position = [&](const auto& change) {
     parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -150,7 +150,7 @@ Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle
   rescale(-std::ilogb(extent));
   const double area = total_area(positions, faces, work);
   if (!(area > 0)) {
-    throw Error(BELTRAMI_E_ZERO_AREA,
+    throw Error(Fault::kZeroArea,
                 "the surface has no area: every face is degenerate (check the vertex positions)");
   }
   // Nearest power of two to 1/sqrt(area).

@@ -46,7 +46,7 @@ std::string quoted(Index index) {
       }
       const std::string edge = "the edge " + quoted(from) + "-" + quoted(to);
       if (opposite != kNone) {
-        throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
+        throw Error(Fault::kNonManifoldEdge,
                     "face " + quoted(h / 3) + " is at least the third on " + edge +
                         ": split the surface there, so that no edge has more than two faces",
                     Element::face(h / 3));
@@ -58,18 +58,18 @@ std::string quoted(Index index) {
             const auto [a, b] = ends_of(faces, g);
             return std::max(a, b) == larger;
           })) {
-        throw Error(BELTRAMI_E_NON_MANIFOLD_EDGE,
+        throw Error(Fault::kNonManifoldEdge,
                     "more than two faces, " + quoted(h / 3) + " among them, share " + edge +
                         ": split the surface there",
                     Element::face(h / 3));
       }
-      throw Error(BELTRAMI_E_ORIENTATION,
+      throw Error(Fault::kOrientation,
                   "faces " + quoted(same / 3) + " and " + quoted(h / 3) + " run along " + edge +
                       " in the same direction: orient all faces alike (or remove a duplicate)",
                   Element::face(h / 3));
     }
   }
-  throw Error(BELTRAMI_E_INTERNAL, "half-edges could not be paired, please report it");
+  throw Error(Fault::kInternal, "half-edges could not be paired, please report it");
 }
 
 std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
@@ -134,7 +134,7 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, const W
   for (Index h = 0; h < size_of(surface.twin); ++h) ++valence[surface.origin(h)];
   Index v = 0;
   while (fan(v) == valence[v]) ++v;
-  throw Error(BELTRAMI_E_NON_MANIFOLD_VERTEX,
+  throw Error(Fault::kNonManifoldVertex,
               "the faces around vertex " + quoted(v) +
                   " form more than one fan: duplicate the vertex, one copy for each fan",
               Element::vertex(v));
@@ -162,7 +162,7 @@ HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& 
 void validate_indices(Index vertex_count, const std::vector<Triangle>& faces,
                       RepeatedVertices repeated, const Work& work) {
   if (vertex_count == 0 || faces.empty()) {
-    throw Error(BELTRAMI_E_EMPTY, "the mesh has no vertices or no faces: there is nothing to do");
+    throw Error(Fault::kEmpty, "the mesh has no vertices or no faces: there is nothing to do");
   }
   const auto in_range = [&](Index v) { return v >= 0 && v < vertex_count; };
   const auto defect = parallel_find(work, size_of(faces), kGrain, [&](std::int64_t f) {
@@ -174,12 +174,12 @@ void validate_indices(Index vertex_count, const std::vector<Triangle>& faces,
   const auto f = static_cast<Index>(defect);
   for (const Index v : faces[f]) {
     if (in_range(v)) continue;
-    throw Error(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+    throw Error(Fault::kIndexOutOfRange,
                 "face " + quoted(f) + " names vertex " + quoted(v) + " of " + quoted(vertex_count) +
                     ": indices count from 0",
                 Element::face(f));
   }
-  throw Error(BELTRAMI_E_REPEATED_VERTEX,
+  throw Error(Fault::kRepeatedVertex,
               "face " + quoted(f) + " names one vertex twice: remove the face", Element::face(f));
 }
 
@@ -188,7 +188,7 @@ void validate_positions(const std::vector<Vec3>& positions, const Work& work) {
                                     [&](std::int64_t v) { return !positions[v].allFinite(); });
   if (defect == size_of(positions)) return;
   const auto v = static_cast<Index>(defect);
-  throw Error(BELTRAMI_E_NON_FINITE,
+  throw Error(Fault::kNonFinite,
               "vertex " + quoted(v) + " has a coordinate that is infinite or not a number",
               Element::vertex(v));
 }

@@ -171,7 +171,7 @@ std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& 
     glue_ring(ring.faces, mesh.boundary, size_of(uvs), faces);
     vertices += ring.points.size() - polygon.size();
   } catch (const Error& error) {
-    if (error.status() != BELTRAMI_E_INTERNAL) throw;
+    if (error.fault() != Fault::kInternal) throw;
     return std::nullopt;
   }
   return build_disk(std::vector<Vec3>(vertices, Vec3::Zero()), std::move(faces), work);

@@ -56,7 +56,7 @@ bool lexicographically_less(const Vec2& a, const Vec2& b) {
 }
 
 void fail_ring(const std::string& sentence) {
-  throw Error(BELTRAMI_E_INTERNAL, "The scaffold cannot be triangulated: " + sentence);
+  throw Error(Fault::kInternal, "The scaffold cannot be triangulated: " + sentence);
 }
 
 std::vector<Vec2> ring_points(const std::vector<Vec2>& inner, const std::vector<Vec2>& outer) {

@@ -22,7 +22,7 @@ struct RingTriangulation {
 /// exact arithmetic, every polygon edge is an edge of exactly one face, and there are inner.size()
 /// + outer.size() faces. The triangulation is unique: of four points on one circle the diagonal
 /// through the lexicographically smallest is taken. O(n log n) expected, apart from adversarial
-/// input. Throws Error(BELTRAMI_E_INTERNAL) if the polygons are not as described.
+/// input. Throws Error INTERNAL if the polygons are not as described.
 RingTriangulation triangulate_ring(const std::vector<Vec2>& inner, const std::vector<Vec2>& outer);
 
 /// "own" or "cgal": the back end is chosen when the library is built

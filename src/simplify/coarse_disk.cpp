@@ -51,7 +51,7 @@ CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
     coarse.mesh = build_disk(std::move(positions), std::move(faces), work);
   } catch (const Error& error) {
     throw Error(
-        BELTRAMI_E_INTERNAL,
+        Fault::kInternal,
         std::string("the simplified surface is not a disk, please report it: ") + error.what());
   }
   return coarse;

@@ -107,7 +107,7 @@ Decimated::Decimated(const DiskMesh& fine, const Work& work)
     poll_interrupt();
     for (const Index v : face) ++valence_[v];
     if (!add_face(VertexHandle(face[0]), VertexHandle(face[1]), VertexHandle(face[2])).is_valid()) {
-      throw Error(BELTRAMI_E_INTERNAL, "OpenMesh takes a face for non-manifold, please report it");
+      throw Error(Fault::kInternal, "OpenMesh takes a face for non-manifold, please report it");
     }
   }
 }

@@ -108,22 +108,22 @@ TEST(Admit, KnowsAreaAtAnyScale) {
 }
 
 TEST(Admit, RefusesWhatIsNoMesh) {
-  const auto status_of = [](const TriangleList& mesh) -> beltrami_status {
+  const auto fault_of = [](const TriangleList& mesh) -> std::optional<Fault> {
     try {
       admitted(mesh);
     } catch (const Error& error) {
-      return error.status();
+      return error.fault();
     }
-    return BELTRAMI_OK;
+    return std::nullopt;
   };
-  EXPECT_EQ(status_of({}), BELTRAMI_E_EMPTY);
+  EXPECT_EQ(fault_of({}), Fault::kEmpty);
   TriangleList mesh = meshes::quad();
   mesh.faces[1] = {0, 0, 4};
-  EXPECT_EQ(status_of(mesh), BELTRAMI_E_INDEX_OUT_OF_RANGE);
+  EXPECT_EQ(fault_of(mesh), Fault::kIndexOutOfRange);
   mesh.faces = {{0, 0, 1}};
-  EXPECT_EQ(status_of(mesh), BELTRAMI_E_ZERO_AREA);
+  EXPECT_EQ(fault_of(mesh), Fault::kZeroArea);
   mesh.positions[3].x() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(status_of(mesh), BELTRAMI_E_NON_FINITE);
+  EXPECT_EQ(fault_of(mesh), Fault::kNonFinite);
 }
 
 TEST(Admit, TurnsTheFewerFacesOver) {

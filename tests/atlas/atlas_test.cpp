@@ -279,7 +279,7 @@ TEST(Unwrap, RefusesWhatHasNoArea) {
     unwrapped(mesh);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.status(), BELTRAMI_E_ZERO_AREA);
+    EXPECT_EQ(error.fault(), Fault::kZeroArea);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "exact/certificate.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
@@ -44,7 +45,7 @@ TEST(MapCharts, KeepsAFailureToItsChart) {
     ASSERT_EQ(maps.size(), 3);
     expect_injective(charts[0], maps[0]);
     expect_injective(charts[2], maps[2]);
-    EXPECT_EQ(maps[1].error, BELTRAMI_E_ZERO_AREA);
+    EXPECT_EQ(maps[1].error, Fault::kZeroArea);
     EXPECT_EQ(maps[1].outcome, Outcome::kNotInjective);
     EXPECT_EQ(maps[1].uvs, std::vector<Vec2>(charts[1].chart.mesh.positions.size(), Vec2::Zero()));
   }

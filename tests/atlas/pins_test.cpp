@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,7 +53,7 @@ void expect_met(const Atlas& atlas, const std::vector<Pin>& pins) {
 }
 
 struct Refusal {
-  beltrami_status status = BELTRAMI_OK;
+  std::optional<Fault> fault = {};
   Element element = {};
   std::string message = {};
 };
@@ -61,7 +62,7 @@ Refusal refusal(const TriangleList& mesh, const std::vector<Pin>& pins) {
   try {
     unwrapped(mesh, pins);
   } catch (const Error& error) {
-    return {error.status(), error.element(), error.what()};
+    return {error.fault(), error.element(), error.what()};
   }
   return {};
 }
@@ -70,8 +71,8 @@ Refusal refusal(const TriangleList& mesh, const std::vector<Pin>& pins) {
 void expect_refused(const TriangleList& mesh, const std::vector<Pin>& pins, Index first,
                     const std::string& why) {
   const Refusal found = refusal(mesh, pins);
-  EXPECT_EQ(found.status, BELTRAMI_E_PINS) << found.message;
-  EXPECT_EQ(found.element.kind, BELTRAMI_ELEMENT_CORNER);
+  EXPECT_EQ(found.fault, Fault::kPins) << found.message;
+  EXPECT_EQ(found.element.kind, ElementKind::kCorner);
   const auto corner = static_cast<std::uint64_t>(pins[first].of_caller);
   EXPECT_EQ(found.element.index, corner) << found.message;
   EXPECT_NE(found.message.find("pin " + std::to_string(first) + " (corner "), std::string::npos)
@@ -365,7 +366,7 @@ TEST(Pins, CannotRunClockwise) {
   const TriangleList mesh = meshes::bumps(6, 6);
   const auto pins = on_circle(mesh, 3, -1);
   // Faces in the corners have three pins: the first of them tells already.
-  EXPECT_EQ(refusal(mesh, pins).status, BELTRAMI_E_PINS);
+  EXPECT_EQ(refusal(mesh, pins).fault, Fault::kPins);
   const TriangleList fan = meshes::fan(7);
   const auto around = on_circle(fan, 3, -1);
   expect_refused(fan, around, size_of(around) - 1, "clockwise");
@@ -396,7 +397,7 @@ TEST(Pins, OfAFanHaveTheirOrder) {
   pin_vertex(mesh, 0, {5, 5}, pins);
   pin_vertex(mesh, loop[4], {-1, 2}, pins);
   const Refusal found = refusal(mesh, pins);
-  EXPECT_EQ(found.status, BELTRAMI_E_PINS);
+  EXPECT_EQ(found.fault, Fault::kPins);
   EXPECT_NE(found.message.find("pin 3"), std::string::npos) << found.message;
 }
 

@@ -108,7 +108,7 @@ TEST(Attempts, KeepTheOneWithTheFewestFaultsWholeWhereNoneIsRight) {
 TEST(Attempts, PassOverWaysThatFailAndEndWithTheLastErrorWhereAllDo) {
   const auto [disk, frame] = flat_grid();
   const Way failing{
-      [](const Work&) -> ChartMap { throw Error(BELTRAMI_E_SOLVER, "take another method"); }};
+      [](const Work&) -> ChartMap { throw Error(Fault::kSolver, "take another method"); }};
   const Way good{[&disk = disk](const Work&) { return isometry(disk); }};
   EXPECT_EQ(try_in_turn(disk, frame, {failing, good}, {}, Work()).best.broken, 0);
   EXPECT_THROW(try_in_turn(disk, frame, {failing, failing}, {}, Work()), Error);

@@ -286,7 +286,7 @@ TEST(FlattenReduced, RefusesMoreBridgesThanDenseAlgebraServes) {
     flatten(problem);
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_EQ(error.status(), BELTRAMI_E_SOLVER);
+    EXPECT_EQ(error.fault(), Fault::kSolver);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
 
 #include "base/error.h"
@@ -86,19 +87,19 @@ TEST(Surface, AnUnusedVertexIsInNoComponent) {
 }
 
 TEST(Surface, RefusesWhatIsNoOrientedManifold) {
-  const auto status_of = [](const TriangleList& mesh) -> beltrami_status {
+  const auto fault_of = [](const TriangleList& mesh) -> std::optional<Fault> {
     try {
       built(mesh);
     } catch (const Error& error) {
-      return error.status();
+      return error.fault();
     }
-    return BELTRAMI_OK;
+    return std::nullopt;
   };
-  EXPECT_EQ(status_of(meshes::three_on_an_edge()), BELTRAMI_E_NON_MANIFOLD_EDGE);
-  EXPECT_EQ(status_of(meshes::against_each_other()), BELTRAMI_E_ORIENTATION);
-  EXPECT_EQ(status_of(meshes::bowtie()), BELTRAMI_E_NON_MANIFOLD_VERTEX);
-  EXPECT_EQ(status_of(meshes::moebius(5)), BELTRAMI_E_ORIENTATION);
-  EXPECT_EQ(status_of({}), BELTRAMI_E_EMPTY);
+  EXPECT_EQ(fault_of(meshes::three_on_an_edge()), Fault::kNonManifoldEdge);
+  EXPECT_EQ(fault_of(meshes::against_each_other()), Fault::kOrientation);
+  EXPECT_EQ(fault_of(meshes::bowtie()), Fault::kNonManifoldVertex);
+  EXPECT_EQ(fault_of(meshes::moebius(5)), Fault::kOrientation);
+  EXPECT_EQ(fault_of({}), Fault::kEmpty);
 }
 
 TEST(Surface, IsTheSameAtAnyThreadCount) {

@@ -301,7 +301,7 @@ void expect_error(const Polygon& inner, const Polygon& outer) {
     triangulate_ring(inner, outer);
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
-    EXPECT_EQ(error.status(), BELTRAMI_E_INTERNAL);
+    EXPECT_EQ(error.fault(), Fault::kInternal);
     EXPECT_EQ(std::string(error.what()).back(), '.');
   }
 }

@@ -73,9 +73,9 @@ ReducedResult flatten_reduced(const DiskMesh& mesh, const std::vector<RestTriang
   work.report(0);
   MetaVertices metas = choose_meta_vertices(mesh, work);
   if (metas.count() > kMostMetas) {
-    throw Error(BELTRAMI_E_SOLVER, "the boundary has " + std::to_string(metas.count()) +
-                                       " vertices at bridges and between them: too many for a "
-                                       "reduced flattening; try another");
+    throw Error(Fault::kSolver, "the boundary has " + std::to_string(metas.count()) +
+                                    " vertices at bridges and between them: too many for a "
+                                    "reduced flattening; try another");
   }
   double area = 0;
   for (const RestTriangle& r : rest) area += r.area();

@@ -89,7 +89,7 @@ class NativeSolver final : public SpdSolver {
       if (!iterate(b, x, columns)) {
         if (!double_.factorize(symbolic_, pattern_, values_.data(), work_)) {
           double_.clear();
-          throw Error(BELTRAMI_E_SOLVER, "a linear system is not definite in floating point");
+          throw Error(Fault::kSolver, "a linear system is not definite in floating point");
         }
         single_.clear();
         x = b;
