@@ -27,6 +27,14 @@ BREAKS = [
         "layers.py", "program/commands/report.cpp", '#include "exact/orientation.h"',
         "by its header alone",
     ),
+    (
+        "layers.py", "src/base/error.h", "#include <beltrami/beltrami.h>",
+        "src/base/error.h:1: only 'abi' may include",
+    ),
+    (
+        "layers.py", "src/atlas/atlas.cpp", '#  include "beltrami/beltrami.h"',
+        "src/atlas/atlas.cpp:1: only 'abi' may include",
+    ),
     ("layers.py", "src/energy/density.h", '#include "energy/energy.h"', "a circle: src/energy/"),
     (
         "layers.py", "bindings/python/src/beltrami/_errors.py", "from . import _library",

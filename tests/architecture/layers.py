@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Refuses an include that goes up, and circles of files, in C++, Python and Rust.
+"""Refuses an include that goes up or leads out, and circles of files, in C++, Python and Rust.
 
     layers.py [ROOT]
 
@@ -24,6 +24,9 @@ LIBRARY = [
     {"atlas"},
     {"abi"},
 ]
+# In the library it alone knows the public header: statuses and the numbers of choices end there.
+DOOR = "abi"
+PUBLIC = "beltrami/beltrami.h"
 # The program sees the library through the public header alone.
 PROGRAM = [{"process"}, {"files"}, {"picture"}, {"commands"}, {"main.cpp"}]
 TREES = {"src": LIBRARY, "program": PROGRAM}
@@ -113,6 +116,20 @@ def upward(graph: Graph) -> list[str]:
     return found
 
 
+def past_the_door(root: pathlib.Path) -> list[str]:
+    """Return a sentence for every include of the public header below the door."""
+    found = []
+    for file in sorted((root / "src").rglob("*")):
+        name = str(file.relative_to(root))
+        if file.suffix not in (".h", ".cpp") or room_of(name)[1] == DOOR:
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line)
+            if match and match[1].endswith(PUBLIC):
+                found.append(f"{name}:{number}: only '{DOOR}' may include <{PUBLIC}>")
+    return found
+
+
 def circles(graph: Graph) -> list[str]:
     """Return a sentence for a circle, found depth first, or nothing."""
     done: set[str] = set()
@@ -142,7 +159,7 @@ def main() -> int:
     """Print what is refused; 1 if anything is."""
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     sources = cpp_graph(root)
-    found = upward(sources)
+    found = upward(sources) + past_the_door(root)
     for graph in (sources, python_graph(root), rust_graph(root)):
         if not graph:
             found.append(f"{root}: no sources here")
