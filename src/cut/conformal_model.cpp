@@ -82,7 +82,7 @@ void ConformalModel::pin(const std::vector<bool>& pinned) {
   }
   poll_interrupt();
   if (factorize_shifted(*solver_, held) < 0) {
-    throw Error(BELTRAMI_E_SOLVER, "the Laplacian of the coarse surface is not definite");
+    throw Error(Fault::kSolver, "the Laplacian of the coarse surface is not definite");
   }
   const Eigen::VectorXd u = solver_->solve(force);
   u_.assign(u.begin(), u.end());
