@@ -24,7 +24,16 @@ namespace {
 
 constexpr std::int64_t kGrain = 16384;
 // Where the stages end in the progress.
-constexpr double kAdmitted = 0.04, kCut = 0.1, kMapped = 0.9, kPlaced = 0.95;
+constexpr double kAdmitted = 0.04, kMapped = 0.9, kPlaced = 0.95;
+constexpr double kCut = 0.15;      // of opening and mapping
+constexpr double kFirstTry = 0.6;  // at a target that may be missed
+
+/// Missed by more, a target is worth a second try;
+constexpr double kMissed = 1e-4;
+/// which aims lower by so many times that,
+constexpr double kMoreThanMissed = 1.1;
+/// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
+constexpr double kLeastAim = 0.3;
 
 bool is_disk(const Admitted& admitted) {
   const std::vector<Component>& components = admitted.topology.components;
@@ -261,6 +270,61 @@ void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& a
       "place without folding a face");
 }
 
+/// Charts and their maps.
+struct Mapped {
+  OpenedSurface opened;
+  AssignedPins pins;
+  std::vector<MappedChart> maps;
+  double energy = 0;
+};
+
+/// Opens the surface and flattens its charts, as the stages "cut" and "flatten".
+Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
+                    const std::optional<SeamTarget>& target, const AtlasOptions& options,
+                    const Work& work, std::vector<StageStatistics>& stages) {
+  Mapped mapped;
+  OpenedSurface& opened = mapped.opened;
+  run_stage("cut", work.part(0, kCut), stages, [&](StageStatistics&, const Work& inner) {
+    opened = open_surface(admitted, input.cuts, options.fill_limit,
+                          {options.admit.polygons, options.diagonals}, target, inner);
+  });
+  mapped.pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
+  require_no_conflict(opened.charts, mapped.pins, input.pins);
+  run_stage("flatten", work.part(kCut, 1), stages, [&](StageStatistics&, const Work& inner) {
+    mapped.maps = map_charts(opened.charts, mapped.pins, options.chart, inner);
+    require_met(mapped.maps, input.pins);
+    std::vector<ChartInfo> charts(opened.charts.size());
+    mapped.energy = measure_charts(opened.charts, mapped.maps, charts, inner).symmetric_dirichlet;
+  });
+  return mapped;
+}
+
+/// The target at which coarse maps would leave fine ones the energy that is asked for, if what
+/// these have more stays; none where a cut cannot bring it.
+std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const Mapped& mapped) {
+  const double more = mapped.energy - mapped.opened.predicted_energy;
+  SeamTarget lower = target;
+  lower.energy = target.energy - kMoreThanMissed * more;
+  if (!(lower.energy >= 2 + kLeastAim * (target.energy - 2))) return std::nullopt;
+  return lower;
+}
+
+/// Where fine maps miss the target that coarse ones met, once more with a lower one.
+Mapped open_and_map_to_target(const AtlasInput& input, const Admitted& admitted, int exponent,
+                              const AtlasOptions& options, const Work& work,
+                              std::vector<StageStatistics>& stages) {
+  const auto run = [&](const std::optional<SeamTarget>& target, const Work& part) {
+    return open_and_map(input, admitted, exponent, target, options, part, stages);
+  };
+  if (!options.target) return run(options.target, work);
+  Mapped mapped = run(options.target, work.part(0, kFirstTry));
+  if (mapped.energy <= options.target->energy + kMissed) return mapped;
+  const std::optional<SeamTarget> lower = aimed_lower(*options.target, mapped);
+  if (!lower || work.out_of_time()) return mapped;
+  Mapped again = run(lower, work.part(kFirstTry, 1));
+  return again.energy < mapped.energy ? std::move(again) : std::move(mapped);
+}
+
 }  // namespace
 
 std::vector<Triangle> oriented_faces(const Atlas& atlas) {
@@ -296,25 +360,17 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     admitted = admitted_surface(input.positions, input.faces, options, inner);
     exponent = bring_to_unit(admitted.surface, inner);
   });
-  OpenedSurface opened;
-  stage("cut", kAdmitted, kCut, [&](const Work& inner) {
-    opened = open_surface(admitted, input.cuts, options.fill_limit,
-                          {options.admit.polygons, options.diagonals}, inner);
-  });
-  const AssignedPins pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
-  require_no_conflict(opened.charts, pins, input.pins);
-  std::vector<MappedChart> maps;
-  stage("flatten", kCut, kMapped, [&](const Work& inner) {
-    maps = map_charts(opened.charts, pins, options.chart, inner);
-    require_met(maps, input.pins);
-  });
+  Mapped mapped = open_and_map_to_target(input, admitted, exponent, options,
+                                         work.part(kAdmitted, kMapped), atlas.stages);
+  const OpenedSurface& opened = mapped.opened;
+  std::vector<MappedChart>& maps = mapped.maps;
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
     const std::vector<double> scales =
         scale_by_density(input.densities, admitted, opened.charts, maps);
     numbers.exponent =
         place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
-    assemble(input, admitted, opened, pins.aside, maps, scales, inner, atlas);
+    assemble(input, admitted, opened, mapped.pins.aside, maps, scales, inner, atlas);
   });
   stage("certify", kPlaced, 1,
         [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });

@@ -16,6 +16,7 @@
 #include "chart/flattening.h"
 #include "chart/options.h"
 #include "cut/given.h"
+#include "cut/search.h"
 #include "exact/atlas_certificate.h"
 
 namespace beltrami {
@@ -39,7 +40,9 @@ struct AtlasOptions {
   bool keep_disk = true;
   /// Boundary loops no longer than so many roots of their component's area are filled.
   double fill_limit = 0.5;
-  ChartOptions chart = {};   ///< of every chart, but for what follows
+  std::optional<SeamTarget> target = {};  ///< seams are searched for it; none: short ones open what
+                                          ///< is no disk
+  ChartOptions chart = {};                ///< of every chart, but for what follows
   bool unit_square = false;  ///< scale the atlas by a power of two into the unit square
   bool float32 = false;      ///< deliver single-precision numbers
 };

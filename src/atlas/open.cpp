@@ -71,7 +71,8 @@ EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
 }  // namespace
 
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           const PolygonParts& polygons, const Work& work) {
+                           const PolygonParts& polygons, const std::optional<SeamTarget>& target,
+                           const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {
@@ -86,14 +87,22 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
       fill_holes(std::move(parted.surface), topology, fill_limit, work.part(kParted, kFilled));
   if (filled.filled_loops > 0) topology = topology_of(filled.surface, work);
 
-  const EdgeMarks marks =
-      open_minimal(filled.surface, topology, locked_edges(filled, admitted, polygons),
-                   work.part(kFilled, kOpened));
-  CutSurface cut = cut_into_charts(filled.surface, marks, work.part(kOpened, 1));
+  const EdgeMarks locked = locked_edges(filled, admitted, polygons);
+  OpenedSurface opened;
+  CutSurface cut;
+  if (target) {
+    const SearchedSeams found = search_seams(filled.surface, filled.real_faces, topology, locked,
+                                             *target, work.part(kFilled, kOpened));
+    opened.predicted_energy = found.energy;
+    cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
+  } else {
+    const EdgeMarks marks =
+        open_minimal(filled.surface, topology, locked, work.part(kFilled, kOpened));
+    cut = cut_into_charts(filled.surface, marks, work.part(kOpened, 1));
+  }
   if (!cut.non_disks.empty()) {
     throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
   }
-  OpenedSurface opened;
   opened.filled_holes = filled.filled_loops;
   for (Chart& chart : cut.charts) {
     const auto first_virtual =

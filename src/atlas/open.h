@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/given.h"
+#include "cut/search.h"
 #include "mesh/chart.h"
 
 namespace beltrami {
@@ -23,6 +25,7 @@ struct AtlasChart {
 struct OpenedSurface {
   std::vector<AtlasChart> charts;  ///< by their least face
   Index filled_holes = 0;
+  double predicted_energy = 2;  ///< of seams that were searched
 };
 
 /// Which faces of the input are parts of polygons, and where.
@@ -33,9 +36,11 @@ struct PolygonParts {
 };
 
 /// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
-/// the root of their component's area, and cuts what is no disk then along a short cut graph.
-/// No cut divides a polygon, if there is a way.
+/// the root of their component's area, and cuts what there is then along the seams that are
+/// searched for `target`, or without one what is no disk along a short cut graph. No cut divides a
+/// polygon, if there is a way.
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           const PolygonParts& polygons, const Work& work);
+                           const PolygonParts& polygons, const std::optional<SeamTarget>& target,
+                           const Work& work);
 
 }  // namespace beltrami

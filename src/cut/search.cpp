@@ -153,12 +153,12 @@ EdgeMarks carried(const Coarse& coarse, const Surface& fine, const Attempt& foun
 
 }  // namespace
 
-EdgeMarks search_seams(const Surface& surface, Index real_faces, const Topology& topology,
-                       const EdgeMarks& locked, const SeamTarget& target, const Work& work) {
+SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
+                           const EdgeMarks& locked, const SeamTarget& target, const Work& work) {
   const Coarse coarse = coarsen(surface, real_faces, topology, locked, work.part(0, 0.3));
   Attempt found = find(coarse, target, work.part(0.3, 0.9));
-  if (coarse.fine_vertex.empty()) return std::move(found.seams);
-  return carried(coarse, surface, found);
+  if (coarse.fine_vertex.empty()) return {std::move(found.seams), found.energy};
+  return {carried(coarse, surface, found), found.energy};
 }
 
 }  // namespace beltrami

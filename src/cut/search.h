@@ -8,9 +8,18 @@
 
 namespace beltrami {
 
-/// What is asked of seams.
+/// What is asked of seams. The shortest are sought that meet all of it; where that cannot be, those
+/// that come near.
 struct SeamTarget {
-  double energy = 2.05;  ///< mean symmetric Dirichlet energy of the maps, above 2
+  double energy = 2.05;    ///< mean symmetric Dirichlet energy of the maps, above 2
+  double p99 = 0;          ///< that exceeded on 1% of the area; 0: any
+  Index max_charts = 0;    ///< charts parted for their overlaps are no more, if there is a way; 0: any
+  double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
+};
+
+struct SearchedSeams {
+  EdgeMarks seams;    ///< on the surface given
+  double energy = 2;  ///< of the coarse maps along them
 };
 
 /// Marks seams that make disks of all components, so short as they are found, along which the maps
@@ -18,7 +27,7 @@ struct SeamTarget {
 /// then by maps, and carried to the fine one. `real_faces`: those after them are virtual, they
 /// weigh and cost nothing. `locked`: edges that are not to be cut where there is a way, or none.
 /// Preconditions: `topology` is the surface's; area about 1. Throws Error SOLVER.
-EdgeMarks search_seams(const Surface& surface, Index real_faces, const Topology& topology,
-                       const EdgeMarks& locked, const SeamTarget& target, const Work& work);
+SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
+                           const EdgeMarks& locked, const SeamTarget& target, const Work& work);
 
 }  // namespace beltrami
