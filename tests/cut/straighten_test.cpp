@@ -1,0 +1,346 @@
+// Seams that come to lie at cheaper places and part the same.
+#include "cut/straighten.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/interrupt.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
+#include "cut/open_minimal.h"
+#include "mesh/surface.h"
+#include "simplify/history.h"
+#include "simplify/simplify.h"
+#include "support/cuts.h"
+#include "support/meshes.h"
+#include "support/polls.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::random_below;
+using meshes::TriangleList;
+
+Surface built(const TriangleList& mesh) {
+  return build_surface(mesh.positions, mesh.faces, Work(1));
+}
+
+double length(const Surface& surface, Index h) {
+  return (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
+}
+
+std::vector<double> lengths(const Surface& surface) {
+  std::vector<double> cost(surface.twin.size());
+  for (Index h = 0; h < size_of(cost); ++h) cost[h] = length(surface, h);
+  return cost;
+}
+
+/// From a hundredth to one, so that detours pay.
+std::vector<double> random_cost(const Surface& surface, std::mt19937_64& generator) {
+  std::vector<double> cost(surface.twin.size());
+  for (Index h = 0; h < size_of(cost); ++h) {
+    const double value = (1 + random_below(generator, 100)) / 100.0;
+    if (surface.edge(h) != h) continue;
+    cost[h] = value;
+    if (surface.twin[h] != kNone) cost[surface.twin[h]] = value;
+  }
+  return cost;
+}
+
+double total(const Surface& surface, const EdgeMarks& marks, const std::vector<double>& cost) {
+  double sum = 0;
+  for (Index h = 0; h < size_of(cost); ++h) {
+    if (marks[h] && surface.edge(h) == h) sum += cost[h];
+  }
+  return sum;
+}
+
+std::vector<Index> degrees(const Surface& surface, const EdgeMarks& marks) {
+  std::vector<Index> degree(surface.positions.size(), 0);
+  for (Index h = 0; h < size_of(surface.twin); ++h) {
+    if (!marks[h] || surface.edge(h) != h) continue;
+    ++degree[surface.origin(h)];
+    ++degree[surface.target(h)];
+  }
+  return degree;
+}
+
+/// What a cut leaves: per piece its loops and handles, in an order of their own.
+std::vector<std::array<Index, 2>> pieces(const Surface& surface, const EdgeMarks& marks) {
+  const CutSurface cut = cut_into_charts(surface, marks, Work(1));
+  std::vector<std::array<Index, 2>> shapes(cut.charts.size(), {1, 0});
+  for (const NonDisk& piece : cut.non_disks) shapes.push_back({piece.loops, piece.genus});
+  std::sort(shapes.begin(), shapes.end());
+  return shapes;
+}
+
+/// What pieces meet at: how many vertices have one seam, how many three, and so on.
+std::vector<Index> counts_of_degrees(const Surface& surface, const EdgeMarks& marks) {
+  std::vector<Index> counts;
+  for (const Index degree : degrees(surface, marks)) {
+    if (degree == 0 || degree == 2) continue;
+    counts.resize(std::max<std::size_t>(counts.size(), degree + 1), 0);
+    ++counts[degree];
+  }
+  return counts;
+}
+
+TriangleList without_faces(TriangleList mesh, Index every) {
+  for (Index f = size_of(mesh.faces) - every; f > 0; f -= every) {
+    mesh.faces.erase(mesh.faces.begin() + f);
+  }
+  return mesh;
+}
+
+std::vector<TriangleList> small_surfaces() {
+  return {meshes::tetrahedron(),
+          meshes::octahedron(),
+          meshes::cube(),
+          disks::refined(meshes::octahedron(), 1),
+          disks::blob(3),
+          meshes::torus(3),
+          meshes::torus(5),
+          meshes::torus(12),
+          meshes::double_torus(5),
+          meshes::double_torus(10),
+          meshes::torus_with_hole(6),
+          meshes::annulus(6),
+          disks::refined(meshes::annulus(5), 2),
+          meshes::fan(7),
+          meshes::grid(4, 4),
+          meshes::grid(12, 9),
+          without_faces(meshes::grid(12, 10), 70),
+          without_faces(disks::blob(3), 150),
+          meshes::together({meshes::torus(5), disks::blob(2), meshes::grid(5, 5)})};
+}
+
+/// Walks that wander about, and now and then a tree that opens the surface: crossing each other,
+/// closed, loose, between borders.
+EdgeMarks random_seams(const Surface& surface, std::mt19937_64& generator) {
+  const Work work(1);
+  EdgeMarks marks(surface.twin.size(), false);
+  if (random_below(generator, 2) == 0) {
+    marks = open_minimal(surface, topology_of(surface, work), {}, work);
+  }
+  std::vector<Index> degree = degrees(surface, marks);
+  const Index walks = random_below(generator, 4);
+  for (Index walk = 0; walk < walks; ++walk) {
+    Index v = surface.origin(random_below(generator, size_of(surface.twin)));
+    for (Index step = 2 + random_below(generator, surface.vertex_count()); step > 0; --step) {
+      std::vector<Index> ways;
+      surface.for_each_outgoing(v, [&](Index h) {
+        if (surface.twin[h] != kNone) ways.push_back(h);
+      });
+      if (ways.empty()) break;
+      const Index h = ways[random_below(generator, size_of(ways))];
+      if (!marks[h]) {
+        mark_edge(surface, h, marks);
+        ++degree[v];
+        ++degree[surface.target(h)];
+      }
+      v = surface.target(h);
+      if (random_below(generator, 3) == 0 && degree[v] > 1) break;
+    }
+  }
+  // The sides of an edge on its own are one again: none to begin with.
+  for (Index h = 0; h < size_of(marks); ++h) {
+    const Index a = surface.origin(h), b = surface.target(h);
+    const auto is_loose = [&](Index w) { return degree[w] == 1 && !surface.on_boundary[w]; };
+    if (marks[h] && is_loose(a) && is_loose(b)) marks[h] = false;
+  }
+  return marks;
+}
+
+/// Marks each with a chance of one in `chance`; the two half-edges of an edge alike.
+EdgeMarks random_marks(const Surface& surface, Index chance, std::mt19937_64& generator) {
+  EdgeMarks marks(surface.twin.size(), false);
+  for (Index h = 0; h < size_of(marks); ++h) {
+    if (random_below(generator, chance) == 0) mark_edge(surface, h, marks);
+  }
+  return marks;
+}
+
+void expect_straightened(const Surface& surface, const EdgeMarks& seams,
+                         const std::vector<double>& cost, const std::vector<bool>& anchored,
+                         const EdgeMarks& locked) {
+  const EdgeMarks moved = straighten(surface, seams, cost, anchored, locked, Work(1));
+  EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
+  EXPECT_EQ(counts_of_degrees(surface, moved), counts_of_degrees(surface, seams));
+  EXPECT_LE(total(surface, moved, cost), total(surface, seams, cost) * (1 + 1e-12));
+  const std::vector<Index> before = degrees(surface, seams), after = degrees(surface, moved);
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    const bool stays = (before[v] != 0 && before[v] != 2) || (!anchored.empty() && anchored[v]);
+    if (stays && before[v] > 0) {
+      EXPECT_EQ(after[v], before[v]);
+    }
+  }
+  for (Index h = 0; h < size_of(moved); ++h) {
+    if (moved[h] && !seams[h]) {
+      EXPECT_TRUE(locked.empty() || !locked[h]);
+      EXPECT_NE(surface.twin[h], kNone);
+    }
+    if (surface.twin[h] != kNone) {
+      EXPECT_EQ(moved[h], moved[surface.twin[h]]);
+    }
+  }
+}
+
+TEST(Straighten, KeepsWhatSeamsPart) {
+  constexpr Index kRounds = 40;
+  const std::vector<TriangleList> all = small_surfaces();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Surface surface = built(all[i]);
+    for (Index seed = 0; seed < kRounds; ++seed) {
+      SCOPED_TRACE("surface " + std::to_string(i) + ", seed " + std::to_string(seed));
+      std::mt19937_64 generator(static_cast<std::uint64_t>(seed));
+      const EdgeMarks seams = random_seams(surface, generator);
+      const std::vector<double> cost =
+          seed % 2 == 0 ? random_cost(surface, generator) : lengths(surface);
+      std::vector<bool> anchored;
+      EdgeMarks locked;
+      if (seed % 3 == 1) locked = random_marks(surface, 5, generator);
+      if (seed % 3 == 2) {
+        anchored.resize(surface.positions.size());
+        for (Index v = 0; v < size_of(anchored); ++v) anchored[v] = random_below(generator, 8) == 0;
+      }
+      expect_straightened(surface, seams, cost, anchored, locked);
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+/// The edge from `a` to `b`.
+Index halfedge_between(const Surface& surface, Index a, Index b) {
+  Index found = kNone;
+  surface.for_each_outgoing(a, [&](Index h) {
+    if (surface.target(h) == b) found = h;
+  });
+  return found;
+}
+
+EdgeMarks marked_path(const Surface& surface, const std::vector<Index>& vertices) {
+  EdgeMarks marks(surface.twin.size(), false);
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+    mark_edge(surface, halfedge_between(surface, vertices[i], vertices[i + 1]), marks);
+  }
+  return marks;
+}
+
+/// Across a sheet of 100 by 20 cells, up and down by 8 cells at every other step.
+std::vector<Index> zigzag() {
+  std::vector<Index> path;
+  const auto walk_to = [&](Index i, Index j) {
+    const Index end = j * 101 + i;
+    while (path.back() != end) {
+      const Index row = path.back() / 101, column = path.back() % 101;
+      path.push_back(path.back() + (row < j ? 101 : row > j ? -101 : column < i ? 1 : -1));
+    }
+  };
+  path.push_back(10 * 101 + 2);
+  for (Index i = 2; i < 98; i += 4) {
+    walk_to(i, 14);
+    walk_to(i + 2, 14);
+    walk_to(i + 2, 6);
+    walk_to(i + 4, 6);
+  }
+  walk_to(98, 10);
+  return path;
+}
+
+TEST(Straighten, AZigzagBecomesStraight) {
+  const Surface surface = built(meshes::grid(100, 20));
+  const EdgeMarks seams = marked_path(surface, zigzag());
+  const std::vector<double> cost = lengths(surface);
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  EXPECT_GT(total(surface, seams, cost), 3);
+  EXPECT_NEAR(total(surface, moved, cost), 0.96, 1e-9);
+}
+
+TEST(Straighten, AnAnchoredVertexStaysOnItsSeam) {
+  const Surface surface = built(meshes::grid(100, 20));
+  const std::vector<Index> path = zigzag();
+  std::vector<bool> anchored(surface.positions.size(), false);
+  const Index corner = path[path.size() / 2];
+  anchored[corner] = true;
+  const EdgeMarks moved =
+      straighten(surface, marked_path(surface, path), lengths(surface), anchored, {}, Work(1));
+  EXPECT_EQ(degrees(surface, moved)[corner], 2);
+}
+
+TEST(Straighten, ASlitKeepsTwoEdges) {
+  // Its ends are neighbours: as one edge it would part nothing.
+  const Surface surface = built(meshes::octahedron());
+  const EdgeMarks slit = marked_path(surface, {0, 1, 2, 4});
+  const EdgeMarks moved = straighten(surface, slit, lengths(surface), {}, {}, Work(1));
+  EXPECT_NEAR(total(surface, moved, lengths(surface)), 2 * std::sqrt(2), 1e-12);
+  EXPECT_EQ(pieces(surface, moved), pieces(surface, slit));
+}
+
+TEST(Straighten, ALoopAroundATubeBecomesShortWhereverItBegan) {
+  // Around the tube, on the outside of a torus of radii 2 and 1, and along it for a part.
+  const Surface surface = built(meshes::torus(40));
+  std::vector<Index> loop;
+  for (Index j = 0; j < 40; ++j) {
+    const Index i = j < 20 ? j : 40 - j;
+    const Index before = j <= 20 ? i - 1 : i + 1;
+    if (j > 0) loop.push_back(j * 40 + before);
+    loop.push_back(j * 40 + i);
+  }
+  loop.push_back(1);
+  loop.push_back(0);
+  const EdgeMarks seams = marked_path(surface, loop);
+  const std::vector<double> cost = lengths(surface);
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  EXPECT_GT(total(surface, seams, cost), 12);
+  EXPECT_LT(total(surface, moved, cost), 2 * std::numbers::pi);
+  EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
+}
+
+TEST(Straighten, WhatIsCarriedFromACoarseSurfacePartsTheSameAndCostsLess) {
+  const Work work(1);
+  for (const TriangleList& mesh : {disks::blob(5), meshes::torus(40), meshes::double_torus(30)}) {
+    const Surface fine = built(mesh);
+    const CoarseSurface coarse =
+        simplify_surface(fine, boundary_loops(fine, work), fine.face_count() / 12, work);
+    const EdgeMarks cut = open_minimal(coarse.mesh, topology_of(coarse.mesh, work), {}, work);
+    std::vector<std::array<Index, 2>> edges;
+    for (Index h = 0; h < size_of(cut); ++h) {
+      if (!cut[h] || coarse.mesh.edge(h) != h) continue;
+      edges.push_back(
+          {coarse.fine_vertex[coarse.mesh.origin(h)], coarse.fine_vertex[coarse.mesh.target(h)]});
+    }
+    EdgeMarks carried(fine.twin.size(), false);
+    for (const auto& [a, b] : carry_edges(coarse.history, edges, fine.on_boundary, {})) {
+      mark_edge(fine, halfedge_between(fine, a, b), carried);
+    }
+    expect_straightened(fine, carried, lengths(fine), {}, {});
+    const EdgeMarks one = straighten(fine, carried, lengths(fine), {}, {}, work);
+    EXPECT_EQ(one, straighten(fine, carried, lengths(fine), {}, {}, Work(2)));
+    EXPECT_LT(total(fine, one, lengths(fine)), 0.99 * total(fine, carried, lengths(fine)));
+  }
+}
+
+TEST(Straighten, CanBeCancelledAnywhere) {
+  const Surface surface = built(meshes::grid(100, 20));
+  const EdgeMarks seams = marked_path(surface, zigzag());
+  const std::vector<double> cost = lengths(surface);
+  const auto run = [&] { straighten(surface, seams, cost, {}, {}, Work(1)); };
+  const std::int64_t polls = count_polls(run);
+  EXPECT_GT(polls, 0);
+  EXPECT_THROW(count_polls(run, polls), Cancelled);
+}
+
+}  // namespace
+}  // namespace beltrami
