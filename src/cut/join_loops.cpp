@@ -67,10 +67,32 @@ Ways ways_to_loops(const Surface& surface, const Topology& topology,
   return ways;
 }
 
+/// Whether the marked edges and the boundary hang together: then all pieces are disks.
+bool is_joined(const Surface& disk, const EdgeMarks& marks) {
+  DisjointSets sets(disk.vertex_count());
+  PollSometimes poll;
+  Index boundary = kNone;
+  for (Index v = 0; v < disk.vertex_count(); ++v) {
+    poll();
+    sets.make(v);
+    if (!disk.on_boundary[v]) continue;
+    if (boundary == kNone) boundary = v;
+    sets.unite(boundary, v);
+  }
+  for (Index h = 0; h < size_of(disk.twin); ++h) {
+    if (marks[h]) sets.unite(disk.origin(h), disk.target(h));
+  }
+  for (Index h = 0; h < size_of(disk.twin); ++h) {
+    if (marks[h] && sets.root(disk.origin(h)) != sets.root(boundary)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool join_loops(const Surface& disk, const std::vector<double>& cost, EdgeMarks& marks,
                 const Work& work) {
+  if (is_joined(disk, marks)) return true;
   std::vector<Index> twin = disk.twin;
   for (std::size_t h = 0; h < twin.size(); ++h) {
     if (marks[h]) twin[h] = kNone;

@@ -100,7 +100,8 @@ Layers layers_of(const Surface& mesh, const std::vector<Vec2>& uvs) {
         first[pixel] = f;
         return;
       }
-      if (first[pixel] != kListed) entries.emplace_back(pixel, std::exchange(first[pixel], kListed));
+      if (first[pixel] != kListed)
+        entries.emplace_back(pixel, std::exchange(first[pixel], kListed));
       entries.emplace_back(pixel, f);
     });
   }

@@ -20,9 +20,7 @@ struct Layers {
   std::vector<Index> faces;    ///< increasing in each pixel
 
   Index count() const { return size_of(pixels); }
-  Vec2 centre(Index i) const {
-    return origin + pixel * Vec2(pixels[i] % width, pixels[i] / width);
-  }
+  Vec2 centre(Index i) const { return origin + pixel * Vec2(pixels[i] % width, pixels[i] / width); }
   std::span<const Index> operator[](Index i) const {
     return std::span(faces).subspan(start[i], start[i + 1] - start[i]);
   }

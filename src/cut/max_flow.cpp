@@ -74,18 +74,16 @@ class Flow {
   static constexpr Index kRoot = -2, kOrphan = -3;
   struct Node {
     Terminal tree = Terminal::kNeither;
-    Index parent = kNone;   ///< the arc to it
-    Index checked = 0;      ///< the last augmentation after which `steps` was right
-    Index steps = 0;        ///< to the root
+    Index parent = kNone;  ///< the arc to it
+    Index checked = 0;     ///< the last augmentation after which `steps` was right
+    Index steps = 0;       ///< to the root
   };
 
   /// What can still flow along an arc away from the root of a tree.
   std::int64_t outwards(Index a, Terminal tree) const {
     return tree == Terminal::kSource ? arcs_[a].residual : arcs_[arcs_[a].reverse].residual;
   }
-  std::int64_t inwards(Index a, Terminal tree) const {
-    return outwards(arcs_[a].reverse, tree);
-  }
+  std::int64_t inwards(Index a, Terminal tree) const { return outwards(arcs_[a].reverse, tree); }
   Index from(Index a) const { return arcs_[arcs_[a].reverse].to; }
 
   /// Takes free neighbours into the tree of a node until one is in the other tree; returns the arc

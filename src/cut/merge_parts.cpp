@@ -16,6 +16,9 @@ namespace {
 
 /// A cut that is cheaper by less than this share is none.
 constexpr double kGain = 1e-3;
+/// Seams of disks of more faces stay as they are: they are mostly as short as can be, and to
+/// look for others takes as long as to find them did.
+constexpr Index kMostFaces = 100'000;
 
 using PartPair = std::array<Index, 2>;
 
@@ -92,9 +95,8 @@ std::vector<Neighbours> Merging::neighbours() const {
         std::minmax(map_.part_of_face[h / 3], map_.part_of_face[disk.twin[h] / 3]);
     if (low != high) all.push_back({{low, high}, map_.cost[h]});
   }
-  std::stable_sort(all.begin(), all.end(), [](const Neighbours& a, const Neighbours& b) {
-    return a.parts < b.parts;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Neighbours& a, const Neighbours& b) { return a.parts < b.parts; });
   std::vector<Neighbours> pairs;
   for (const Neighbours& one : all) {
     if (pairs.empty() || pairs.back().parts != one.parts) pairs.push_back({one.parts, 0});
@@ -135,8 +137,7 @@ bool Merging::unite(const PartPair& pair) {
     bool has_slits = false;
     for (Index h = 0; h < size_of(map_.disk.twin); ++h) {
       if (!is_within(pair, h)) continue;
-      const bool is_slit =
-          map_.part_of_face[h / 3] == map_.part_of_face[map_.disk.twin[h] / 3];
+      const bool is_slit = map_.part_of_face[h / 3] == map_.part_of_face[map_.disk.twin[h] / 3];
       has_slits = has_slits || is_slit;
       if (!is_slit || !keeps_slits) seams[h] = false;
     }
@@ -154,6 +155,7 @@ bool Merging::unite(const PartPair& pair) {
 /// Two parts that overlap nothing in themselves: any cut between the faces of one that lie on the
 /// other and those below them will do, so the least one.
 void Merging::shorten(const Neighbours& pair) {
+  if (map_.disk.face_count() > kMostFaces) return;
   EdgeMarks seams = map_.seams;
   double cost = 0;
   for (Index h = 0; h < size_of(map_.disk.twin); ++h) {

@@ -1,6 +1,7 @@
 #include "cut/separate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -37,7 +38,6 @@ struct DualGraph {
   std::vector<FlowEdge> edges;      ///< each pair once, with the cost of all edges between them
   std::vector<double> area;         ///< in space, per node
   std::vector<Vec3> centre;
-  std::vector<bool> at_boundary;
 
   Index count() const { return size_of(terminals); }
 };
@@ -67,7 +67,6 @@ DualGraph graph_of(const Part& part, const std::vector<Terminal>& of_face,
       graph.terminals.push_back(Terminal::kNeither);
       graph.area.push_back(0);
       graph.centre.push_back(Vec3::Zero());
-      graph.at_boundary.push_back(false);
       is_torn.push_back(false);
     }
     const Index n = graph.node[f] = graph.node[root];
@@ -79,9 +78,6 @@ DualGraph graph_of(const Part& part, const std::vector<Terminal>& of_face,
     if (of_face[f] != Terminal::kNeither && !is_torn[n]) {
       is_torn[n] = graph.terminals[n] != Terminal::kNeither && graph.terminals[n] != of_face[f];
       graph.terminals[n] = is_torn[n] ? Terminal::kNeither : of_face[f];
-    }
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      if (mesh.twin[h] == kNone) graph.at_boundary[n] = true;
     }
   }
   for (Index n = 0; n < graph.count(); ++n) {
@@ -158,15 +154,9 @@ class Ways {
     }
   }
 
-  std::span<const Index> neighbours(Index n) const {
-    return std::span(neighbours_).subspan(start_[n], start_[n + 1] - start_[n]);
-  }
-
-  /// Distances from the nodes of a sheet, by Dijkstra's method (1959); the other one is no way
-  /// where it is `barred`. `before`, if any, is the next node on the way back.
-  std::vector<double> distances(Terminal sheet, bool barred, std::vector<Index>* before) const {
+  /// Distances from the nodes of a sheet (Dijkstra 1959).
+  std::vector<double> distances(Terminal sheet) const {
     std::vector<double> distance(graph_.terminals.size(), kFar);
-    if (before != nullptr) before->assign(distance.size(), kNone);
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (Index n = 0; n < graph_.count(); ++n) {
@@ -179,14 +169,12 @@ class Ways {
       const auto [reached, n] = queue.top();
       queue.pop();
       if (reached > distance[n]) continue;
-      for (const Index other : neighbours(n)) {
+      for (Index i = start_[n]; i < start_[n + 1]; ++i) {
         poll();
-        const Terminal there = graph_.terminals[other];
-        if (barred && there != sheet && there != Terminal::kNeither) continue;
+        const Index other = neighbours_[i];
         const double through = reached + (graph_.centre[other] - graph_.centre[n]).norm();
         if (!(through < distance[other])) continue;
         distance[other] = through;
-        if (before != nullptr) (*before)[other] = n;
         queue.emplace(through, other);
       }
     }
@@ -233,8 +221,8 @@ class Search {
       if (std::find(terminals.begin(), terminals.end(), side) == terminals.end()) return {};
     }
     const Ways ways(graph_);
-    std::vector<double> source = ways.distances(Terminal::kSource, false, nullptr);
-    std::vector<double> sink = ways.distances(Terminal::kSink, false, nullptr);
+    std::vector<double> source = ways.distances(Terminal::kSource);
+    std::vector<double> sink = ways.distances(Terminal::kSink);
     double area = 0;
     for (const double of_node : graph_.area) area += of_node;
     const std::vector<double> before = source;
@@ -246,21 +234,12 @@ class Search {
       const double distance = is_band ? source[n] : std::min(source[n], sink[n]);
       factor_[n] = 1 + kNearby * portable::exp(-distance / (kReach * std::sqrt(area)));
     }
-    Separation best = cut();
-    if (!best.none() && !is_closed_) return best;
-    for (const Terminal side : {Terminal::kSource, Terminal::kSink}) {
-      if (!lead_to_boundary(ways, side)) continue;
-      Separation other = cut();
-      if (!other.none() && (best.none() || other.cost < best.cost)) best = std::move(other);
-      break;
-    }
-    return best;
+    return cut();
   }
 
  private:
-  Separation cut();
+  Separation cut() const;
   void refine(const std::vector<bool>& is_source_node, std::vector<bool>& is_source_face) const;
-  bool lead_to_boundary(const Ways& ways, Terminal side);
 
   double factor(Index one, Index other) const { return (factor_[one] + factor_[other]) / 2; }
 
@@ -268,20 +247,18 @@ class Search {
   std::vector<Terminal> of_face_;
   DualGraph graph_;
   std::vector<double> factor_;  // per node, of what edges there cost
-  bool is_closed_ = false;      // whether the last cut had closed curves
-  std::vector<bool> sides_;     // per node, whether it was on the sources' side of it
   const Work& work_;
 };
 
 /// The least cut between the terminals of the graph, and what makes disks of its pieces.
-Separation Search::cut() {
+Separation Search::cut() const {
   std::vector<FlowEdge> edges = graph_.edges;
   for (FlowEdge& edge : edges) edge.capacity *= factor(edge.one, edge.other);
-  sides_ = least_cut(graph_.terminals, edges);
+  const std::vector<bool> sides = least_cut(graph_.terminals, edges);
   const DiskMesh& mesh = part_.mesh;
   std::vector<bool> is_source(mesh.faces.size());
-  for (Index f = 0; f < mesh.face_count(); ++f) is_source[f] = sides_[graph_.node[f]];
-  if (mesh.face_count() > kFineFaces) refine(sides_, is_source);
+  for (Index f = 0; f < mesh.face_count(); ++f) is_source[f] = sides[graph_.node[f]];
+  if (mesh.face_count() > kFineFaces) refine(sides, is_source);
 
   Separation result;
   result.marks.assign(mesh.twin.size(), false);
@@ -289,20 +266,10 @@ Separation Search::cut() {
     const Index twin = mesh.twin[h];
     if (twin != kNone && is_source[h / 3] != is_source[twin / 3]) result.marks[h] = true;
   }
-  const auto cost = [&] {
-    double sum = 0;
-    for (Index h = 0; h < size_of(mesh.twin); ++h) {
-      if (result.marks[h] && mesh.edge(h) == h) sum += part_.cost[h];
-    }
-    return sum;
-  };
-  const double before = cost();
-  if (!join_loops(mesh, part_.cost, result.marks, work_)) {
-    is_closed_ = true;
-    return {};
+  if (!join_loops(mesh, part_.cost, result.marks, work_)) return {};
+  for (Index h = 0; h < size_of(mesh.twin); ++h) {
+    if (result.marks[h] && mesh.edge(h) == h) result.cost += part_.cost[h];
   }
-  result.cost = cost();
-  is_closed_ = result.cost > before;
   return result;
 }
 
@@ -322,42 +289,38 @@ void Search::refine(const std::vector<bool>& is_source_node,
     }
   }
   const DiskMesh& mesh = part_.mesh;
-  std::vector<Terminal> terminals(mesh.faces.size());
+  const auto side = [](bool is_source) { return is_source ? Terminal::kSource : Terminal::kSink; };
+  std::vector<Index> number(mesh.faces.size(), kNone), band;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Index n = graph_.node[f];
-    terminals[f] = graph_.terminals[n];
-    if (terminals[f] == Terminal::kNeither && steps[n] > kBandWidth) {
-      terminals[f] = is_source_node[n] ? Terminal::kSource : Terminal::kSink;
+    if (graph_.terminals[n] != Terminal::kNeither || steps[n] > kBandWidth) continue;
+    number[f] = size_of(band);
+    band.push_back(f);
+  }
+  // The faces of the band by themselves, and what is on either side as a node each.
+  const Index sources = size_of(band), sinks = sources + 1;
+  const auto node = [&](Index f) {
+    if (number[f] != kNone) return number[f];
+    return is_source_node[graph_.node[f]] ? sources : sinks;
+  };
+  std::vector<Terminal> terminals(band.size(), Terminal::kNeither);
+  terminals.push_back(side(true));
+  terminals.push_back(side(false));
+  std::vector<FlowEdge> edges;
+  double sum = 0;
+  for (const Index f : band) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index twin = mesh.twin[h];
+      if (twin == kNone || (number[twin / 3] != kNone && twin < h)) continue;
+      edges.push_back({number[f], node(twin / 3),
+                       part_.cost[h] * factor(graph_.node[f], graph_.node[twin / 3])});
+      if (part_.cost[h] != kFar) sum += edges.back().capacity;
     }
   }
-  DualGraph fine = graph_of(part_, terminals, [&](Index h) {
-    const Terminal side = terminals[h / 3];
-    return side != Terminal::kNeither && side == terminals[mesh.twin[h] / 3];
-  });
-  std::vector<double> of_node(fine.terminals.size(), 1);
-  for (Index f = 0; f < mesh.face_count(); ++f) of_node[fine.node[f]] = factor_[graph_.node[f]];
-  for (FlowEdge& edge : fine.edges) {
-    edge.capacity *= (of_node[edge.one] + of_node[edge.other]) / 2;
-  }
-  const std::vector<bool> sides = least_cut(fine.terminals, fine.edges);
-  for (Index f = 0; f < mesh.face_count(); ++f) is_source_face[f] = sides[fine.node[f]];
-}
-
-/// Where the last cut kept the sheet from the boundary, takes the way there into it: no closed
-/// curve parts it then. Returns whether that is so.
-bool Search::lead_to_boundary(const Ways& ways, Terminal side) {
-  for (Index n = 0; n < graph_.count(); ++n) {
-    if (graph_.at_boundary[n] && sides_[n] == (side == Terminal::kSource)) return false;
-  }
-  std::vector<Index> before;
-  const std::vector<double> distance = ways.distances(side, true, &before);
-  Index nearest = kNone;
-  for (Index n = 0; n < graph_.count(); ++n) {
-    if (!graph_.at_boundary[n] || distance[n] == kFar) continue;
-    if (nearest == kNone || distance[n] < distance[nearest]) nearest = n;
-  }
-  for (Index n = nearest; n != kNone; n = before[n]) graph_.terminals[n] = side;
-  return nearest != kNone;
+  // The cut by patches takes no locked edge, so there is one for less than all others together.
+  for (FlowEdge& edge : edges) edge.capacity = std::min(edge.capacity, 2 * sum);
+  const std::vector<bool> sides = least_cut(terminals, edges);
+  for (const Index f : band) is_source_face[f] = sides[number[f]];
 }
 
 }  // namespace

@@ -71,13 +71,11 @@ class Pairs {
     Index steps;
   };
 
-  int depth(Index pixel) const {
-    return std::min<Index>(size_of_pixel(pixel), kMostLayers);
-  }
+  int depth(Index pixel) const { return std::min<Index>(size_of_pixel(pixel), kMostLayers); }
   Index size_of_pixel(Index pixel) const { return static_cast<Index>(layers_[pixel].size()); }
 
-  /// From the face at one pixel centre to the one at another, over the faces in between; kNone where
-  /// the sheet ends before.
+  /// From the face at one pixel centre to the one at another, over the faces in between; kNone
+  /// where the sheet ends before.
   Index walk(Index face, const Vec2& to, std::vector<Index>* way) const {
     Index came_by = kNone;
     for (int step = 0; step < kMostSteps; ++step) {
@@ -113,9 +111,7 @@ class Pairs {
     if (above_[pixel] != kNone) visit(above_[pixel]);
   }
   /// Rows end with a pixel outside of the box, so none begins beside the end of another one.
-  bool is_beside(Index left) const {
-    return layers_.pixels[left] + 1 == layers_.pixels[left + 1];
-  }
+  bool is_beside(Index left) const { return layers_.pixels[left] + 1 == layers_.pixels[left + 1]; }
 
   /// Breadth first from `first` over the pairs that accept(from, to) takes, into queue_.
   template <class Accept>

@@ -17,9 +17,9 @@ struct Sheets {
   bool none() const { return terminals.empty(); }
 };
 
-/// The `rank`-th largest of the pairs of sheets, from 0 on; none beyond the last. Where a sheet goes
-/// on to be the other one, it is a part of both at one end, so that there is room for a cut. Of
-/// pixels in many faces only the first few are looked at.
+/// The `rank`-th largest of the pairs of sheets, from 0 on; none beyond the last. Where a sheet
+/// goes on to be the other one, it is a part of both at one end, so that there is room for a cut.
+/// Of pixels in many faces only the first few are looked at.
 Sheets largest_sheets(const Surface& mesh, const std::vector<Vec2>& uvs, const Layers& layers,
                       Index rank);
 

@@ -74,7 +74,9 @@ OverlapSplit split_overlaps(const DiskMesh& disk, const std::vector<Vec2>& uvs,
     }
     for (Part& child : parts) open.push_back(std::move(child));
   }
-  PartedMap map{disk,     uvs, cost, layers, tolerance, std::vector<Index>(disk.faces.size()),
+  PartedMap map{disk,          uvs,
+                cost,          layers,
+                tolerance,     std::vector<Index>(disk.faces.size()),
                 size_of(done), seams_between(disk, done)};
   for (Index i = 0; i < size_of(done); ++i) {
     for (const Index f : done[i].face) map.part_of_face[f] = i;

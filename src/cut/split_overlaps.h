@@ -1,8 +1,8 @@
 // A map that lies on itself -> the seams along which to part it.
 //
-// Pairs of sheets that lie on each other are told apart by least cuts of the dual graph, the largest
-// first, until no part lies on itself; then parts that can be one again are. (Which set of edges is
-// the cheapest that does so is a multicut problem, and NP-hard.)
+// Pairs of sheets that lie on each other are told apart by least cuts of the dual graph, the
+// largest first, until no part lies on itself; then parts that can be one again are. (Which set of
+// edges is the cheapest that does so is a multicut problem, and NP-hard.)
 #pragma once
 
 #include <vector>
