@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <functional>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <string>
