@@ -16,7 +16,7 @@ inline std::filesystem::path folder() {
   return std::filesystem::path(BELTRAMI_SOURCE_DIR).parent_path() / "shared" / "data";
 }
 
-/// Vertices and triangles of an OBJ file without texture coordinates.
+/// Vertices and triangles of an OBJ file.
 inline meshes::TriangleList read_obj(const std::filesystem::path& path) {
   meshes::TriangleList mesh;
   std::ifstream file(path);
@@ -30,9 +30,12 @@ inline meshes::TriangleList read_obj(const std::filesystem::path& path) {
       words >> x >> y >> z;
       mesh.positions.push_back({x, y, z});
     } else if (kind == "f") {
-      Index a, b, c;
-      words >> a >> b >> c;
-      mesh.faces.push_back({a - 1, b - 1, c - 1});
+      Triangle& face = mesh.faces.emplace_back();
+      for (Index& vertex : face) {
+        std::string corner;  // which may go on with a slash and other numbers
+        words >> corner;
+        vertex = std::stoi(corner) - 1;
+      }
     }
   }
   return mesh;
