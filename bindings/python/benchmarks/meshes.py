@@ -31,8 +31,10 @@ def areas(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 def edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return edges (e, 2), those of each face (m, 3), k from corner k, and their faces' number."""
     sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    ends, of_side, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-    return ends, of_side.reshape(-1, 3), count
+    most = int(faces.max(initial=0)) + 1
+    keys = sides[:, 0].astype(np.int64) * most + sides[:, 1]
+    found, of_side, count = np.unique(keys, return_inverse=True, return_counts=True)
+    return np.column_stack(np.divmod(found, most)), of_side.reshape(-1, 3), count
 
 
 def is_sphere(vertices: np.ndarray, faces: np.ndarray) -> bool:
