@@ -103,46 +103,55 @@ double ConformalModel::energy_of(const Eigen::VectorXd& u) const {
 
 double ConformalModel::energy_with(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
-  DenseMatrix unit = DenseMatrix::Zero(surface_.vertex_count(), count);
-  for (Eigen::Index i = 0; i < count; ++i) unit(vertices[i], i) = 1;
-  poll_interrupt();
-  const DenseMatrix pulled = solver_->solve(unit);
-  DenseMatrix among(count, count);
+  SparseMatrix unit(surface_.vertex_count(), count);
   Eigen::VectorXd there(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    among.row(i) = pulled.row(vertices[i]);
+    unit.insert(vertices[i], i) = 1;
     there[i] = u_[vertices[i]];
   }
-  const Eigen::VectorXd force = among.ldlt().solve(there);
+  unit.makeCompressed();
+  poll_interrupt();
+  const DenseMatrix among = solver_->solve_rows(unit, {vertices.begin(), vertices.end()});
+  const Eigen::VectorXd force = unit * among.ldlt().solve(there).eval();
   Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(u_.data(), size_of(u_));
-  u -= pulled * force;
+  u -= solver_->solve(force);
   return energy_of(u);
 }
 
 double ConformalModel::energy_without(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
-  DenseMatrix coupling = DenseMatrix::Zero(surface_.vertex_count(), count);
+  SparseMatrix coupling(surface_.vertex_count(), count);  // to vertices that are not pinned
   DenseMatrix among = DenseMatrix::Zero(count, count);
-  const auto row_of = [&](Index v) {
-    return std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
-  };
+  std::vector<int> around;
   for (Eigen::Index i = 0; i < count; ++i) {
     for (SparseMatrix::InnerIterator entry(laplacian_, vertices[i]); entry; ++entry) {
-      if (!pinned_[entry.row()]) {
-        coupling(entry.row(), i) = entry.value();
-      } else if (const auto j = row_of(static_cast<Index>(entry.row())); j < count) {
-        among(j, i) = entry.value();
+      const auto other = static_cast<Index>(entry.row());
+      if (!pinned_[other]) {
+        coupling.insert(other, i) = entry.value();
+        around.push_back(other);
+      } else {
+        const auto j = std::find(vertices.begin(), vertices.end(), other) - vertices.begin();
+        if (j < count) among(j, i) = entry.value();
       }
     }
   }
+  coupling.makeCompressed();
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  DenseMatrix near = DenseMatrix::Zero(size_of(around), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (SparseMatrix::InnerIterator entry(coupling, i); entry; ++entry) {
+      near(std::lower_bound(around.begin(), around.end(), entry.row()) - around.begin(), i) =
+          entry.value();
+    }
+  }
   poll_interrupt();
-  const DenseMatrix pulled = solver_->solve(coupling);
+  among -= near.transpose() * solver_->solve_rows(coupling, around);
   Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(u_.data(), size_of(u_));
   Eigen::VectorXd force = -(coupling.transpose() * u);
   for (Eigen::Index i = 0; i < count; ++i) force[i] -= defect_[vertices[i]];
-  among -= coupling.transpose() * pulled;
   const Eigen::VectorXd freed = among.ldlt().solve(force);
-  u -= pulled * freed;
+  u -= solver_->solve(Eigen::VectorXd(coupling * freed));
   for (Eigen::Index i = 0; i < count; ++i) u[vertices[i]] = freed[i];
   return energy_of(u);
 }
