@@ -92,7 +92,7 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
   CutSurface cut;
   if (target) {
     const SearchedSeams found = search_seams(filled.surface, filled.real_faces, topology, locked,
-                                             *target, work.part(kFilled, kOpened));
+                                             *target, {}, {}, work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
   } else {

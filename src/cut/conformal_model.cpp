@@ -20,8 +20,8 @@ namespace {
 /// A pinned vertex is held by a spring so many times as stiff as a vertex of average weight: what
 /// it yields is below what the model is good for, and the pattern of the matrix stays.
 constexpr double kPinned = 1e7;
-/// Beyond, lengths differ by e^40.
-constexpr double kMostFactor = 40;
+/// Beyond, the squares of factors are no numbers.
+constexpr double kMostFactor = 300;
 /// A map that is free to be no conformal one is so much less distorted: the part of the factors
 /// that is left. Means of maps with 1 to 40 slits of scans and of sculpted meshes.
 constexpr double kRealShare = 0.55;

@@ -149,11 +149,6 @@ void SeamSearch::judge(Branch& branch) const {
   branch.worth = (branch.energy - model_.energy()) / (branch.cost + kLeastCost * scale_);
 }
 
-void SeamSearch::remove(const Branch& branch) {
-  for (const Index h : branch.halfedges) mark(h, false);
-  refresh();
-}
-
 std::vector<SeamSearch::Branch> SeamSearch::branches() const {
   std::vector<Branch> found;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
@@ -190,28 +185,61 @@ void SeamSearch::exchange(double target) {
   }
 }
 
+/// The half of a branch that its tip is in; the least branches have none.
+SeamSearch::Branch SeamSearch::end_of(const Branch& branch) const {
+  const std::ptrdiff_t half = std::ssize(branch.vertices) / 2;
+  Branch end;
+  end.vertices.assign(branch.vertices.begin(), branch.vertices.begin() + half);
+  end.halfedges.assign(branch.halfedges.begin(), branch.halfedges.begin() + half);
+  for (const Index h : end.halfedges) end.cost += cost_[h];
+  return end;
+}
+
+/// What a branch is worth hardly falls where others go: one that is still worth less than all the
+/// others were is the least.
 void SeamSearch::shrink(double target) {
-  for (;;) {
-    poll_interrupt();
-    const Branch* best = nullptr;
-    std::vector<Branch> all = branches();
-    for (std::size_t i = 0, count = all.size(); i < count; ++i) {
-      const std::size_t half = all[i].vertices.size() / 2;
-      if (half == 0) continue;
-      Branch end;
-      end.vertices.assign(all[i].vertices.begin(), all[i].vertices.begin() + half);
-      end.halfedges.assign(all[i].halfedges.begin(), all[i].halfedges.begin() + half);
-      for (const Index h : end.halfedges) end.cost += cost_[h];
-      judge(end);
-      all.push_back(std::move(end));
-    }
-    for (const Branch& branch : all) {
-      if (branch.energy > target) continue;
-      if (best == nullptr || branch.worth < best->worth) best = &branch;
-    }
-    if (best == nullptr) return;
-    remove(*best);
+  const auto is_worth_more = [](const Branch& a, const Branch& b) {
+    return std::pair(a.worth, a.vertices.front()) > std::pair(b.worth, b.vertices.front());
+  };
+  std::vector<Branch> heap = branches();
+  for (std::size_t i = 0, count = heap.size(); i < count; ++i) {
+    Branch end = end_of(heap[i]);
+    if (end.vertices.empty()) continue;
+    judge(end);
+    heap.push_back(std::move(end));
   }
+  std::make_heap(heap.begin(), heap.end(), is_worth_more);
+  const auto push = [&](Branch branch) {
+    heap.push_back(std::move(branch));
+    std::push_heap(heap.begin(), heap.end(), is_worth_more);
+  };
+  while (!heap.empty()) {
+    poll_interrupt();
+    std::pop_heap(heap.begin(), heap.end(), is_worth_more);
+    Branch branch = std::move(heap.back());
+    heap.pop_back();
+    const Index tip = branch.vertices.front();
+    // Its half went before, or it has grown into the branch that it met.
+    const bool is_whole = degree_[tip] == 1 && is_branch(branch);
+    if (!is_whole) continue;
+    judge(branch);
+    if (branch.energy > target) continue;
+    if (!heap.empty() && branch.worth > heap.front().worth) {
+      push(std::move(branch));
+      continue;
+    }
+    for (const Index h : branch.halfedges) mark(h, false);
+    refresh();
+  }
+}
+
+/// Whether its edges are still seams that hang on their last vertex alone.
+bool SeamSearch::is_branch(const Branch& branch) const {
+  for (std::size_t i = 0; i < branch.vertices.size(); ++i) {
+    if (degree_[branch.vertices[i]] != (i == 0 ? 1 : 2)) return false;
+  }
+  const Index last = surface_.target(branch.halfedges.back());
+  return surface_.on_boundary[last] || degree_[last] >= 2;
 }
 
 }  // namespace beltrami

@@ -57,7 +57,8 @@ class SeamSearch {
   std::vector<Branch> branches() const;
   Branch branch_from(Index tip) const;
   void judge(Branch& branch) const;
-  void remove(const Branch& branch);
+  Branch end_of(const Branch& branch) const;
+  bool is_branch(const Branch& branch) const;
 
   const Surface& surface_;
   const std::vector<double>& cost_;

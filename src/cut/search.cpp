@@ -10,7 +10,10 @@
 
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
+#include "cut/seam_costs.h"
 #include "cut/seam_search.h"
+#include "cut/split_overlaps.h"
+#include "cut/straighten.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {
@@ -26,6 +29,8 @@ constexpr Index kLeastFaces = 300;
 constexpr double kVirtualCost = 0.1;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
+/// Where a map lies on itself on no more of its area, contact mends it at little cost.
+constexpr double kCoarseOverlap = 0.002;
 constexpr int kRounds = 6;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
 constexpr double kNear = 0.9;
@@ -46,20 +51,40 @@ struct Coarse {
   CollapseHistory history;
 };
 
-std::vector<double> costs_of(const Surface& surface, Index real_faces, const EdgeMarks& locked) {
-  std::vector<double> cost(surface.twin.size());
-  for (Index h = 0; h < size_of(cost); ++h) {
+/// What seams cost, less inside filled holes.
+std::vector<double> costs_of(const Surface& surface, Index real_faces, const SeamWeights& weights,
+                             const SeamHints& hints, const Work& work) {
+  std::vector<double> cost = seam_costs(surface, weights, hints, work);
+  for (Index h = 3 * real_faces; h < size_of(cost); ++h) {
     const Index twin = surface.twin[h];
-    const bool is_virtual = h / 3 >= real_faces && (twin == kNone || twin / 3 >= real_faces);
-    const Vec3 edge = surface.positions[surface.target(h)] - surface.positions[surface.origin(h)];
-    cost[h] = edge.norm() * (is_virtual ? kVirtualCost : 1);
-    if (!locked.empty() && locked[h]) cost[h] = std::numeric_limits<double>::infinity();
+    if (twin == kNone || twin / 3 >= real_faces) cost[h] *= kVirtualCost;
   }
   return cost;
 }
 
+/// The hints for a coarse surface: of an edge, the paint goes to its ends.
+SeamHints coarse_hints(const SeamHints& fine, const CoarseSurface& coarse, Index fine_vertices) {
+  SeamHints hints;
+  hints.hard_angle = fine.hard_angle;
+  std::vector<double> paint = fine.vertex_paint;
+  if (!fine.edge_paint.empty()) {
+    paint.resize(fine_vertices, 1);
+    for (const PaintedEdge& edge : fine.edge_paint) {
+      for (const Index v : edge.ends) paint[v] *= edge.factor;
+    }
+  }
+  for (const Index v : coarse.fine_vertex) {
+    if (!paint.empty()) hints.vertex_paint.push_back(paint[v]);
+  }
+  for (const Index f : coarse.fine_face) {
+    if (!fine.labels.empty()) hints.labels.push_back(fine.labels[f]);
+  }
+  return hints;
+}
+
 Coarse coarsen(const Surface& fine, Index real_faces, const Topology& topology,
-               const EdgeMarks& locked, const Work& work) {
+               const EdgeMarks& locked, const SeamWeights& weights, const SeamHints& hints,
+               const Work& work) {
   Index target = 0;
   for (const Component& component : topology.components) {
     target += std::min(component.faces, kLeastFaces);
@@ -67,15 +92,19 @@ Coarse coarsen(const Surface& fine, Index real_faces, const Topology& topology,
   target = std::max(target, kCoarseFaces);
   Coarse coarse;
   if (fine.face_count() <= kWorthSimplifying * target) {
-    coarse = {fine, real_faces, locked, costs_of(fine, real_faces, locked), {}, {}};
+    coarse.surface = fine;
+    coarse.real_faces = real_faces;
+    coarse.locked = locked;
+    coarse.cost = costs_of(fine, real_faces, weights, hints, work);
     return coarse;
   }
   CoarseSurface simple = simplify_surface(fine, topology.loops, target, work);
   coarse.real_faces = static_cast<Index>(
       std::lower_bound(simple.fine_face.begin(), simple.fine_face.end(), real_faces) -
       simple.fine_face.begin());
+  coarse.cost = costs_of(simple.mesh, coarse.real_faces, weights,
+                         coarse_hints(hints, simple, fine.vertex_count()), work);
   coarse.surface = std::move(simple.mesh);
-  coarse.cost = costs_of(coarse.surface, coarse.real_faces, {});
   coarse.fine_vertex = std::move(simple.fine_vertex);
   coarse.history = std::move(simple.history);
   return coarse;
@@ -96,31 +125,85 @@ struct Attempt {
   }
 };
 
+/// Costs for paths: infinite along edges that are not to be cut.
+std::vector<double> path_costs(const Coarse& coarse) {
+  std::vector<double> cost = coarse.cost;
+  for (std::size_t h = 0; h < coarse.locked.size(); ++h) {
+    if (coarse.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
+  }
+  return cost;
+}
+
 /// Corrects the model by maps until these have the energy that is asked for.
-Attempt find(const Coarse& coarse, const SeamTarget& target, const Work& work) {
-  const Topology topology = topology_of(coarse.surface, work);
-  SeamSearch search(coarse.surface, coarse.real_faces, coarse.cost,
-                    open_minimal(coarse.surface, topology, coarse.locked, work), work);
+class Closure {
+ public:
+  Closure(const Coarse& coarse, const SeamTarget& target, const Work& work)
+      : coarse_(coarse),
+        target_(target),
+        work_(work),
+        path_cost_(path_costs(coarse)),
+        search_(
+            coarse.surface, coarse.real_faces, path_cost_,
+            open_minimal(coarse.surface, topology_of(coarse.surface, work), coarse.locked, work),
+            work) {}
+
+  Attempt run();
+
+ private:
+  void straighten_seams();
+
+  const Coarse& coarse_;
+  const SeamTarget& target_;
+  const Work work_;
+  std::vector<double> path_cost_;
+  SeamSearch search_;
+};
+
+void Closure::straighten_seams() {
+  search_.take(straighten(coarse_.surface, search_.seams(), coarse_.cost, search_.anchors(),
+                          coarse_.locked, work_.aside()));
+}
+
+Attempt Closure::run() {
   Attempt best;
   LocalMaps maps;
-  double model_energy = target.energy;
+  double model_energy = target_.energy;
   for (int round = 0; round < kRounds; ++round) {
-    work.report(static_cast<double>(round) / kRounds);
-    if (search.energy() < model_energy) search.shrink(model_energy);
-    const bool goes_on = search.extend(model_energy);
-    search.exchange(model_energy);
-    maps = map_locally(coarse.surface, coarse.real_faces, search.seams(), kMapTolerance,
-                       round == 0 ? nullptr : &maps, work);
-    Attempt attempt{search.seams(), search.anchors(), search.cost(), maps.energy};
-    if (attempt.is_better_than(best, target.energy)) best = std::move(attempt);
-    const double excess = maps.energy - 2, wanted = target.energy - 2;
+    work_.report(static_cast<double>(round) / kRounds);
+    if (search_.energy() < model_energy) search_.shrink(model_energy);
+    const bool goes_on = search_.extend(model_energy);
+    search_.exchange(model_energy);
+    straighten_seams();
+    maps = map_locally(coarse_.surface, coarse_.real_faces, search_.seams(), kMapTolerance,
+                       round == 0 ? nullptr : &maps, work_);
+    Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
+    if (attempt.is_better_than(best, target_.energy)) best = std::move(attempt);
+    const double excess = maps.energy - 2, wanted = target_.energy - 2;
     if (excess <= wanted && excess >= kNear * wanted) break;
     if (excess > wanted && !goes_on) break;
     const double step =
         std::clamp(kAim * wanted / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
-    model_energy = 2 + std::max(search.energy() - 2, kLeastExcess) * step;
+    model_energy = 2 + std::max(search_.energy() - 2, kLeastExcess) * step;
   }
   return best;
+}
+
+/// Parts the charts that lie on themselves.
+void part_overlaps(const Coarse& coarse, const Work& work, Attempt& found) {
+  const LocalMaps maps =
+      map_locally(coarse.surface, coarse.real_faces, found.seams, kMapTolerance, nullptr, work);
+  const std::vector<double> path_cost = path_costs(coarse);
+  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
+    const Chart& chart = maps.cut.charts[c];
+    std::vector<double> cost(chart.mesh.twin.size());
+    const auto surface_halfedge = [&](Index h) { return 3 * chart.input_face[h / 3] + h % 3; };
+    for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost[surface_halfedge(h)];
+    const OverlapSplit split =
+        split_overlaps(chart.mesh, maps.uvs[c], cost, kCoarseOverlap, work.aside());
+    for (Index h = 0; h < size_of(cost); ++h) {
+      if (split.seams[h]) mark_edge(coarse.surface, surface_halfedge(h), found.seams);
+    }
+  }
 }
 
 /// Marks the edges between these vertices.
@@ -137,7 +220,9 @@ EdgeMarks marks_of(const Surface& surface, const std::vector<std::array<Index, 2
   return marks;
 }
 
-EdgeMarks carried(const Coarse& coarse, const Surface& fine, const Attempt& found) {
+/// The seams on the fine surface, straightened there.
+EdgeMarks carried(const Coarse& coarse, const Surface& fine, const std::vector<double>& cost,
+                  const EdgeMarks& locked, const Attempt& found, const Work& work) {
   std::vector<std::array<Index, 2>> edges;
   const Surface& surface = coarse.surface;
   for (Index h = 0; h < size_of(surface.twin); ++h) {
@@ -148,17 +233,24 @@ EdgeMarks carried(const Coarse& coarse, const Surface& fine, const Attempt& foun
   for (std::size_t v = 0; v < found.anchors.size(); ++v) {
     if (found.anchors[v]) anchors[coarse.fine_vertex[v]] = true;
   }
-  return marks_of(fine, carry_edges(coarse.history, edges, fine.on_boundary, anchors));
+  const EdgeMarks marks =
+      marks_of(fine, carry_edges(coarse.history, edges, fine.on_boundary, anchors));
+  return straighten(fine, marks, cost, anchors, locked, work);
 }
 
 }  // namespace
 
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
-                           const EdgeMarks& locked, const SeamTarget& target, const Work& work) {
-  const Coarse coarse = coarsen(surface, real_faces, topology, locked, work.part(0, 0.3));
-  Attempt found = find(coarse, target, work.part(0.3, 0.9));
+                           const EdgeMarks& locked, const SeamTarget& target,
+                           const SeamWeights& weights, const SeamHints& hints, const Work& work) {
+  const Coarse coarse =
+      coarsen(surface, real_faces, topology, locked, weights, hints, work.part(0, 0.3));
+  Attempt found = Closure(coarse, target, work.part(0.3, 0.8)).run();
+  part_overlaps(coarse, work.part(0.8, 0.9), found);
   if (coarse.fine_vertex.empty()) return {std::move(found.seams), found.energy};
-  return {carried(coarse, surface, found), found.energy};
+  return {carried(coarse, surface, costs_of(surface, real_faces, weights, hints, work), locked,
+                  found, work.part(0.9, 1)),
+          found.energy};
 }
 
 }  // namespace beltrami

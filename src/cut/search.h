@@ -4,6 +4,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
+#include "cut/seam_costs.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -11,9 +12,10 @@ namespace beltrami {
 /// What is asked of seams. The shortest are sought that meet all of it; where that cannot be, those
 /// that come near.
 struct SeamTarget {
-  double energy = 2.05;    ///< mean symmetric Dirichlet energy of the maps, above 2
-  double p99 = 0;          ///< that exceeded on 1% of the area; 0: any
-  Index max_charts = 0;    ///< charts parted for their overlaps are no more, if there is a way; 0: any
+  double energy = 2.05;  ///< mean symmetric Dirichlet energy of the maps, above 2
+  double p99 = 0;        ///< that exceeded on 1% of the area; 0: any
+  Index max_charts =
+      0;  ///< charts parted for their overlaps are no more, if there is a way; 0: any
   double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
 };
 
@@ -26,8 +28,10 @@ struct SearchedSeams {
 /// have the energy asked for. All of it is decided on a coarse surface, by a model of the maps and
 /// then by maps, and carried to the fine one. `real_faces`: those after them are virtual, they
 /// weigh and cost nothing. `locked`: edges that are not to be cut where there is a way, or none.
-/// Preconditions: `topology` is the surface's; area about 1. Throws Error SOLVER.
+/// Preconditions: `topology` is the surface's; hints are of its vertices and faces; area about 1.
+/// Throws Error SOLVER.
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
-                           const EdgeMarks& locked, const SeamTarget& target, const Work& work);
+                           const EdgeMarks& locked, const SeamTarget& target,
+                           const SeamWeights& weights, const SeamHints& hints, const Work& work);
 
 }  // namespace beltrami
