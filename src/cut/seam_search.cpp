@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "base/interrupt.h"
@@ -18,7 +19,20 @@ constexpr double kApart = 0.04;
 constexpr double kLeastCost = 0.02;
 /// Gains below that are rounding.
 constexpr double kLeastGain = 1e-7;
-constexpr int kExchanges = 8;
+constexpr int kExchanges = 4;
+/// Parts of a branch that may go alone: its half, quarter and eighth.
+constexpr std::size_t kEnds = 3;
+
+/// What is left of a path without the half at its start; nothing of the shortest.
+SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
+  const std::ptrdiff_t first = (std::ssize(path.vertices) + 1) / 2;
+  SeamPath half;
+  if (first == std::ssize(path.vertices)) return half;
+  half.vertices.assign(path.vertices.begin() + first, path.vertices.end());
+  half.halfedges.assign(path.halfedges.begin() + first, path.halfedges.end());
+  half.cost = paths.costs()[half.vertices.front()];
+  return half;
+}
 
 }  // namespace
 
@@ -30,6 +44,11 @@ SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vect
       anchored_(surface.positions.size(), false),
       model_(surface, real_faces, work),
       scale_(std::sqrt(surface_area(surface, work))) {
+  take(std::move(seams));
+}
+
+void SeamSearch::take(EdgeMarks seams, std::vector<bool> anchors) {
+  anchored_ = std::move(anchors);
   take(std::move(seams));
 }
 
@@ -102,13 +121,15 @@ bool SeamSearch::extend_once() {
   double best = 0;
   SeamPath chosen;
   for (const Index v : ends) {
-    SeamPath path = paths.from(v);
-    const double gain = model_.energy() - model_.energy_with(path.vertices);
-    if (!(gain > kLeastGain)) continue;
-    const double worth = gain / (path.cost + kLeastCost * scale_);
-    if (worth <= best) continue;
-    best = worth;
-    chosen = std::move(path);
+    for (SeamPath path = paths.from(v); !path.vertices.empty(); path = last_half(path, paths)) {
+      const double gain = model_.energy() - model_.energy_with(path.vertices);
+      if (!(gain > kLeastGain)) break;
+      const double worth = gain / (path.cost + kLeastCost * scale_);
+      // A half that is worth less than the whole has halves that are.
+      if (worth <= best) break;
+      best = worth;
+      chosen = path;
+    }
   }
   if (chosen.halfedges.empty()) return false;
   for (const Index h : chosen.halfedges) mark(h, true);
@@ -185,43 +206,47 @@ void SeamSearch::exchange(double target) {
   }
 }
 
-/// The half of a branch that its tip is in; the least branches have none.
-SeamSearch::Branch SeamSearch::end_of(const Branch& branch) const {
-  const std::ptrdiff_t half = std::ssize(branch.vertices) / 2;
-  Branch end;
-  end.vertices.assign(branch.vertices.begin(), branch.vertices.begin() + half);
-  end.halfedges.assign(branch.halfedges.begin(), branch.halfedges.begin() + half);
-  for (const Index h : end.halfedges) end.cost += cost_[h];
-  return end;
+/// A branch and parts of it from its tip, judged.
+std::vector<SeamSearch::Branch> SeamSearch::ends_of(Branch branch) const {
+  std::vector<Branch> ends;
+  for (std::ptrdiff_t count = std::ssize(branch.vertices) / 2; count > 0; count /= 2) {
+    Branch& end = ends.emplace_back();
+    end.vertices.assign(branch.vertices.begin(), branch.vertices.begin() + count);
+    end.halfedges.assign(branch.halfedges.begin(), branch.halfedges.begin() + count);
+    for (const Index h : end.halfedges) end.cost += cost_[h];
+    judge(end);
+    if (ends.size() == kEnds) break;
+  }
+  judge(branch);
+  ends.push_back(std::move(branch));
+  return ends;
 }
 
 /// What a branch is worth hardly falls where others go: one that is still worth less than all the
 /// others were is the least.
 void SeamSearch::shrink(double target) {
   const auto is_worth_more = [](const Branch& a, const Branch& b) {
-    return std::pair(a.worth, a.vertices.front()) > std::pair(b.worth, b.vertices.front());
+    return std::tuple(a.worth, a.vertices.front(), a.vertices.size()) >
+           std::tuple(b.worth, b.vertices.front(), b.vertices.size());
   };
-  std::vector<Branch> heap = branches();
-  for (std::size_t i = 0, count = heap.size(); i < count; ++i) {
-    Branch end = end_of(heap[i]);
-    if (end.vertices.empty()) continue;
-    judge(end);
-    heap.push_back(std::move(end));
-  }
-  std::make_heap(heap.begin(), heap.end(), is_worth_more);
+  std::vector<Branch> heap;
   const auto push = [&](Branch branch) {
     heap.push_back(std::move(branch));
     std::push_heap(heap.begin(), heap.end(), is_worth_more);
   };
+  const auto push_ends = [&](Index tip) {
+    if (degree_[tip] != 1 || surface_.on_boundary[tip]) return;
+    Branch branch = branch_from(tip);
+    if (branch.halfedges.empty()) return;
+    for (Branch& end : ends_of(std::move(branch))) push(std::move(end));
+  };
+  for (Index v = 0; v < surface_.vertex_count(); ++v) push_ends(v);
   while (!heap.empty()) {
     poll_interrupt();
     std::pop_heap(heap.begin(), heap.end(), is_worth_more);
     Branch branch = std::move(heap.back());
     heap.pop_back();
-    const Index tip = branch.vertices.front();
-    // Its half went before, or it has grown into the branch that it met.
-    const bool is_whole = degree_[tip] == 1 && is_branch(branch);
-    if (!is_whole) continue;
+    if (!is_branch(branch)) continue;
     judge(branch);
     if (branch.energy > target) continue;
     if (!heap.empty() && branch.worth > heap.front().worth) {
@@ -230,6 +255,7 @@ void SeamSearch::shrink(double target) {
     }
     for (const Index h : branch.halfedges) mark(h, false);
     refresh();
+    push_ends(surface_.target(branch.halfedges.back()));
   }
 }
 

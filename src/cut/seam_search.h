@@ -39,8 +39,9 @@ class SeamSearch {
   /// Per vertex, whether a path was made to it.
   const std::vector<bool>& anchors() const { return anchored_; }
 
-  /// Takes other seams, which have been moved; their anchors are where they were.
+  /// Takes other seams, which have been moved or added to; anchors stay where they were.
   void take(EdgeMarks seams);
+  void take(EdgeMarks seams, std::vector<bool> anchors);
 
  private:
   struct Branch {
@@ -57,7 +58,7 @@ class SeamSearch {
   std::vector<Branch> branches() const;
   Branch branch_from(Index tip) const;
   void judge(Branch& branch) const;
-  Branch end_of(const Branch& branch) const;
+  std::vector<Branch> ends_of(Branch branch) const;
   bool is_branch(const Branch& branch) const;
 
   const Surface& surface_;

@@ -1,4 +1,6 @@
 #include "cut/search.h"
+#include <cstdio>
+#include <cstdlib>
 
 #include <algorithm>
 #include <array>
@@ -31,11 +33,13 @@ constexpr double kVirtualCost = 0.1;
 constexpr double kMapTolerance = 1e-3;
 /// Where a map lies on itself on no more of its area, contact mends it at little cost.
 constexpr double kCoarseOverlap = 0.002;
-constexpr int kRounds = 6;
+/// Maps whose excess is more times the one asked for are of cuts that will grow.
+constexpr double kWorthParting = 1.3;
+constexpr int kRounds = 8;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
-constexpr double kNear = 0.9;
+constexpr double kNear = 0.95;
 /// The next target of the model aims at so much of the excess asked for.
-constexpr double kAim = 0.97;
+constexpr double kAim = 0.98;
 /// By how much the model is corrected in a round.
 constexpr double kLeastStep = 0.3, kMostStep = 2;
 /// The model's excess is not to be believed below.
@@ -150,7 +154,9 @@ class Closure {
   Attempt run();
 
  private:
-  void straighten_seams();
+  void straighten_seams(double model_energy);
+  LocalMaps map(const LocalMaps* before) const;
+  bool part_overlaps(const LocalMaps& maps);
 
   const Coarse& coarse_;
   const SeamTarget& target_;
@@ -159,26 +165,70 @@ class Closure {
   SeamSearch search_;
 };
 
-void Closure::straighten_seams() {
-  search_.take(straighten(coarse_.surface, search_.seams(), coarse_.cost, search_.anchors(),
-                          coarse_.locked, work_.aside()));
+/// Straight seams miss some of what bent ones ran to: they are taken where they are shorter with
+/// what has to be added to them.
+void Closure::straighten_seams(double model_energy) {
+  const EdgeMarks bent = search_.seams();
+  const std::vector<bool> anchors = search_.anchors();
+  const double cost = search_.cost(), energy = search_.energy();
+  search_.take(
+      straighten(coarse_.surface, bent, coarse_.cost, anchors, coarse_.locked, work_.aside()));
+  search_.extend(std::max(model_energy, energy));
+  const bool is_better =
+      search_.cost() < cost && search_.energy() <= std::max(model_energy, energy);
+  if (!is_better) search_.take(bent, anchors);
+}
+
+LocalMaps Closure::map(const LocalMaps* before) const {
+  return map_locally(coarse_.surface, coarse_.real_faces, search_.seams(), kMapTolerance, before,
+                     work_);
+}
+
+/// Parts the charts that lie on themselves. Whether there was one.
+bool Closure::part_overlaps(const LocalMaps& maps) {
+  EdgeMarks seams = search_.seams();
+  bool parted = false;
+  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
+    const Chart& chart = maps.cut.charts[c];
+    std::vector<double> cost(chart.mesh.twin.size());
+    const auto surface_halfedge = [&](Index h) { return 3 * chart.input_face[h / 3] + h % 3; };
+    for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost_[surface_halfedge(h)];
+    const OverlapSplit split =
+        split_overlaps(chart.mesh, maps.uvs[c], cost, kCoarseOverlap, work_.aside());
+    for (Index h = 0; h < size_of(cost); ++h) {
+      if (!split.seams[h]) continue;
+      mark_edge(coarse_.surface, surface_halfedge(h), seams);
+      parted = true;
+    }
+  }
+  if (parted) search_.take(std::move(seams));
+  return parted;
 }
 
 Attempt Closure::run() {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
+  const double wanted = target_.energy - 2;
   for (int round = 0; round < kRounds; ++round) {
     work_.report(static_cast<double>(round) / kRounds);
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool goes_on = search_.extend(model_energy);
     search_.exchange(model_energy);
-    straighten_seams();
-    maps = map_locally(coarse_.surface, coarse_.real_faces, search_.seams(), kMapTolerance,
-                       round == 0 ? nullptr : &maps, work_);
-    Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
-    if (attempt.is_better_than(best, target_.energy)) best = std::move(attempt);
-    const double excess = maps.energy - 2, wanted = target_.energy - 2;
+    straighten_seams(model_energy);
+    maps = map(round == 0 ? nullptr : &maps);
+    if ((maps.energy - 2 <= kWorthParting * wanted || !goes_on) && part_overlaps(maps)) {
+      maps = map(&maps);
+    }
+    const double excess = maps.energy - 2;
+    if (getenv("DBG"))
+      fprintf(stderr, "round %d modelT %.4f model %.4f cost %.3f real %.4f goes %d charts %zu\n",
+              round, model_energy, search_.energy(), search_.cost(), maps.energy, goes_on,
+              maps.uvs.size());
+    if (excess <= kWorthParting * wanted || !goes_on || round + 1 == kRounds) {
+      Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
+      if (attempt.is_better_than(best, target_.energy)) best = std::move(attempt);
+    }
     if (excess <= wanted && excess >= kNear * wanted) break;
     if (excess > wanted && !goes_on) break;
     const double step =
@@ -186,24 +236,6 @@ Attempt Closure::run() {
     model_energy = 2 + std::max(search_.energy() - 2, kLeastExcess) * step;
   }
   return best;
-}
-
-/// Parts the charts that lie on themselves.
-void part_overlaps(const Coarse& coarse, const Work& work, Attempt& found) {
-  const LocalMaps maps =
-      map_locally(coarse.surface, coarse.real_faces, found.seams, kMapTolerance, nullptr, work);
-  const std::vector<double> path_cost = path_costs(coarse);
-  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
-    const Chart& chart = maps.cut.charts[c];
-    std::vector<double> cost(chart.mesh.twin.size());
-    const auto surface_halfedge = [&](Index h) { return 3 * chart.input_face[h / 3] + h % 3; };
-    for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost[surface_halfedge(h)];
-    const OverlapSplit split =
-        split_overlaps(chart.mesh, maps.uvs[c], cost, kCoarseOverlap, work.aside());
-    for (Index h = 0; h < size_of(cost); ++h) {
-      if (split.seams[h]) mark_edge(coarse.surface, surface_halfedge(h), found.seams);
-    }
-  }
 }
 
 /// Marks the edges between these vertices.
@@ -245,8 +277,7 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamWeights& weights, const SeamHints& hints, const Work& work) {
   const Coarse coarse =
       coarsen(surface, real_faces, topology, locked, weights, hints, work.part(0, 0.3));
-  Attempt found = Closure(coarse, target, work.part(0.3, 0.8)).run();
-  part_overlaps(coarse, work.part(0.8, 0.9), found);
+  Attempt found = Closure(coarse, target, work.part(0.3, 0.9)).run();
   if (coarse.fine_vertex.empty()) return {std::move(found.seams), found.energy};
   return {carried(coarse, surface, costs_of(surface, real_faces, weights, hints, work), locked,
                   found, work.part(0.9, 1)),
