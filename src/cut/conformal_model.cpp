@@ -24,7 +24,7 @@ constexpr double kPinned = 1e7;
 constexpr double kMostFactor = 300;
 /// A map that is free to be no conformal one is so much less distorted: the part of the factors
 /// that is left. Means of maps with 1 to 40 slits of scans and of sculpted meshes.
-constexpr double kRealShare = 0.55;
+constexpr double kRealShare = 0.4;
 
 double corner_angle(const RestTriangle& rest, int k) {
   const Complex to = rest.corner(next_corner(k)) - rest.corner(k);

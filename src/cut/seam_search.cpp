@@ -19,7 +19,8 @@ constexpr double kApart = 0.04;
 constexpr double kLeastCost = 0.02;
 /// Gains below that are rounding.
 constexpr double kLeastGain = 1e-7;
-constexpr int kExchanges = 4;
+/// More rounds gain nothing.
+constexpr int kReconnections = 4;
 /// Parts of a branch that may go alone: its half, quarter and eighth.
 constexpr std::size_t kEnds = 3;
 
@@ -185,25 +186,98 @@ std::vector<SeamSearch::Branch> SeamSearch::branches() const {
   return found;
 }
 
-void SeamSearch::exchange(double target) {
-  for (int round = 0; round < kExchanges; ++round) {
-    const EdgeMarks seams_before = seams_;
-    const std::vector<bool> anchors_before = anchored_;
-    const double cost_before = cost_of_seams_;
-    const std::vector<Branch> all = branches();
-    if (all.empty()) return;
-    const std::size_t removed = std::max<std::size_t>(1, all.size() / 4);
-    for (std::size_t i = 0; i < removed; ++i) {
-      // Two branches may end at one node, and the second then goes on.
-      for (const Index h : all[i].halfedges) mark(h, false);
+/// The seams between vertices that other than two meet at, or that were ends of paths, each by its
+/// half-edges in order; the most costly first.
+std::vector<std::vector<Index>> SeamSearch::arcs() const {
+  const auto is_node = [&](Index v) {
+    return degree_[v] != 2 || anchored_[v] || surface_.on_boundary[v];
+  };
+  std::vector<std::pair<double, std::vector<Index>>> found;
+  for (Index first = 0; first < size_of(seams_); ++first) {
+    if (!seams_[first] || !is_node(surface_.origin(first))) continue;
+    double cost = 0;
+    std::vector<Index> arc;
+    for (Index h = first; h != kNone;) {
+      arc.push_back(h);
+      cost += cost_[h];
+      const Index v = surface_.target(h), back = surface_.twin[h];
+      h = kNone;
+      if (is_node(v)) break;
+      surface_.for_each_outgoing(v, [&](Index out) {
+        if (seams_[out] && out != back) h = out;
+      });
     }
-    refresh();
-    extend(target);
-    if (model_.energy() <= target && cost_of_seams_ < cost_before * (1 - 1e-9)) continue;
-    anchored_ = anchors_before;
-    take(seams_before);
-    return;
+    // Found from both of its ends.
+    if (surface_.twin[arc.back()] == kNone || arc.front() < surface_.twin[arc.back()]) {
+      found.emplace_back(-cost, std::move(arc));
+    }
   }
+  std::sort(found.begin(), found.end());
+  std::vector<std::vector<Index>> arcs;
+  for (auto& [cost, arc] : found) arcs.push_back(std::move(arc));
+  return arcs;
+}
+
+/// Per vertex, whether seams and borders lead there.
+std::vector<bool> SeamSearch::joined_to(Index vertex) const {
+  std::vector<bool> joined(degree_.size(), false);
+  std::vector<Index> open = {vertex};
+  joined[vertex] = true;
+  const auto reach = [&](Index v) {
+    if (joined[v]) return;
+    joined[v] = true;
+    open.push_back(v);
+  };
+  while (!open.empty()) {
+    const Index v = open.back();
+    open.pop_back();
+    surface_.for_each_outgoing(v, [&](Index h) {
+      if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
+      const Index in = Surface::previous(h);
+      if (surface_.twin[in] == kNone) reach(surface_.origin(in));
+    });
+  }
+  return joined;
+}
+
+/// Whether the two parts were joined at less cost. Where the seams stay joined without it, the arc
+/// goes around a handle or between charts.
+bool SeamSearch::reconnect(const std::vector<Index>& arc) {
+  double cost = 0;
+  for (const Index h : arc) {
+    // What was moved before may end here now.
+    const bool is_inner = h == arc.front() || degree_[surface_.origin(h)] == 2;
+    if (!seams_[h] || surface_.twin[h] == kNone || !is_inner) return false;
+    cost += cost_[h];
+  }
+  for (const Index h : arc) mark(h, false);
+  const Index end = surface_.target(arc.back());
+  const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
+  std::vector<Index> path = arc;
+  if (!joined[end]) {
+    const SeamPaths paths(surface_, joined, cost_);
+    const std::vector<bool> others = joined_to(end);
+    Index nearest = end;
+    for (Index v = 0; v < surface_.vertex_count(); ++v) {
+      if (others[v] && paths.costs()[v] < paths.costs()[nearest]) nearest = v;
+    }
+    if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
+  }
+  const bool is_new = path != arc;
+  for (const Index h : path) mark(h, true);
+  return is_new;
+}
+
+void SeamSearch::reconnect() {
+  for (int round = 0; round < kReconnections; ++round) {
+    bool gained = false;
+    for (const std::vector<Index>& arc : arcs()) {
+      poll_interrupt();
+      gained = reconnect(arc) || gained;
+    }
+    if (!gained) break;
+  }
+  refresh();
 }
 
 /// A branch and parts of it from its tip, judged.

@@ -25,9 +25,10 @@ class SeamSearch {
   /// by what is gained for the cost. False where nothing helps any more.
   bool extend(double target);
 
-  /// Takes back branches that are worth less for their cost than what extend() would put in their
-  /// place, and extends to `target` again, as long as that shortens the seams.
-  void exchange(double target);
+  /// Joins the parts that fall apart without an arc of the seams again where that is cheapest, arc
+  /// after arc, as long as something is gained: what was joined in the order of its worth becomes a
+  /// short tree (key paths exchanged, Uchoa & Werneck 2012). The energy may rise.
+  void reconnect();
 
   /// Takes back branches, or their ends, that are worth the least, as long as the energy of the
   /// model stays at most `target`.
@@ -54,6 +55,9 @@ class SeamSearch {
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
   bool extend_once();
+  std::vector<std::vector<Index>> arcs() const;
+  std::vector<bool> joined_to(Index vertex) const;
+  bool reconnect(const std::vector<Index>& arc);
   void mark(Index halfedge, bool is);
   std::vector<Branch> branches() const;
   Branch branch_from(Index tip) const;

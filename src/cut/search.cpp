@@ -1,6 +1,4 @@
 #include "cut/search.h"
-#include <cstdio>
-#include <cstdlib>
 
 #include <algorithm>
 #include <array>
@@ -32,7 +30,7 @@ constexpr double kVirtualCost = 0.1;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
 /// Where a map lies on itself on no more of its area, contact mends it at little cost.
-constexpr double kCoarseOverlap = 0.002;
+constexpr double kCoarseOverlap = 0.005;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
 constexpr int kRounds = 8;
@@ -154,7 +152,7 @@ class Closure {
   Attempt run();
 
  private:
-  void straighten_seams(double model_energy);
+  void shorten_seams(double model_energy);
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps);
 
@@ -165,18 +163,18 @@ class Closure {
   SeamSearch search_;
 };
 
-/// Straight seams miss some of what bent ones ran to: they are taken where they are shorter with
-/// what has to be added to them.
-void Closure::straighten_seams(double model_energy) {
-  const EdgeMarks bent = search_.seams();
+/// Short and straight seams miss some of what the others ran to: they are taken where they are
+/// shorter with what has to be added to them.
+void Closure::shorten_seams(double model_energy) {
+  const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
-  const double cost = search_.cost(), energy = search_.energy();
-  search_.take(
-      straighten(coarse_.surface, bent, coarse_.cost, anchors, coarse_.locked, work_.aside()));
-  search_.extend(std::max(model_energy, energy));
-  const bool is_better =
-      search_.cost() < cost && search_.energy() <= std::max(model_energy, energy);
-  if (!is_better) search_.take(bent, anchors);
+  const double cost = search_.cost(), energy = std::max(model_energy, search_.energy());
+  search_.reconnect();
+  search_.take(straighten(coarse_.surface, search_.seams(), coarse_.cost, search_.anchors(),
+                          coarse_.locked, work_.aside()));
+  search_.extend(energy);
+  const bool is_better = search_.cost() < cost && search_.energy() <= energy;
+  if (!is_better) search_.take(before, anchors);
 }
 
 LocalMaps Closure::map(const LocalMaps* before) const {
@@ -214,16 +212,12 @@ Attempt Closure::run() {
     work_.report(static_cast<double>(round) / kRounds);
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool goes_on = search_.extend(model_energy);
-    search_.exchange(model_energy);
-    straighten_seams(model_energy);
+    shorten_seams(model_energy);
     maps = map(round == 0 ? nullptr : &maps);
     if ((maps.energy - 2 <= kWorthParting * wanted || !goes_on) && part_overlaps(maps)) {
       maps = map(&maps);
     }
     const double excess = maps.energy - 2;
-    if (getenv("DBG"))
-      fprintf(stderr, "round %d modelT %.4f model %.4f cost %.3f real %.4f goes %d charts %zu\n",
-              round, model_energy, search_.energy(), search_.cost(), maps.energy, goes_on,
               maps.uvs.size());
     if (excess <= kWorthParting * wanted || !goes_on || round + 1 == kRounds) {
       Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
