@@ -218,7 +218,6 @@ Attempt Closure::run() {
       maps = map(&maps);
     }
     const double excess = maps.energy - 2;
-              maps.uvs.size());
     if (excess <= kWorthParting * wanted || !goes_on || round + 1 == kRounds) {
       Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
       if (attempt.is_better_than(best, target_.energy)) best = std::move(attempt);
