@@ -177,7 +177,17 @@ enum {
   BELTRAMI_OPTION_WELD = 17,          /* choice: BELTRAMI_WELD_ */
   BELTRAMI_OPTION_WELD_DISTANCE = 18, /* float: welds vertices this close, in the mesh's unit */
   BELTRAMI_OPTION_FILL_HOLES = 19,    /* float: longest boundary of a hole that costs no seam */
-  BELTRAMI_OPTION_SHARE_COPIES = 20   /* int: 1 gives copies of a face the UVs of the first */
+  BELTRAMI_OPTION_SHARE_COPIES = 20,  /* int: 1 gives copies of a face the UVs of the first */
+  /* Of the search for seams, with the cut AUTO. */
+  BELTRAMI_OPTION_PRESET = 21,        /* choice: BELTRAMI_PRESET_; sets the options below */
+  BELTRAMI_OPTION_TARGET_ENERGY = 22, /* float: mean symmetric Dirichlet energy that is sought */
+  BELTRAMI_OPTION_TARGET_P99 = 23,    /* float: energy that 1% of the area may exceed; 0: any */
+  BELTRAMI_OPTION_MAX_CHARTS = 24,    /* int: charts that are enough; 0: any number */
+  BELTRAMI_OPTION_SEAM_BUDGET = 25,   /* float: seam length over the root of the area; 0: any */
+  BELTRAMI_OPTION_CONCAVE_SEAMS = 26, /* float: how far seams seek concave edges; 0: not */
+  BELTRAMI_OPTION_HIDDEN_SEAMS = 27,  /* float: how far seams hide from view; 0: not */
+  BELTRAMI_OPTION_HARD_SEAMS = 28,    /* float: factor of what a seam along a hard edge costs */
+  BELTRAMI_OPTION_MATERIAL_SEAMS = 29 /* float: the same where the materials of faces differ */
 };
 
 /* What is cut beside the seams that come with a surface. */
@@ -186,7 +196,28 @@ enum {
   /* Nothing but a short cut graph where a piece is no disk. */
   BELTRAMI_CUT_MINIMAL = 0,
   /* Also where the corner UVs of the surface part: its charts stay what they are. */
-  BELTRAMI_CUT_ISLANDS = 1
+  BELTRAMI_CUT_ISLANDS = 1,
+  /* The default: short seams that are searched for, along which the maps have the energy asked for
+   * by the option target-energy. */
+  BELTRAMI_CUT_AUTO = 2,
+  /* Nothing: the seams that come with the surface are used as they are. What is no disk then is
+   * opened as by MINIMAL, which does the same; seams of an earlier atlas leave nothing to open. */
+  BELTRAMI_CUT_GIVEN = 3
+};
+
+/* What the seams are for: setting one writes its values to the options of the search. */
+enum {
+  BELTRAMI_PRESET_FORCE_SIGNED_ = -1,
+  /* The defaults. */
+  BELTRAMI_PRESET_NONE = 0,
+  /* Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
+   * hard edges: hidden-seams 0, hard-seams 0.5. */
+  BELTRAMI_PRESET_LIGHTMAP = 1,
+  /* Textures that are painted or photographed: seams where nobody looks, though they be longer:
+   * concave-seams 0.6, hidden-seams 2. */
+  BELTRAMI_PRESET_TEXTURING = 2,
+  /* One chart for each component, at the energy that it can have: max-charts 1. */
+  BELTRAMI_PRESET_ONE_CHART = 3
 };
 
 /* Whether vertices at one place are one. */
@@ -296,6 +327,12 @@ BELTRAMI_API beltrami_status beltrami_set_int(beltrami_context* context, int32_t
                                               int64_t value);
 BELTRAMI_API beltrami_status beltrami_set_float(beltrami_context* context, int32_t key,
                                                 double value);
+
+/* Writes the value that option `key` has: its default, what it was set to, or what the option
+ * preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
+ * run). */
+BELTRAMI_API beltrami_status beltrami_get_option(beltrami_context* context, int32_t key,
+                                                 double* value);
 
 /* ---- Mesh ------------------------------------------------------------------------------- */
 
@@ -522,6 +559,19 @@ typedef struct beltrami_surface {
   beltrami_buffer pins;    /* optional: pin_count items of 1, U32 or U64: corners */
   beltrami_buffer pin_uvs; /* pin_count items of 2, F32 or F64, in the unit of positions */
   uint64_t pin_count;
+
+  /* What draws the seams that the cut AUTO searches for, and drives them off; with another cut
+   * they are refused. Factors of what a seam costs are finite and at least 0, less than 1 to draw
+   * it; they count from 0.05 to 20, and force nothing. */
+  beltrami_buffer vertex_paint;  /* optional: vertex_count items of 1, F32 or F64: factors; an edge
+                                  * has the geometric mean of its ends */
+  beltrami_buffer painted_edges; /* optional: painted_edge_count items of 2, U32 or U64: edges by
+                                  * their vertices; pairs that are no edge are ignored */
+  beltrami_buffer edge_paint;    /* painted_edge_count items of 1, F32 or F64: factors, which
+                                  * multiply those of the ends; those of one edge multiply */
+  uint64_t painted_edge_count;
+  beltrami_buffer materials; /* optional: face_count items of 1, U32 or U64: where they differ a
+                              * seam costs the factor of the option material-seams */
 } beltrami_surface;
 
 /* Cuts polygons into triangles as every function below does: by ears, the best-shaped first. Writes
@@ -592,6 +642,10 @@ typedef struct beltrami_atlas {
   double seconds;             /* wall time of the run */
   double cpu_seconds;         /* of the whole process during the run */
   uint64_t peak_memory_bytes; /* of the whole process so far */
+  uint64_t seams;             /* edges, see beltrami_get_seams */
+  int32_t searched;           /* 1 where seams were searched for: with the cut AUTO; else 0 */
+  int32_t reached;            /* 1 where those meet what was asked for: energy (to 0.0001), p99,
+                               * charts (or one for each component), seam length; else 0 */
 } beltrami_atlas;
 
 /* A chart: a connected piece of the surface. */
@@ -672,6 +726,14 @@ BELTRAMI_API beltrami_status beltrami_get_uv_vertex_origins(beltrami_context* co
  * INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_face_charts(beltrami_context* context, void* out,
                                                       int32_t type, uint64_t stride);
+
+/* Writes the seams, those given and those found, as items of 2 vertices of the input, of vertices
+ * that count as one the least: `type` U32 or U64. They are the edges of the surface at which UVs
+ * part, each once, the lesser vertex first, in increasing order; open borders are none. Given back
+ * as `seams` of the surface, with the cut GIVEN, they make the same charts; but an edge of several
+ * layers of faces is cut in all of them. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_seams(beltrami_context* context, void* out, int32_t type,
+                                                uint64_t stride);
 
 /* Writes the triangles that were computed on, as items of 3 corners in the orientation in which
  * they are positive: `type` U32 or U64. Errors: INVALID_STATE, INVALID_ARGUMENT. */

@@ -59,6 +59,9 @@ beltrami_atlas describe(const Unwrapped& result) {
   report.seconds = result.seconds;
   report.cpu_seconds = result.cpu_seconds;
   report.peak_memory_bytes = result.peak_memory_bytes;
+  report.seams = result.seams.size() / 2;
+  report.searched = result.searched ? 1 : 0;
+  report.reached = result.reached ? 1 : 0;
   return report;
 }
 
@@ -182,6 +185,13 @@ beltrami_status beltrami_get_face_charts(beltrami_context* context, void* out, i
                                          uint64_t stride) {
   return get(context, [&](const Unwrapped& result) {
     beltrami::write_integers(result.chart_of_face, 1, out, type, stride);
+  });
+}
+
+beltrami_status beltrami_get_seams(beltrami_context* context, void* out, int32_t type,
+                                   uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    beltrami::write_integers(result.seams, 2, out, type, stride);
   });
 }
 

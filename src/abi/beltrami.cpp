@@ -219,6 +219,16 @@ beltrami_status beltrami_set_float(beltrami_context* context, int32_t key, doubl
   });
 }
 
+beltrami_status beltrami_get_option(beltrami_context* context, int32_t key, double* value) {
+  return enter(context, [&](beltrami_context& self) {
+    if (value == nullptr) {
+      throw beltrami::Error(beltrami::Fault::kInvalidArgument, "value is NULL");
+    }
+    *value = beltrami::get_option(self.options, key);
+    return BELTRAMI_OK;
+  });
+}
+
 beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh* mesh) {
   return enter(context, [&](beltrami_context& self) {
     self.cancelled.store(false);

@@ -14,7 +14,8 @@ constexpr const char* kMethods[] = {"beltrami", "cm", "tutte", "gif", "bff", "uv
 constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"};
 constexpr const char* kInjectivities[] = {"auto", "global", "local"};
 constexpr const char* kSwitch[] = {"off", "on"};
-constexpr const char* kCuts[] = {"minimal", "islands"};
+constexpr const char* kCuts[] = {"minimal", "islands", "auto", "given"};
+constexpr const char* kPresets[] = {"none", "lightmap", "texturing", "one-chart"};
 constexpr const char* kWelds[] = {"auto", "on", "off"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
@@ -23,11 +24,31 @@ double get(const Options& options) {
   return static_cast<double>(options.*Member);
 }
 
+/// Of a member of a part of the options.
+template <auto Part, auto Member>
+double get(const Options& options) {
+  return static_cast<double>(options.*Part.*Member);
+}
+
 template <auto Member>
 void set(Options& options, double value) {
   using Value = std::remove_reference_t<decltype(options.*Member)>;
   options.*Member = static_cast<Value>(value);
 }
+
+template <auto Part, auto Member>
+void set(Options& options, double value) {
+  using Value = std::remove_reference_t<decltype(options.*Part.*Member)>;
+  options.*Part.*Member = static_cast<Value>(value);
+}
+
+void set_preset(Options& options, double value) {
+  apply_preset(options, static_cast<std::int32_t>(value));
+}
+
+/// No map has an energy of 2 but of what is flat by itself: a mean below this one is none that
+/// rounding lets anything else have.
+constexpr double kLeastTarget = 2.0001;
 
 const OptionEntry kOptions[] = {
     {
@@ -212,9 +233,11 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_CUT,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "cut",
-        .summary = "Where seams go beside those that are given: minimal (a short cut graph where a "
-                   "piece is no disk) or islands (the charts of the UVs that the mesh has; what is "
-                   "no disk of them is opened).",
+        .summary = "Where seams go beside those that are given: auto (short ones that are searched "
+                   "for, along which the atlas has the target-energy), minimal (a short cut graph "
+                   "where a piece is no disk), islands (the charts of the UVs that the mesh has; "
+                   "what is no disk of them is opened) or given (nowhere: those that are given are "
+                   "used as they are; what is no disk then is opened as by minimal).",
         .minimum = 0,
         .maximum = std::size(kCuts) - 1,
         .choices = kCuts,
@@ -283,6 +306,117 @@ const OptionEntry kOptions[] = {
         .set = set<&Options::share_copies>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
+    {
+        .key = BELTRAMI_OPTION_PRESET,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "preset",
+        .summary = "What the seams are for, a shorthand for the options of the search, of which "
+                   "those that are given count more: none (their defaults), lightmap "
+                   "(target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams "
+                   "0.6, hidden-seams 2) or one-chart (max-charts 1).",
+        .minimum = 0,
+        .maximum = std::size(kPresets) - 1,
+        .choices = kPresets,
+        .get = get<&Options::preset>,
+        .set = set_preset,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_TARGET_ENERGY,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "target-energy",
+        .summary = "Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 "
+                   "for lengths that all stay: the nearer to 2, the longer the seams.",
+        .minimum = kLeastTarget,
+        .maximum = 1e9,
+        .get = get<&Options::target, &SeamTarget::energy>,
+        .set = set<&Options::target, &SeamTarget::energy>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_TARGET_P99,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "target-p99",
+        .summary = "Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::target, &SeamTarget::p99>,
+        .set = set<&Options::target, &SeamTarget::p99>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_MAX_CHARTS,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "max-charts",
+        .summary = "Charts that the search is to stay within, but for one for each component, if "
+                   "there is a way; 0 takes any number.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::target, &SeamTarget::max_charts>,
+        .set = set<&Options::target, &SeamTarget::max_charts>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_SEAM_BUDGET,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "seam-budget",
+        .summary = "Length of the seams, over the root of the area, that the search is to stay "
+                   "within; 0 takes any length.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::target, &SeamTarget::seam_budget>,
+        .set = set<&Options::target, &SeamTarget::seam_budget>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_CONCAVE_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "concave-seams",
+        .summary =
+            "How far seams seek edges where the surface is concave and avoid the convex: a times a "
+            "concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not.",
+        .minimum = 0,
+        .maximum = 10,
+        .get = get<&Options::weights, &SeamWeights::concavity>,
+        .set = set<&Options::weights, &SeamWeights::concavity>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_HIDDEN_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "hidden-seams",
+        .summary = "How far seams hide: where all of the outside sees an edge a seam costs 1 + b "
+                   "of its length, and 1 where nothing does; 0 does not.",
+        .minimum = 0,
+        .maximum = 100,
+        .get = get<&Options::weights, &SeamWeights::visibility>,
+        .set = set<&Options::weights, &SeamWeights::visibility>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_HARD_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "hard-seams",
+        .summary = "What a seam along an edge costs whose faces turn by more than 60 degrees, "
+                   "times its length: below 1 it is sought.",
+        .minimum = 0.01,
+        .maximum = 100,
+        .get = get<&Options::weights, &SeamWeights::hard_edges>,
+        .set = set<&Options::weights, &SeamWeights::hard_edges>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_MATERIAL_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "material-seams",
+        .summary =
+            "The same of an edge between faces of different materials, where those are given.",
+        .minimum = 0.01,
+        .maximum = 100,
+        .get = get<&Options::weights, &SeamWeights::materials>,
+        .set = set<&Options::weights, &SeamWeights::materials>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.
@@ -291,19 +425,22 @@ std::string number(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-const OptionEntry& require_option(std::int32_t key, bool is_float) {
+const OptionEntry& require_option(std::int32_t key) {
   const OptionEntry* option = find_option(key);
-  if (option == nullptr) {
-    throw Error(Fault::kInvalidArgument, "there is no option with key " + std::to_string(key) +
-                                             ": keys run from 0 to " +
-                                             std::to_string(std::size(kOptions) - 1));
-  }
-  if (is_float != (option->type == BELTRAMI_TYPE_FLOAT)) {
-    throw Error(Fault::kInvalidArgument, std::string("the option ") + option->name +
+  if (option != nullptr) return *option;
+  throw Error(Fault::kInvalidArgument, "there is no option with key " + std::to_string(key) +
+                                           ": keys run from 0 to " +
+                                           std::to_string(std::size(kOptions) - 1));
+}
+
+const OptionEntry& require_option(std::int32_t key, bool is_float) {
+  const OptionEntry& option = require_option(key);
+  if (is_float != (option.type == BELTRAMI_TYPE_FLOAT)) {
+    throw Error(Fault::kInvalidArgument, std::string("the option ") + option.name +
                                              " is set by beltrami_set_" +
                                              (is_float ? "int" : "float"));
   }
-  return *option;
+  return option;
 }
 
 [[noreturn]] void refuse_value(const OptionEntry& option, const std::string& value) {
@@ -345,6 +482,10 @@ void set_float_option(Options& options, std::int32_t key, double value) {
   // Written so that NaN is refused, too.
   if (!(value >= option.minimum && value <= option.maximum)) refuse_value(option, number(value));
   option.set(options, value);
+}
+
+double get_option(const Options& options, std::int32_t key) {
+  return require_option(key).get(options);
 }
 
 }  // namespace beltrami

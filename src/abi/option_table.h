@@ -32,4 +32,7 @@ const OptionEntry* find_option(std::int32_t key);
 void set_int_option(Options& options, std::int32_t key, std::int64_t value);
 void set_float_option(Options& options, std::int32_t key, double value);
 
+/// The value of an option. Throws Error INVALID_ARGUMENT for an unknown key.
+double get_option(const Options& options, std::int32_t key);
+
 }  // namespace beltrami

@@ -59,6 +59,12 @@ Injectivity injectivity_of(std::int32_t value) {
   }
 }
 
+/// The preset first: it is what set the others then.
+constexpr std::int32_t kOfTheSearch[] = {
+    BELTRAMI_OPTION_PRESET,       BELTRAMI_OPTION_TARGET_ENERGY, BELTRAMI_OPTION_TARGET_P99,
+    BELTRAMI_OPTION_MAX_CHARTS,   BELTRAMI_OPTION_SEAM_BUDGET,   BELTRAMI_OPTION_CONCAVE_SEAMS,
+    BELTRAMI_OPTION_HIDDEN_SEAMS, BELTRAMI_OPTION_HARD_SEAMS,    BELTRAMI_OPTION_MATERIAL_SEAMS};
+
 /// "flatten=bff": as the program's options, but for the dashes.
 std::string written(const OptionEntry& option, const Options& options) {
   const double value = option.get(options);
@@ -105,6 +111,8 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.admit.share_copies = options.share_copies;
   atlas.keep_disk = options.weld == BELTRAMI_WELD_AUTO && options.weld_distance == 0;
   atlas.fill_limit = options.fill_holes;
+  if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
+  atlas.weights = options.weights;
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
   atlas.float32 = std::exchange(atlas.chart.float32, false);
@@ -145,6 +153,34 @@ void require_effect_on_atlas(const Options& options) {
   refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, "an atlas", "or flatten disks");
   if (options.weld == BELTRAMI_WELD_OFF) {
     refuse_if_set(options, BELTRAMI_OPTION_WELD_DISTANCE, "weld=off", "or weld");
+  }
+  if (options.cut != BELTRAMI_CUT_AUTO) {
+    const std::string with_cut = written(*find_option(BELTRAMI_OPTION_CUT), options);
+    for (const std::int32_t key : kOfTheSearch) {
+      refuse_if_set(options, key, with_cut, "or take cut=auto");
+    }
+  }
+}
+
+void apply_preset(Options& options, std::int32_t preset) {
+  options.preset = preset;
+  options.target = {};
+  options.weights = {};
+  switch (preset) {
+    case BELTRAMI_PRESET_LIGHTMAP:
+      options.target.energy = 2.1;
+      options.weights.visibility = 0;
+      options.weights.hard_edges = 0.5;
+      break;
+    case BELTRAMI_PRESET_TEXTURING:
+      options.weights.concavity = 0.6;
+      options.weights.visibility = 2;
+      break;
+    case BELTRAMI_PRESET_ONE_CHART:
+      options.target.max_charts = 1;
+      break;
+    default:
+      break;
   }
 }
 

@@ -8,6 +8,8 @@
 #include "atlas/atlas.h"
 #include "base/work.h"
 #include "chart/options.h"
+#include "cut/seam_costs.h"
+#include "cut/search.h"
 
 namespace beltrami {
 
@@ -28,12 +30,15 @@ struct Options {
   bool float32 = false;
   bool delaunay = false;
   std::int64_t memory_limit = 0;
-  std::int32_t cut = BELTRAMI_CUT_MINIMAL;
+  std::int32_t cut = BELTRAMI_CUT_AUTO;
   double hard_angle = 180;
   std::int32_t weld = BELTRAMI_WELD_AUTO;
   double weld_distance = 0;
   double fill_holes = 0.5;
   bool share_copies = false;
+  std::int32_t preset = BELTRAMI_PRESET_NONE;
+  SeamTarget target = {};
+  SeamWeights weights = {};
 };
 
 /// How a disk is to be flattened.
@@ -52,8 +57,11 @@ Limits limits(const Options& options);
 /// nothing to bound.
 void require_effect(const Options& options);
 
-/// The same for what an atlas takes no notice of: delaunay, and weld-distance where nothing is
-/// welded.
+/// The same for what an atlas takes no notice of: delaunay, weld-distance where nothing is welded,
+/// and what a search for seams is told where none is made.
 void require_effect_on_atlas(const Options& options);
+
+/// Sets the preset, and the options of the search for seams as it has them.
+void apply_preset(Options& options, std::int32_t preset);
 
 }  // namespace beltrami

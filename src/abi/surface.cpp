@@ -138,20 +138,6 @@ LoadedSurface read(const beltrami_surface& header, bool needs_positions, Positio
   return surface;
 }
 
-/// Numbers labels by their order.
-std::vector<Index> dense(const std::vector<std::uint64_t>& labels) {
-  std::vector<std::uint64_t> values = labels;
-  sort_interruptibly(values.begin(), values.end(), std::less<>());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  std::vector<Index> numbers;
-  numbers.reserve(labels.size());
-  for (const std::uint64_t label : labels) {
-    numbers.push_back(
-        static_cast<Index>(std::lower_bound(values.begin(), values.end(), label) - values.begin()));
-  }
-  return numbers;
-}
-
 std::vector<double> read_densities(const beltrami_surface& header, const Work& work) {
   std::vector<double> densities =
       read_numbers(header.densities, header.face_count, 1, "densities", work);
@@ -245,6 +231,19 @@ std::vector<Vec2> read_corner_uvs(const beltrami_surface& header, const LoadedSu
     }
   }
   return uvs;
+}
+
+std::vector<Index> dense(const std::vector<std::uint64_t>& labels) {
+  std::vector<std::uint64_t> values = labels;
+  sort_interruptibly(values.begin(), values.end(), std::less<>());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  std::vector<Index> numbers;
+  numbers.reserve(labels.size());
+  for (const std::uint64_t label : labels) {
+    numbers.push_back(
+        static_cast<Index>(std::lower_bound(values.begin(), values.end(), label) - values.begin()));
+  }
+  return numbers;
 }
 
 AtlasInput atlas_input(const beltrami_surface& header, const LoadedSurface& surface, bool islands,

@@ -3,6 +3,7 @@
 
 #include <beltrami/beltrami.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "admit/triangulate.h"
@@ -44,6 +45,9 @@ std::vector<Triangle> triangles_of(const LoadedSurface& surface);
 /// The corner UVs, one per corner. Throws Error INVALID_ARGUMENT, or NON_FINITE with the face.
 std::vector<Vec2> read_corner_uvs(const beltrami_surface& header, const LoadedSurface& surface,
                                   const Work& work);
+
+/// Numbers labels by their order.
+std::vector<Index> dense(const std::vector<std::uint64_t>& labels);
 
 /// What comes with the surface, per triangle. `islands`: corner UVs count. Throws Error
 /// INVALID_ARGUMENT, INDEX_OUT_OF_RANGE for an end of a seam, or NON_FINITE with the face.

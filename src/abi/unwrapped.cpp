@@ -5,9 +5,11 @@
 #include <numbers>
 #include <utility>
 
+#include "abi/hints.h"
 #include "abi/pins.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
+#include "atlas/seams.h"
 #include "base/resources.h"
 
 namespace beltrami {
@@ -100,6 +102,7 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   AtlasInput input = atlas_input(header, surface, islands, reading);
   input.cuts.hard_angle = radians(hard_angle);
   input.pins = read_pins(header, surface, options, reading);
+  input.hints = read_hints(header, surface, options, reading);
   AtlasOptions with_polygons = options;
   with_polygons.admit.polygons = surface.face_of_triangle;
   const std::vector<std::uint8_t> diagonals = diagonals_of(surface);
@@ -113,6 +116,9 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
     judge_atlas(0, options.float32, work.aside(), atlas);
   }
   split_vertices(surface, uv_of_corner, result);
+  for (const auto& [a, b] : seams_of(atlas)) result.seams.insert(result.seams.end(), {a, b});
+  result.searched = options.target.has_value();
+  result.reached = result.searched && meets(atlas, *options.target);
 
   result.vertices = header.vertex_count;
   result.faces = header.face_count;

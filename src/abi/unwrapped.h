@@ -24,6 +24,9 @@ struct Unwrapped {
   std::vector<Vec2> uvs;
   std::vector<Index> origin;     ///< per UV vertex the input vertex
   std::vector<Index> uv_vertex;  ///< per corner
+  std::vector<Index> seams;      ///< two input vertices each, see seams_of
+  bool searched = false;         ///< whether seams were searched for,
+  bool reached = false;          ///< and meet what was asked for
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;
 

@@ -16,10 +16,19 @@
 #include "chart/flattening.h"
 #include "chart/options.h"
 #include "cut/given.h"
+#include "cut/seam_costs.h"
 #include "cut/search.h"
 #include "exact/atlas_certificate.h"
 
 namespace beltrami {
+
+/// What draws seams that are searched for, as SeamHints has it: of the input's vertices and faces,
+/// each list empty where nothing is given.
+struct InputHints {
+  std::vector<double> vertex_paint;     ///< per vertex
+  std::vector<PaintedEdge> edge_paint;  ///< pairs that are no edge do nothing
+  std::vector<Index> materials;         ///< per face
+};
 
 /// Any triangles, and what comes with them. Lists are empty where nothing is given.
 struct AtlasInput {
@@ -27,7 +36,8 @@ struct AtlasInput {
   std::vector<Triangle> faces;
   GivenCuts cuts = {};
   std::vector<double> densities = {};  ///< per face: lengths in the plane per length on the surface
-  std::vector<Pin> pins = {};          ///< their places single-precision numbers with `float32`
+  InputHints hints = {};
+  std::vector<Pin> pins = {};  ///< their places single-precision numbers with `float32`
 };
 
 struct AtlasOptions {
@@ -42,6 +52,7 @@ struct AtlasOptions {
   double fill_limit = 0.5;
   std::optional<SeamTarget> target = {};  ///< seams are searched for it; none: short ones open what
                                           ///< is no disk
+  SeamWeights weights = {};               ///< of that search
   ChartOptions chart = {};                ///< of every chart, but for what follows
   bool unit_square = false;  ///< scale the atlas by a power of two into the unit square
   bool float32 = false;      ///< deliver single-precision numbers

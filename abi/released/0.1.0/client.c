@@ -95,6 +95,7 @@ static void ask_the_library(void) {
 static void ask_the_options(beltrami_context* context) {
   GUARDED(beltrami_option_info) info;
   const int32_t key = beltrami_option_find("coarse-faces");
+  double values[2] = {0, -7};
   REQUIRE(key == BELTRAMI_OPTION_COARSE_FACES);
   ARM(info);
   REQUIRE(beltrami_option_describe(key, &info.value) == BELTRAMI_OK);
@@ -105,6 +106,8 @@ static void ask_the_options(beltrami_context* context) {
   REQUIRE(strcmp(beltrami_option_choice(BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_CM), "cm") == 0);
   REQUIRE(beltrami_set_int(context, key, 64) == BELTRAMI_OK);
   REQUIRE(beltrami_set_float(context, BELTRAMI_OPTION_TOLERANCE, 1e-3) == BELTRAMI_OK);
+  REQUIRE(beltrami_get_option(context, BELTRAMI_OPTION_TOLERANCE, values) == BELTRAMI_OK);
+  REQUIRE(values[0] == 1e-3 && values[1] == -7);
 }
 
 static void fail_with_an_element(beltrami_context* context) {
@@ -254,6 +257,9 @@ static void read_atlas(beltrami_context* context) {
   for (i = 0; i < 3 * FACES; ++i) {
     REQUIRE(corner_uvs[i][0] == uv_vertices[uv_faces[i / 3][i % 3]][0]);
   }
+  numbers[0] = 7;
+  REQUIRE(atlas.value.seams == 0 && atlas.value.searched == 1 && atlas.value.reached == 1);
+  REQUIRE(beltrami_get_seams(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK && numbers[0] == 7);
   numbers[VERTICES] = 7;
   REQUIRE(beltrami_get_uv_vertex_origins(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
   REQUIRE(numbers[VERTICES] == 7 && numbers[uv_faces[3][1]] == indices[3][1]);
