@@ -33,6 +33,19 @@ constexpr const char* kAnyMesh =
     "cut into charts, each is flattened, and the whole atlas is proven to be injective. Every\n"
     "corner of every face gets its UV.";
 
+constexpr const char* kSeams =
+    "Name your distortion, and the seams follow: --target-energy is the mean over the area of the\n"
+    "symmetric Dirichlet energy, 2 where all lengths are kept. Short seams are searched for that\n"
+    "bring the atlas there; the summary says whether they do. To shorten the seams raise it, to\n"
+    "stretch less lower it towards 2. --preset sets what suits a purpose, and options beside it\n"
+    "count more. Paint draws seams and drives them off, but forces nothing; --seams, --labels and\n"
+    "--hard-angle force.\n\n"
+    "  beltrami unwrap bust.obj out.obj                        an energy of 2.05\n"
+    "  beltrami unwrap bust.obj out.obj --target-energy 2.2    more stretch, shorter seams\n"
+    "  beltrami unwrap bust.obj out.obj --preset one-chart     no more charts than pieces\n"
+    "  beltrami unwrap bust.obj out.obj --write-seams cut.txt  and, once that is edited:\n"
+    "  beltrami unwrap bust.obj out.obj --seams cut.txt --cut given";
+
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
@@ -54,6 +67,24 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->type_name("NAME");
   command
       ->add_option(
+          "--paint", arguments.paint,
+          "What draws seams, with --cut auto: a text with a line for each, 'v VERTEX FACTOR'\n"
+          "or 'e VERTEX VERTEX FACTOR' for an edge; vertices count from 0, and a seam costs\n"
+          "its length times the factors, from 0.05 to 20: less than 1 draws it")
+      ->group("Charts")
+      ->type_name("FILE");
+  command
+      ->add_option("--materials", arguments.materials,
+                   "Draw seams, with --cut auto, to where these differ: named as for --labels")
+      ->group("Charts")
+      ->type_name("NAME");
+  command
+      ->add_option("--write-seams", arguments.written_seams,
+                   "Write the seams, those given and those found, as --seams reads them")
+      ->group("Charts")
+      ->type_name("FILE");
+  command
+      ->add_option(
           "--uv-set", arguments.uv_set,
           "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
       ->type_name("NUMBER");
@@ -72,7 +103,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  command->footer(std::string(kAnyMesh) + "\n\n" + kKept + "\n\n" + kExitCodes);
+  command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kKept + "\n\n" + kExitCodes);
   return command;
 }
 

@@ -25,7 +25,10 @@ struct FlattenArguments {
 struct UnwrapArguments {
   std::string input, output;
   std::string seams, pins;      ///< paths, or "" for none
+  std::string paint;            ///< path of factors of seams, or ""
   std::string labels;           ///< what labels faces, or ""
+  std::string materials;        ///< what draws seams to where it differs, or ""
+  std::string written_seams;    ///< path, or ""
   std::string report, picture;  ///< paths, or "" for none
   std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
   bool triangulate = false;     ///< write the triangles that were computed on

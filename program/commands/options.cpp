@@ -148,7 +148,7 @@ void Options::add_to(CLI::App& command) {
     if (option.is_flag()) {
       command
           .add_flag_callback(
-              flag, [&option] { option.integer = 1; }, help_text(option))
+              flag, [&option] { option.integer = option.given = true; }, help_text(option))
           ->group(group);
       continue;
     }
@@ -166,8 +166,10 @@ void Options::add_to(CLI::App& command) {
   }
 }
 
-void Options::apply_to(beltrami_context* context) const {
+void Options::apply_to(beltrami_context* context) {
+  // In the order of the keys, in which a preset comes before the options that it sets.
   for (const Option& option : options_) {
+    if (!option.given && !option.is_thread_count()) continue;
     const beltrami_status status = option.info.type == BELTRAMI_TYPE_FLOAT
                                        ? beltrami_set_float(context, option.info.key, option.real)
                                        : beltrami_set_int(context, option.info.key, option.integer);
@@ -175,6 +177,10 @@ void Options::apply_to(beltrami_context* context) const {
       throw Failure(status,
                     std::string("--") + option.info.name + ": " + beltrami_error_message(context));
     }
+  }
+  for (Option& option : options_) {
+    if (beltrami_get_option(context, option.info.key, &option.real) != BELTRAMI_OK) continue;
+    option.integer = static_cast<std::int64_t>(option.real);
   }
 }
 
@@ -207,6 +213,13 @@ bool Options::use_fewer_threads() {
 std::int64_t Options::integer(std::int32_t key) const {
   for (const Option& option : options_) {
     if (option.info.key == key) return option.integer;
+  }
+  return 0;
+}
+
+double Options::real(std::int32_t key) const {
+  for (const Option& option : options_) {
+    if (option.info.key == key) return option.real;
   }
   return 0;
 }

@@ -43,14 +43,18 @@ class Options {
 
   /// In the help, what only unwrap takes stands under "Charts".
   void add_to(CLI::App& command);
-  /// Throws Failure with the library's words if it refuses a value.
-  void apply_to(beltrami_context* context) const;
+  /// Sets what was given, and the number of threads, in a new context, and takes over what the
+  /// others have there: a preset sets several. Throws Failure with the library's words if it
+  /// refuses a value.
+  void apply_to(beltrami_context* context);
   /// Values by name, e.g. {"method": "cm", "unit-square": false}.
   OptionValues values() const;
   /// Halves the number of threads. Returns false where it is 1, or the user's wish.
   bool use_fewer_threads();
   /// Value of the integer option `key`.
   std::int64_t integer(std::int32_t key) const;
+  /// Value of the option `key` of the type float.
+  double real(std::int32_t key) const;
 
  private:
   std::vector<Option> options_;

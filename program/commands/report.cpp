@@ -164,6 +164,11 @@ Json energy_json(const Report& report) {
           {"left_out", found.left_out}};
 }
 
+Json target_json(const Report& report) {
+  if (!report.atlas || !report.target) return nullptr;
+  return {{"energy", number(*report.target)}, {"reached", report.atlas->reached != 0}};
+}
+
 Json repair_json(const Report& report) {
   if (!report.result) return nullptr;
   const beltrami_result& run = *report.result;
@@ -229,11 +234,15 @@ void append_verdict(const Report& report, std::string& text) {
   text += "\n";
 }
 
-void append_atlas(const beltrami_atlas& atlas, std::string& text) {
+void append_atlas(const Report& report, std::string& text) {
+  const beltrami_atlas& atlas = *report.atlas;
   append(text, "charts     %llu, seams of %.4g root areas\n",
          static_cast<unsigned long long>(atlas.charts), seam_over_root_area(atlas));
   append(text, "energy     %.6g mean, %.6g at the 99th percentile, %.6g max (2 is isometric)\n",
          atlas.symmetric_dirichlet, atlas.p99, atlas.max);
+  if (!report.target) return;
+  append(text, "target     %s, for a mean energy of %.6g\n",
+         atlas.reached != 0 ? "reached" : "MISSED", *report.target);
 }
 
 /// What had to be done to the input, where that is anything.
@@ -323,6 +332,8 @@ std::string to_json(const Report& report) {
       {"uv_vertices", report.atlas ? Json(report.atlas->uv_vertices) : Json(nullptr)},
       {"seam_over_root_area",
        report.atlas ? number(seam_over_root_area(*report.atlas)) : Json(nullptr)},
+      {"seams", report.atlas ? Json(report.atlas->seams) : Json(nullptr)},
+      {"target", target_json(report)},
       {"utilisation", report.atlas ? number(report.atlas->utilisation) : Json(nullptr)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
@@ -365,7 +376,7 @@ std::string to_summary(const Report& report, const std::string& written) {
   }
   if (report.atlas) {
     append_admitted(*report.atlas, text);
-    append_atlas(*report.atlas, text);
+    append_atlas(report, text);
   }
   if (report.certificate) append_verdict(report, text);
   if (report.atlas_certificate) append_atlas_verdict(report, text);

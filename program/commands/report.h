@@ -59,6 +59,7 @@ struct Report {
   std::optional<std::uint64_t> coarse_faces, flips_before_repair;
   std::optional<beltrami_result> result;
   std::optional<beltrami_atlas> atlas;
+  std::optional<double> target;  ///< energy that seams were searched for
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output

@@ -15,6 +15,7 @@
 #include "files/given_cuts.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
+#include "files/paint.h"
 #include "files/pins.h"
 #include "files/point_numbers.h"
 #include "files/split_mesh.h"
@@ -33,6 +34,8 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options = options.values();
   report.options.emplace_back("seams", arguments.seams);
   report.options.emplace_back("labels", arguments.labels);
+  report.options.emplace_back("paint", arguments.paint);
+  report.options.emplace_back("materials", arguments.materials);
   report.options.emplace_back("uv-set", std::to_string(arguments.uv_set));
   report.options.emplace_back("pins", arguments.pins);
   report.options.emplace_back("triangulate", arguments.triangulate);
@@ -51,6 +54,7 @@ class Unwrapping {
   int run() {
     require_files();
     options_.apply_to(context_.get());
+    note_options(arguments_, options_, report_);
     read();
     {
       const CancelOnInterrupt guard(context_.get());
@@ -77,11 +81,13 @@ class Unwrapping {
                     "--triangulate, or use the extension .obj or .ply");
     }
     for (const std::string& mesh : {arguments_.input, arguments_.output}) {
-      require_distinct(
-          {mesh, arguments_.seams, arguments_.pins, arguments_.report, arguments_.picture});
+      require_distinct({mesh, arguments_.seams, arguments_.pins, arguments_.paint,
+                        arguments_.report, arguments_.picture});
+      require_distinct({mesh, arguments_.written_seams, arguments_.pins, arguments_.paint,
+                        arguments_.report, arguments_.picture});
     }
-    const std::vector<std::string> written = {arguments_.output, arguments_.report,
-                                              arguments_.picture};
+    const std::vector<std::string> written = {arguments_.output, arguments_.written_seams,
+                                              arguments_.report, arguments_.picture};
     if (!arguments_.quiet) require_apart_from_stdout(written);
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
@@ -104,7 +110,13 @@ class Unwrapping {
     if (!file_.truncated.empty()) {
       file_.not_kept.push_back("what is missing of the input (" + file_.truncated + ")");
     }
-    if (!arguments_.labels.empty()) labels_ = face_labels(file_, arguments_.labels);
+    if (!arguments_.labels.empty()) {
+      labels_ = face_labels(file_, arguments_.labels, "--labels", "cut along");
+    }
+    if (!arguments_.materials.empty()) {
+      materials_ = face_labels(file_, arguments_.materials, "--materials", "draw seams");
+    }
+    if (!arguments_.paint.empty()) paint_ = read_paint(arguments_.paint, file_);
     if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
     if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
     report_.vertices = file_.vertex_count();
@@ -120,6 +132,15 @@ class Unwrapping {
     if (!labels_.empty()) surface.face_labels = {labels_.data(), 0, BELTRAMI_U64, 0};
     if (!seams_.empty()) surface.seams = {seams_.data(), 0, BELTRAMI_U32, 0};
     surface.seam_count = seams_.size() / 2;
+    if (!materials_.empty()) surface.materials = {materials_.data(), 0, BELTRAMI_U64, 0};
+    if (!paint_.of_vertices.empty()) {
+      surface.vertex_paint = {paint_.of_vertices.data(), 0, BELTRAMI_F64, 0};
+    }
+    surface.painted_edge_count = paint_.of_edges.size();
+    if (surface.painted_edge_count > 0) {
+      surface.painted_edges = {paint_.edges.data(), 0, BELTRAMI_U64, 0};
+      surface.edge_paint = {paint_.of_edges.data(), 0, BELTRAMI_F64, 0};
+    }
     surface.pin_count = pins_.corners.size();
     if (surface.pin_count > 0) {
       surface.pins = {pins_.corners.data(), 0, BELTRAMI_U64, 0};
@@ -140,6 +161,7 @@ class Unwrapping {
     atlas.struct_size = sizeof atlas;
     require(beltrami_get_atlas(context, &atlas));
     report_.atlas = atlas;
+    if (atlas.searched != 0) report_.target = options_.real(BELTRAMI_OPTION_TARGET_ENERGY);
     report_.triangles = atlas.triangles;
     report_.area = atlas.area;
     report_.unreferenced_vertices = atlas.unused_vertices;
@@ -226,6 +248,7 @@ class Unwrapping {
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
     write_mesh_files(outputs);
+    if (!arguments_.written_seams.empty()) write_seams(outputs);
     clock.finish();
 
     std::optional<AtomicFile> picture, report;
@@ -271,6 +294,19 @@ class Unwrapping {
     for (AtomicFile& output : outputs) output.close();
   }
 
+  /// As read_seams reads them.
+  void write_seams(std::deque<AtomicFile>& outputs) {
+    std::vector<std::uint64_t> ends(2 * report_.atlas->seams);
+    require(beltrami_get_seams(context_.get(), ends.data(), BELTRAMI_U64, 0));
+    std::string text;
+    for (std::size_t i = 0; i < ends.size(); i += 2) {
+      text += std::to_string(ends[i]) + " " + std::to_string(ends[i + 1]) + "\n";
+    }
+    AtomicFile& output = outputs.emplace_back(arguments_.written_seams);
+    output.write(text);
+    output.close();
+  }
+
   void write_picture(AtomicFile& file) {
     bar_.show(1, "picture");
     StageClock clock(report_, "picture");
@@ -294,7 +330,8 @@ class Unwrapping {
   ProgressBar bar_;
   Context context_;
   MeshFile file_;
-  std::vector<std::uint64_t> labels_;
+  std::vector<std::uint64_t> labels_, materials_;
+  Paint paint_;
   std::vector<std::uint32_t> seams_;
   Pins pins_;
   std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
@@ -307,10 +344,10 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   report.command = "unwrap";
   report.input_path = arguments.input;
   note_options(arguments, options, report);
-  return run_guarded(
-      report, arguments.report,
-      {arguments.input, arguments.output, arguments.seams, arguments.pins, arguments.picture},
-      [&] { return Unwrapping(arguments, options, report).run(); });
+  return run_guarded(report, arguments.report,
+                     {arguments.input, arguments.output, arguments.seams, arguments.pins,
+                      arguments.paint, arguments.written_seams, arguments.picture},
+                     [&] { return Unwrapping(arguments, options, report).run(); });
 }
 
 }  // namespace beltrami::cli

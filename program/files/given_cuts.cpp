@@ -43,22 +43,22 @@ std::vector<std::uint64_t> by_statements(const MeshFile& file, std::string_view 
 
 }  // namespace
 
-std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name) {
+std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name,
+                                       const std::string& flag, const std::string& to) {
   for (const auto& [label, keyword] : kStatements) {
     if (label != name) continue;
     const auto found =
         std::find_if(file.statements.begin(), file.statements.end(),
                      [&, &key = keyword](const auto& s) { return keyword_of(s) == key; });
     if (found == file.statements.end()) {
-      throw Failure(file.path + ": the file has no " + name + " to cut along (--labels)");
+      throw Failure(file.path + ": the file has no " + name + " to " + to + " (" + flag + ")");
     }
     return by_statements(file, keyword);
   }
   const Column* column = find_column(file.face_columns, name);
   if (column == nullptr || column->is_list()) {
-    throw Failure(file.path + ": faces have no property '" + name +
-                  "' to cut along: --labels takes materials, groups, objects, or a property of the "
-                  "faces of a PLY file");
+    throw Failure(file.path + ": faces have no property '" + name + "' to " + to + ": " + flag +
+                  " takes materials, groups, objects, or a property of the faces of a PLY file");
   }
   std::vector<std::uint64_t> labels;
   for (std::uint64_t i = 0; i < file.polygons.size(); ++i) {

@@ -1,6 +1,7 @@
 // beltrami unwrap, end to end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -104,6 +105,87 @@ TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
   ASSERT_EQ(run({"unwrap", in, islands, "--hard-angle", "45"}).exit_code, 0);
   EXPECT_EQ(charts(islands, {"--cut", "islands"}), 6);
   EXPECT_EQ(charts(islands, {}), 1);
+}
+
+TEST(Unwrap, SeamsThatAreWrittenMakeTheSameCharts) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const std::string seams = directory.path("seams"), report = directory.path("r.json");
+  ASSERT_EQ(run({"unwrap", in, out, "--write-seams", seams, "--report", report}).exit_code, 0);
+  const std::string written = directory.read("seams");
+  const Json first = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(std::count(written.begin(), written.end(), '\n'), first["seams"].get<int>());
+  ASSERT_EQ(run({"unwrap", in, out, "--seams", seams, "--cut", "given", "--write-seams", seams,
+                 "--report", report})
+                .exit_code,
+            0)
+      << "in place";
+  EXPECT_EQ(directory.read("seams"), written);
+  const Json second = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(second["charts"], first["charts"]);
+  EXPECT_TRUE(second["target"].is_null());
+}
+
+TEST(Unwrap, SaysWhetherTheTargetIsReached) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const std::string report = directory.path("r.json");
+  Outcome outcome = run({"unwrap", in, out, "--report", report});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("target     reached, for a mean energy of 2.05"), std::string::npos)
+      << outcome.out;
+  Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["target"]["energy"], 2.05);
+  EXPECT_EQ(json["target"]["reached"], true);
+  outcome = run({"unwrap", in, out, "--seam-budget", "0.01", "--report", report});
+  ASSERT_EQ(outcome.exit_code, 0) << "no error: " << outcome.err;
+  EXPECT_NE(outcome.out.find("target     MISSED"), std::string::npos) << outcome.out;
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["target"]["reached"], false);
+}
+
+TEST(Unwrap, APresetSetsWhatIsNotGiven) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const auto options = [&](std::vector<std::string> arguments) {
+    const std::vector<std::string> first = {"unwrap", in, out, "--report",
+                                            directory.path("r.json")};
+    arguments.insert(arguments.begin(), first.begin(), first.end());
+    EXPECT_EQ(run(arguments).exit_code, 0);
+    return Json::parse(directory.read("r.json"))["options"];
+  };
+  EXPECT_EQ(options({})["target-energy"], 2.05);
+  const Json lightmap = options({"--target-energy", "2.2", "--preset", "lightmap"});
+  EXPECT_EQ(lightmap["preset"], "lightmap");
+  EXPECT_EQ(lightmap["target-energy"], 2.2);
+  EXPECT_EQ(lightmap["hidden-seams"], 0);
+  EXPECT_EQ(run({"unwrap", in, out, "--cut", "minimal", "--preset", "lightmap"}).exit_code,
+            kExitUnusable);
+}
+
+TEST(Unwrap, TakesPaintAndMaterials) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const auto with_paint = [&](const std::string& text) {
+    return run(
+        {"unwrap", in, out, "--materials", "materials", "--paint", directory.file("paint", text)});
+  };
+  const Outcome outcome = with_paint("# away from here\nv 0 10\n\ne 2 3 0.1 # but here\r\n");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto expect = [&](const std::string& text, const std::string& message) {
+    const Outcome refused = with_paint(text);
+    EXPECT_EQ(refused.exit_code, kExitUnusable);
+    EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;
+  };
+  expect("v 0 1\nw 0 1\n", "line 2: 'w' is no paint");
+  expect("v 8 1\n", "there is no vertex 8: there are 8");
+  expect("e 0 1\n", "factor is missing");
+  expect("v 0 -1\n", "0 or more");
+  expect("v 0 inf\n", "");
+  expect("v 0 1 1\n", "one");
+  const Outcome refused = run({"unwrap", in, out, "--materials", "objects"});
+  EXPECT_EQ(refused.exit_code, kExitUnusable);
+  EXPECT_NE(refused.err.find("no objects to draw seams (--materials)"), std::string::npos)
+      << refused.err;
 }
 
 /// A grid of 2 x 2 quads in a plane.
