@@ -233,6 +233,57 @@ def test_seams_are_cut():
     assert len(beltrami.unwrap(vertices, faces, seams=[[0, 24]]).charts) == 1  # no edge
 
 
+def test_seams_are_found_for_a_target_and_make_the_same_charts_again(surface):
+    vertices, faces = surface
+    atlas = beltrami.unwrap(vertices, faces)
+    assert atlas.report.searched
+    assert atlas.reached_target == (atlas.energy <= 2.05 + 1e-4)
+    assert atlas.seams.shape == (atlas.report.seams, 2)
+    assert (atlas.seams[:, 0] < atlas.seams[:, 1]).all()
+    again = beltrami.unwrap(vertices, faces, seams=atlas.seams, cut="given")
+    assert again.reached_target is None
+    if surface is not SURFACES["doubled"]:  # its layers lie on one another
+        assert (again.seams == atlas.seams).all()
+        assert (again.chart_of_face == atlas.chart_of_face).all()
+
+
+def test_a_target_that_is_missed_is_no_error():
+    atlas = beltrami.unwrap(CUBE, QUADS, seam_budget=0.01)
+    assert atlas.reached_target is False
+
+
+def test_a_preset_sets_what_is_not_given():
+    atlas = beltrami.unwrap(CUBE, QUADS, preset="lightmap")
+    assert atlas.options["target_energy"] == 2.1
+    assert atlas.options["hidden_seams"] == 0
+    assert atlas.options["max_charts"] == 0
+    given = beltrami.unwrap(CUBE, QUADS, preset="lightmap", target_energy=2.05)
+    assert given.options["target_energy"] == 2.05
+    assert given.options["hidden_seams"] == 0
+    with pytest.raises(ValueError, match="preset=lightmap has no effect with cut=minimal"):
+        beltrami.unwrap(CUBE, QUADS, preset="lightmap", cut="minimal")
+    with pytest.raises(TypeError):
+        beltrami.unwrap(CUBE, QUADS, threads=None)
+
+
+def test_paint_and_materials_draw_seams():
+    words = ["wood"] * 3 + ["steel"] * 3
+    edges = np.array([[0, 1], [1, 3]])
+    atlas = beltrami.unwrap(
+        CUBE, QUADS, vertex_paint=np.ones(8), edge_paint=(edges, [0.1, 0.1]), materials=words
+    )
+    assert atlas.injective
+    for hints, message in [
+        ({"vertex_paint": np.ones(7)}, r"vertex_paint must have the shape \(8,\)"),
+        ({"vertex_paint": [1, 1, 1, -1, 1, 1, 1, 1]}, "vertex 3"),
+        ({"edge_paint": (edges, [1])}, "factors of edge_paint"),
+        ({"edge_paint": (edges, [1, np.nan])}, "painted edge 1"),
+        ({"materials": [1, 2]}, "materials must have the shape"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            beltrami.unwrap(CUBE, QUADS, **hints)
+
+
 def test_islands_stay():
     vertices, faces = grid(4)
     uv = vertices[:, :2].copy()

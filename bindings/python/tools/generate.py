@@ -90,6 +90,12 @@ WORDS = {
         "symmetric_dirichlet": "mean energy over the area, at one scale for all: >= 2",
         "p99": "energy that is exceeded on 1% of the area at most",
         "max": "greatest energy of a triangle",
+        "seams": "edges in `Atlas.seams`",
+        "searched": 'whether seams were searched for: with cut="auto"',
+        "reached": (
+            "whether those meet what was asked for: energy (to 0.0001), p99, charts (or one for "
+            "each component), seam length"
+        ),
     },
     "Chart": {
         "triangles": "of the surface",
@@ -115,10 +121,13 @@ class Option:
     choices: list[str]
     summary: str
     calls: int  # sum of the CALL_ numbers of those that take it
+    of_presets: bool  # whether the option "preset" sets it
 
     @property
     def annotated(self) -> str:
-        """The parameter with its type and default."""
+        """The parameter with its type and default; None for what a preset may set."""
+        if self.of_presets:
+            return f"{self.name}: {self.type} | None = None"
         default = f'"{self.default}"' if isinstance(self.default, str) else repr(self.default)
         return f"{self.name}: {self.type} = {default}"
 
@@ -141,6 +150,7 @@ class _OptionInfo(ctypes.Structure):
     ]
 
 
+ABI = 1  # BELTRAMI_ABI
 INT, FLOAT, CHOICE = range(3)  # BELTRAMI_TYPE_
 RUN, UNWRAP = 1, 2  # BELTRAMI_CALL_
 
@@ -149,6 +159,7 @@ def read_options(library: Path) -> Iterator[Option]:
     """Yield the options of the shared library, in the order of their keys."""
     beltrami = ctypes.CDLL(str(library))
     beltrami.beltrami_option_choice.restype = ctypes.c_char_p
+    of_presets = _keys_of_presets(beltrami)
     key = 0
     while True:
         info = _OptionInfo(struct_size=ctypes.sizeof(_OptionInfo))
@@ -157,11 +168,35 @@ def read_options(library: Path) -> Iterator[Option]:
         choices: list[str] = []
         while choice := beltrami.beltrami_option_choice(key, len(choices)):
             choices.append(choice.decode())
-        yield _option(info, choices)
+        yield _option(info, choices, key in of_presets)
         key += 1
 
 
-def _option(info: Any, choices: list[str]) -> Option:
+def _keys_of_presets(beltrami: ctypes.CDLL) -> set[int]:
+    """Return the keys of the options that the option "preset" sets."""
+    context = ctypes.c_void_p()
+    if beltrami.beltrami_create_(ABI, ctypes.byref(context)) != 0:
+        sys.exit(f"the library has no ABI {ABI}")
+    preset = beltrami.beltrami_option_find(b"preset")
+
+    def values() -> dict[int, float]:
+        found: dict[int, float] = {}
+        value = ctypes.c_double()
+        while beltrami.beltrami_get_option(context, len(found), ctypes.byref(value)) == 0:
+            found[len(found)] = value.value
+        return found
+
+    defaults = values()
+    keys: set[int] = set()
+    choice = 0
+    while beltrami.beltrami_set_int(context, preset, ctypes.c_int64(choice)) == 0:
+        keys |= {key for key, value in values().items() if value != defaults[key]}
+        choice += 1
+    beltrami.beltrami_destroy(context)
+    return keys - {preset}
+
+
+def _option(info: Any, choices: list[str], of_presets: bool) -> Option:
     name = info.name.decode().replace("-", "_")
     summary = info.summary.decode()
     default: object
@@ -174,7 +209,7 @@ def _option(info: Any, choices: list[str]) -> Option:
         kind = "float" if info.type == FLOAT else "int"
         default = info.default_value if info.type == FLOAT else int(info.default_value)
         span = f"from {info.minimum:,.10g} to {info.maximum:,.10g}"
-    return Option(name, kind, default, span, choices, summary, info.calls)
+    return Option(name, kind, default, span, choices, summary, info.calls, of_presets)
 
 
 def _camel(name: str) -> str:
@@ -208,7 +243,7 @@ def _python_type(c_type: str, name: str, items: int, comment: str) -> str:
         return "str"
     if c_type == "double":
         return "float" if items == 1 else f"tuple[{', '.join(['float'] * items)}]"
-    if name == "injective":
+    if name in ("injective", "searched", "reached"):
         return "bool"
     element = "int | None" if "None" in comment else "int"
     return "tuple[int, int] | None" if items == 2 else element
@@ -277,11 +312,23 @@ def tables(options: list[Option], header: Any) -> str:
         "from __future__ import annotations\n\n"
         "from dataclasses import dataclass\nfrom typing import Literal, TypedDict\n\n"
         + "\n".join(choices)
-        + "\n\n\n"
+        + "\n\n"
+        + "#: Options that None leaves to the option `preset`.\n"
+        + names_of_presets(options)
+        + "\n\n"
         + keywords("Options", "The options of a run", options, RUN)
         + keywords("UnwrapOptions", "The options of `unwrap`", options, UNWRAP)
         + "\n\n".join(classes)
     )
+
+
+def names_of_presets(options: list[Option]) -> str:
+    """Return the source of the tuple of options that presets set, as the formatter breaks it."""
+    names = [f'"{option.name}"' for option in options if option.of_presets]
+    line = f"OF_PRESETS = ({', '.join(names)})\n"
+    if len(line) <= COLUMNS:
+        return line
+    return "OF_PRESETS = (\n" + "".join(f"    {name},\n" for name in names) + ")\n"
 
 
 def keywords(name: str, what: str, options: list[Option], call: int) -> str:
@@ -301,7 +348,8 @@ def documentation(options: list[Option], indent: str) -> str:
         if option.choices and kind != "bool":
             kind = "{" + ", ".join(f'"{choice}"' for choice in option.choices) + "}"
         default = f'"{option.default}"' if isinstance(option.default, str) else option.default
-        lines.append(f"{indent}{option.name} : {kind}, default {default}")
+        preset = ", or as the preset has it" if option.of_presets else ""
+        lines.append(f"{indent}{option.name} : {kind}, default {default}{preset}")
         text = option.summary + (f" A number {option.range}." if option.range else "")
         lines.append(wrapped(text, indent + "    "))
     return "\n".join(lines) + "\n"

@@ -30,6 +30,10 @@ class Atlas:
         several sizes a list of arrays.
     origins : (k,) array of integers
         The vertex of the input that each UV vertex is a copy of.
+    seams : (s, 2) array of integers
+        The seams, those given and those found: edges at which UVs part, each once, the lesser
+        vertex first, in increasing order; open borders are none. Of vertices that count as one it
+        is the least. With ``cut="given"`` they make the same charts.
     chart_of_face : (m,) array of int64
         -1 for a face without area.
     charts : tuple of Chart
@@ -60,6 +64,7 @@ class Atlas:
     uvs: Array = field(repr=False)
     uv_faces: Array | list[Array] = field(repr=False)
     origins: Array = field(repr=False)
+    seams: Array = field(repr=False)
     chart_of_face: Array = field(repr=False)
     charts: tuple[Chart, ...] = field(repr=False)
     triangles: Array = field(repr=False)
@@ -81,6 +86,11 @@ class Atlas:
     def converged(self) -> bool:
         """Whether no optimisation stopped at its iteration limit."""
         return self.status != "BELTRAMI_NOT_CONVERGED"
+
+    @property
+    def reached_target(self) -> bool | None:
+        """Whether the atlas is what its seams were searched for; None with another cut."""
+        return self.report.reached if self.report.searched else None
 
     @property
     def energy(self) -> float:

@@ -18,7 +18,16 @@ from . import _arrays, _interrupt
 from ._arrays import Array
 from ._errors import ERRORS, BeltramiError, InvalidArgumentError
 from ._native import ffi, lib
-from ._tables import AtlasCertificate, AtlasReport, Certificate, Chart, Energy, Report, Stage
+from ._tables import (
+    OF_PRESETS,
+    AtlasCertificate,
+    AtlasReport,
+    Certificate,
+    Chart,
+    Energy,
+    Report,
+    Stage,
+)
 
 Record = TypeVar("Record", AtlasCertificate, AtlasReport, Certificate, Chart, Energy, Report, Stage)
 #: Told how far a run has come: a fraction in [0, 1] and a stage. Returns true to cancel.
@@ -298,15 +307,24 @@ class Context:
     def set_options(self, options: Mapping[str, object], call: int = RUN) -> dict[str, object]:
         """Set options of a call by keyword; return them as plain values.
 
-        Raises TypeError, ValueError.
+        None leaves an option to the preset that stands before it. Raises TypeError, ValueError.
         """
         known = options_of(call)
         plain: dict[str, object] = {}
         for name, value in options.items():
             if name not in known:
                 raise TypeError(f"there is no option {name!r}: choose from {', '.join(known)}")
-            plain[name] = self._set_option(known[name], value)
+            if value is None and name in OF_PRESETS:
+                plain[name] = self._option(known[name])
+            else:
+                plain[name] = self._set_option(known[name], value)
         return plain
+
+    def _option(self, option: _Option) -> object:
+        out = ffi.new("double*")
+        self._check(lib.beltrami_get_option(self._context, option.key, out))
+        value = float(out[0])
+        return option.plain(value if option.type == lib.BELTRAMI_TYPE_FLOAT else int(value))
 
     def _set_option(self, option: _Option, value: object) -> object:
         is_float = option.type == lib.BELTRAMI_TYPE_FLOAT

@@ -132,9 +132,9 @@ def corner_uvs(values: Any, faces: Polygons) -> Array:
     return _arrays.coordinates(array)
 
 
-def labels(values: Any, faces: Polygons) -> Array:
+def labels(values: Any, faces: Polygons, name: str = "face_labels") -> Array:
     """Return a number for each face, (m,), equal where the labels are. Raises ValueError."""
-    array = _of_faces("face_labels", np.asarray(values), faces)
+    array = _of_faces(name, np.asarray(values), faces)
     if array.dtype.kind not in "iu":
         array = np.unique(array, return_inverse=True)[1]
     size = max(array.dtype.itemsize, 4)
@@ -149,17 +149,43 @@ def densities(values: Any, faces: Polygons) -> Array:
     return np.ascontiguousarray(array, np.float64)
 
 
-def seams(values: Any) -> Array:
+def seams(values: Any, name: str = "seams") -> Array:
     """Return pairs of vertices, (k, 2). Raises TypeError, ValueError."""
     array = np.asarray(list(values) if isinstance(values, (set, frozenset)) else values)
     if array.size == 0:
         return np.empty((0, 2), np.int64)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"seams must be pairs of vertex numbers, not {array.dtype}")
+        raise TypeError(f"{name} must be pairs of vertex numbers, not {array.dtype}")
     if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"seams must have the shape (k, 2), not {array.shape}")
+        raise ValueError(f"{name} must have the shape (k, 2), not {array.shape}")
     size = max(array.dtype.itemsize, 4)
     return np.ascontiguousarray(array.astype(f"={array.dtype.kind}{size}", copy=False))
+
+
+def vertex_paint(values: Any, vertices: int) -> Array:
+    """Return a float for each vertex, (n,). Raises TypeError, ValueError."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"vertex_paint must be real numbers, not {array.dtype}")
+    if array.shape != (vertices,):
+        raise ValueError(
+            f"vertex_paint must have the shape ({vertices},), one for each vertex, "
+            f"not {array.shape}"
+        )
+    return np.ascontiguousarray(array, np.float64)
+
+
+def edge_paint(values: Any) -> tuple[Array, Array]:
+    """Return edges (k, 2) and a float for each, (k,). Raises TypeError, ValueError."""
+    if not isinstance(values, tuple) or len(values) != 2:
+        raise TypeError("edge_paint is a pair: edges by their vertices, and their factors")
+    edges = seams(values[0], "the edges of edge_paint")
+    factors = np.asarray(values[1], np.float64)
+    if factors.shape != (len(edges),):
+        raise ValueError(
+            f"the factors of edge_paint must have the shape ({len(edges)},), not {factors.shape}"
+        )
+    return edges, np.ascontiguousarray(factors)
 
 
 def pins(values: Any, faces: Polygons) -> tuple[Array, Array]:

@@ -27,6 +27,9 @@ class Surface:
     densities: Array | None = None
     seams: Array | None = None
     pins: tuple[Array, Array] | None = None  # corners and UVs
+    vertex_paint: Array | None = None
+    edge_paint: tuple[Array, Array] | None = None  # edges and factors
+    materials: Array | None = None
 
     def struct(self) -> Any:
         """Return the ``beltrami_surface``, which is good as long as the arrays are."""
@@ -49,6 +52,14 @@ class Surface:
         if self.pins is not None and len(self.pins[0]):
             surface.pins, surface.pin_uvs = buffer(self.pins[0]), buffer(self.pins[1])
             surface.pin_count = len(self.pins[0])
+        if self.vertex_paint is not None:
+            surface.vertex_paint = buffer(self.vertex_paint)
+        if self.edge_paint is not None and len(self.edge_paint[0]):
+            edges, factors = self.edge_paint
+            surface.painted_edges, surface.edge_paint = buffer(edges), buffer(factors)
+            surface.painted_edge_count = len(edges)
+        if self.materials is not None:
+            surface.materials = buffer(self.materials)
         return surface
 
     def explain(self, error: BeltramiError) -> None:
@@ -120,6 +131,10 @@ class AtlasContext(Context):
     def face_charts(self, count: int) -> Array:
         """Return the chart of each face, (count,), -1 for a face without area."""
         return self._filled(lib.beltrami_get_face_charts, (count,), np.dtype(np.int64))
+
+    def seams(self, count: int, dtype: np.dtype[Any]) -> Array:
+        """Return the seams as pairs of vertices, (count, 2)."""
+        return self._filled(lib.beltrami_get_seams, (count, 2), dtype)
 
     def triangles(self, count: int) -> Array:
         """Return the corners of the triangles that were computed on, (count, 3)."""

@@ -12,8 +12,12 @@ MethodChoice = Literal["beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation
 EnergyChoice = Literal["symmetric-dirichlet", "symmetric-arap"]
 FlattenChoice = Literal["metric", "dirichlet", "gif", "flim", "bff"]
 InjectivityChoice = Literal["auto", "global", "local"]
-CutChoice = Literal["minimal", "islands"]
+CutChoice = Literal["minimal", "islands", "auto", "given"]
 WeldChoice = Literal["auto", "on", "off"]
+PresetChoice = Literal["none", "lightmap", "texturing", "one-chart"]
+
+#: Options that None leaves to the option `preset`.
+OF_PRESETS = ("target_energy", "max_charts", "concave_seams", "hidden_seams", "hard_seams")
 
 
 class Options(TypedDict, total=False):
@@ -59,6 +63,15 @@ class UnwrapOptions(TypedDict, total=False):
     weld_distance: float
     fill_holes: float
     share_copies: bool
+    preset: PresetChoice
+    target_energy: float
+    target_p99: float
+    max_charts: int
+    seam_budget: float
+    concave_seams: float
+    hidden_seams: float
+    hard_seams: float
+    material_seams: float
 
 
 @dataclass(frozen=True)
@@ -273,6 +286,13 @@ class AtlasReport:
         Of the whole process during the run.
     peak_memory_bytes : int
         Of the whole process so far.
+    seams : int
+        Edges in `Atlas.seams`.
+    searched : bool
+        Whether seams were searched for: with cut="auto".
+    reached : bool
+        Whether those meet what was asked for: energy (to 0.0001), p99, charts (or one for each
+        component), seam length.
     """
 
     vertices: int
@@ -304,6 +324,9 @@ class AtlasReport:
     seconds: float
     cpu_seconds: float
     peak_memory_bytes: int
+    seams: int
+    searched: bool
+    reached: bool
 
 
 @dataclass(frozen=True)

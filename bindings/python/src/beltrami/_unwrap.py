@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -42,6 +43,9 @@ def unwrap(
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
     pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    vertex_paint: npt.ArrayLike | None = None,
+    edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    materials: npt.ArrayLike | None = None,
     progress: Progress = None,
     **options: Unpack[UnwrapOptions],
 ) -> Atlas: ...
@@ -55,6 +59,9 @@ def unwrap(
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
     pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    vertex_paint: npt.ArrayLike | None = None,
+    edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    materials: npt.ArrayLike | None = None,
     progress: Progress = None,
     **options: Unpack[UnwrapOptions],
 ) -> Any: ...
@@ -67,6 +74,9 @@ def unwrap(
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
     pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    vertex_paint: npt.ArrayLike | None = None,
+    edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    materials: npt.ArrayLike | None = None,
     # options: parameters
     method: MethodChoice = "beltrami",
     energy: EnergyChoice = "symmetric-dirichlet",
@@ -82,12 +92,21 @@ def unwrap(
     time_limit: float = 0.0,
     float32: bool = False,
     memory_limit: int = 0,
-    cut: CutChoice = "minimal",
+    cut: CutChoice = "auto",
     hard_angle: float = 180.0,
     weld: WeldChoice = "auto",
     weld_distance: float = 0.0,
     fill_holes: float = 0.5,
     share_copies: bool = False,
+    preset: PresetChoice = "none",
+    target_energy: float | None = None,
+    target_p99: float = 0.0,
+    max_charts: int | None = None,
+    seam_budget: float = 0.0,
+    concave_seams: float | None = None,
+    hidden_seams: float | None = None,
+    hard_seams: float | None = None,
+    material_seams: float = 0.5,
     # end of options
     progress: Progress = None,
 ) -> Any:
@@ -97,6 +116,11 @@ def unwrap(
     any quality: nothing is refused but indices out of range, numbers that are not finite, and
     surfaces without any area. What is not manifold is parted, faces that disagree are turned, and
     every corner gets its UV. The same input gives the same bits, at any number of threads.
+
+    Name your distortion, and the seams follow: short ones are searched for, along which the atlas
+    has the mean energy `target_energy`; ``atlas.report.reached`` tells whether it does. What they
+    are is in ``atlas.seams``, to be edited and given back:
+    ``unwrap(vertices, faces, seams=edited, cut="given")``.
 
     Parameters
     ----------
@@ -121,6 +145,15 @@ def unwrap(
         Corners to hold, counted from 0 face after face, and the UVs that they get, to the bit: a
         chart takes the scale of its pins. Raises `PinError`, with the corner, where no injective
         map meets them.
+    vertex_paint : (n,) array_like of floats, optional
+        With ``cut="auto"`` factors of what a seam costs at each vertex, finite and at least 0: less
+        than 1 draws seams, more drives them off, and nothing is forced. They count from 0.05 to 20,
+        and an edge has the geometric mean of its ends.
+    edge_paint : tuple of (k, 2) array_like of integers and (k,) array_like of floats, optional
+        The same for edges, by their vertices: factors that multiply those of their ends.
+    materials : (m,) array_like, optional
+        With ``cut="auto"`` numbers or words: seams are drawn to where they differ, and cost
+        `material_seams` of their length there.
     progress : bool or callable, optional
         As for `parameterize`.
 
@@ -173,10 +206,12 @@ def unwrap(
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
         it; 0 sets no limit. A number from 0 to 1e+14.
-    cut : {"minimal", "islands"}, default "minimal"
-        Where seams go beside those that are given: minimal (a short cut graph where a piece is no
-        disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-        opened).
+    cut : {"minimal", "islands", "auto", "given"}, default "auto"
+        Where seams go beside those that are given: auto (short ones that are searched for, along
+        which the atlas has the target-energy), minimal (a short cut graph where a piece is no
+        disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
+        or given (nowhere: those that are given are used as they are; what is no disk then is opened
+        as by minimal).
     hard_angle : float, default 180.0
         Degrees between the normals of two faces above which the edge between them is a seam; 180
         makes none. A number from 0 to 180.
@@ -192,6 +227,35 @@ def unwrap(
     share_copies : bool, default False
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
+    preset : {"none", "lightmap", "texturing", "one-chart"}, default "none"
+        What the seams are for, a shorthand for the options of the search, of which those that are
+        given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
+        hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    target_energy : float, default 2.05, or as the preset has it
+        Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
+        all stay: the nearer to 2, the longer the seams. A number from 2.0001 to 1,000,000,000.
+    target_p99 : float, default 0.0
+        Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean. A number from
+        0 to 1,000,000,000.
+    max_charts : int, default 0, or as the preset has it
+        Charts that the search is to stay within, but for one for each component, if there is a way;
+        0 takes any number. A number from 0 to 1,000,000,000.
+    seam_budget : float, default 0.0
+        Length of the seams, over the root of the area, that the search is to stay within; 0 takes
+        any length. A number from 0 to 1,000,000,000.
+    concave_seams : float, default 0.3, or as the preset has it
+        How far seams seek edges where the surface is concave and avoid the convex: a times a
+        concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not. A number from 0
+        to 10.
+    hidden_seams : float, default 1.0, or as the preset has it
+        How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length,
+        and 1 where nothing does; 0 does not. A number from 0 to 100.
+    hard_seams : float, default 0.7, or as the preset has it
+        What a seam along an edge costs whose faces turn by more than 60 degrees, times its length:
+        below 1 it is sought. A number from 0.01 to 100.
+    material_seams : float, default 0.5
+        The same of an edge between faces of different materials, where those are given. A number
+        from 0.01 to 100.
 
     Returns
     -------
@@ -239,12 +303,22 @@ def unwrap(
         "weld_distance": weld_distance,
         "fill_holes": fill_holes,
         "share_copies": share_copies,
+        "preset": preset,
+        "target_energy": target_energy,
+        "target_p99": target_p99,
+        "max_charts": max_charts,
+        "seam_budget": seam_budget,
+        "concave_seams": concave_seams,
+        "hidden_seams": hidden_seams,
+        "hard_seams": hard_seams,
+        "material_seams": material_seams,
         # end of options
     }
     if faces is None and isinstance(vertices, (str, os.PathLike)):
         vertices = _trimesh.load(vertices)
     if faces is None and _trimesh.is_scene(vertices):
-        of_faces = (corner_uvs, face_labels, densities, seams, pins)
+        of_cuts = (corner_uvs, face_labels, seams, vertex_paint, edge_paint, materials)
+        of_faces = (*of_cuts, densities, pins)
         if any(values is not None for values in of_faces):
             raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
         return _unwrap_scene(vertices, given, progress)
@@ -258,6 +332,7 @@ def unwrap(
         if corner_uvs is None and cut == "islands":
             corner_uvs = _trimesh.corner_uvs(mesh)
     surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams, pins)
+    surface = _with_hints(surface, vertex_paint, edge_paint, materials)
     with hook_for(progress) as hook:
         atlas = _unwrap(surface, given, hook, mesh)
     _warn(atlas, "")
@@ -285,6 +360,18 @@ def _surface(
     )
 
 
+def _with_hints(surface: Surface, vertex_paint: Any, edge_paint: Any, materials: Any) -> Surface:
+    faces = surface.faces
+    return replace(
+        surface,
+        vertex_paint=None
+        if vertex_paint is None
+        else _polygons.vertex_paint(vertex_paint, len(surface.vertices)),
+        edge_paint=None if edge_paint is None else _polygons.edge_paint(edge_paint),
+        materials=None if materials is None else _polygons.labels(materials, faces, "materials"),
+    )
+
+
 def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -> Atlas:
     context = AtlasContext()
     single = surface.vertices.dtype == np.float32
@@ -304,6 +391,7 @@ def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -
         uvs=uvs,
         uv_faces=uv_faces,
         origins=origins,
+        seams=context.seams(report.seams, number),
         chart_of_face=context.face_charts(report.faces),
         charts=context.charts(report.charts),
         triangles=context.triangles(report.triangles),

@@ -41,12 +41,21 @@ def unwrap_batch(
     time_limit: float = 0.0,
     float32: bool = False,
     memory_limit: int = 0,
-    cut: CutChoice = "minimal",
+    cut: CutChoice = "auto",
     hard_angle: float = 180.0,
     weld: WeldChoice = "auto",
     weld_distance: float = 0.0,
     fill_holes: float = 0.5,
     share_copies: bool = False,
+    preset: PresetChoice = "none",
+    target_energy: float | None = None,
+    target_p99: float = 0.0,
+    max_charts: int | None = None,
+    seam_budget: float = 0.0,
+    concave_seams: float | None = None,
+    hidden_seams: float | None = None,
+    hard_seams: float | None = None,
+    material_seams: float = 0.5,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -141,10 +150,12 @@ def unwrap_batch(
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
         it; 0 sets no limit. A number from 0 to 1e+14.
-    cut : {"minimal", "islands"}, default "minimal"
-        Where seams go beside those that are given: minimal (a short cut graph where a piece is no
-        disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-        opened).
+    cut : {"minimal", "islands", "auto", "given"}, default "auto"
+        Where seams go beside those that are given: auto (short ones that are searched for, along
+        which the atlas has the target-energy), minimal (a short cut graph where a piece is no
+        disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
+        or given (nowhere: those that are given are used as they are; what is no disk then is opened
+        as by minimal).
     hard_angle : float, default 180.0
         Degrees between the normals of two faces above which the edge between them is a seam; 180
         makes none. A number from 0 to 180.
@@ -160,6 +171,35 @@ def unwrap_batch(
     share_copies : bool, default False
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
+    preset : {"none", "lightmap", "texturing", "one-chart"}, default "none"
+        What the seams are for, a shorthand for the options of the search, of which those that are
+        given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
+        hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    target_energy : float, default 2.05, or as the preset has it
+        Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
+        all stay: the nearer to 2, the longer the seams. A number from 2.0001 to 1,000,000,000.
+    target_p99 : float, default 0.0
+        Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean. A number from
+        0 to 1,000,000,000.
+    max_charts : int, default 0, or as the preset has it
+        Charts that the search is to stay within, but for one for each component, if there is a way;
+        0 takes any number. A number from 0 to 1,000,000,000.
+    seam_budget : float, default 0.0
+        Length of the seams, over the root of the area, that the search is to stay within; 0 takes
+        any length. A number from 0 to 1,000,000,000.
+    concave_seams : float, default 0.3, or as the preset has it
+        How far seams seek edges where the surface is concave and avoid the convex: a times a
+        concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not. A number from 0
+        to 10.
+    hidden_seams : float, default 1.0, or as the preset has it
+        How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length,
+        and 1 where nothing does; 0 does not. A number from 0 to 100.
+    hard_seams : float, default 0.7, or as the preset has it
+        What a seam along an edge costs whose faces turn by more than 60 degrees, times its length:
+        below 1 it is sought. A number from 0.01 to 100.
+    material_seams : float, default 0.5
+        The same of an edge between faces of different materials, where those are given. A number
+        from 0.01 to 100.
 
     Returns
     -------
@@ -201,6 +241,15 @@ def unwrap_batch(
         "weld_distance": weld_distance,
         "fill_holes": fill_holes,
         "share_copies": share_copies,
+        "preset": preset,
+        "target_energy": target_energy,
+        "target_p99": target_p99,
+        "max_charts": max_charts,
+        "seam_budget": seam_budget,
+        "concave_seams": concave_seams,
+        "hidden_seams": hidden_seams,
+        "hard_seams": hard_seams,
+        "material_seams": material_seams,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -167,80 +167,117 @@ pub const BELTRAMI_OPTION_WELD_DISTANCE: _bindgen_ty_3 = 18;
 pub const BELTRAMI_OPTION_FILL_HOLES: _bindgen_ty_3 = 19;
 /// int: 1 gives copies of a face the UVs of the first
 pub const BELTRAMI_OPTION_SHARE_COPIES: _bindgen_ty_3 = 20;
+/// choice: BELTRAMI_PRESET_; sets the options below
+pub const BELTRAMI_OPTION_PRESET: _bindgen_ty_3 = 21;
+/// float: mean symmetric Dirichlet energy that is sought
+pub const BELTRAMI_OPTION_TARGET_ENERGY: _bindgen_ty_3 = 22;
+/// float: energy that 1% of the area may exceed; 0: any
+pub const BELTRAMI_OPTION_TARGET_P99: _bindgen_ty_3 = 23;
+/// int: charts that are enough; 0: any number
+pub const BELTRAMI_OPTION_MAX_CHARTS: _bindgen_ty_3 = 24;
+/// float: seam length over the root of the area; 0: any
+pub const BELTRAMI_OPTION_SEAM_BUDGET: _bindgen_ty_3 = 25;
+/// float: how far seams seek concave edges; 0: not
+pub const BELTRAMI_OPTION_CONCAVE_SEAMS: _bindgen_ty_3 = 26;
+/// float: how far seams hide from view; 0: not
+pub const BELTRAMI_OPTION_HIDDEN_SEAMS: _bindgen_ty_3 = 27;
+/// float: factor of what a seam along a hard edge costs
+pub const BELTRAMI_OPTION_HARD_SEAMS: _bindgen_ty_3 = 28;
+/// float: the same where the materials of faces differ
+pub const BELTRAMI_OPTION_MATERIAL_SEAMS: _bindgen_ty_3 = 29;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Nothing but a short cut graph where a piece is no disk.
 pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_4 = 0;
 /// Also where the corner UVs of the surface part: its charts stay what they are.
 pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_4 = 1;
+/** The default: short seams that are searched for, along which the maps have the energy asked for
+ by the option target-energy.*/
+pub const BELTRAMI_CUT_AUTO: _bindgen_ty_4 = 2;
+/** Nothing: the seams that come with the surface are used as they are. What is no disk then is
+ opened as by MINIMAL, which does the same; seams of an earlier atlas leave nothing to open.*/
+pub const BELTRAMI_CUT_GIVEN: _bindgen_ty_4 = 3;
 /// What is cut beside the seams that come with a surface.
 pub type _bindgen_ty_4 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_5 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_5 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_5 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_5 = 2;
-/// Whether vertices at one place are one.
+pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_5 = -1;
+/// The defaults.
+pub const BELTRAMI_PRESET_NONE: _bindgen_ty_5 = 0;
+/** Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
+ hard edges: hidden-seams 0, hard-seams 0.5.*/
+pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_5 = 1;
+/** Textures that are painted or photographed: seams where nobody looks, though they be longer:
+ concave-seams 0.6, hidden-seams 2.*/
+pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_5 = 2;
+/// One chart for each component, at the energy that it can have: max-charts 1.
+pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_5 = 3;
+/// What the seams are for: setting one writes its values to the options of the search.
 pub type _bindgen_ty_5 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_6 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_6 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_6 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_6 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_6 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_6 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_6 = 5;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_6 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_6 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_6 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_6 = 2;
+/// Whether vertices at one place are one.
 pub type _bindgen_ty_6 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_7 = -1;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_7 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_7 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_7 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_7 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_7 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_7 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_7 = 5;
+pub type _bindgen_ty_7 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_8 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_7 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_8 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_7 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_8 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_7 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_8 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_7 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_8 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_7 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_8 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_7 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_8 = -1;
-/// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_8 = 0;
-/// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_8 = 1;
-/// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_8 = 2;
-/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_8 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_9 = -1;
-/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_9 = 0;
-/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_9 = 1;
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_9 = -1;
+/// Global, but for the method CM: that is left as the literature has it, the reference.
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_9 = 0;
+/// No flips, and no part of the boundary may cross another.
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_9 = 1;
+/// No flips; the boundary may overlap itself, at a slightly lower energy.
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_9 = 2;
+/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_10 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_10 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_10 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_10 = 2;
-/// How an option's value is given.
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_10 = 0;
+/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_10 = 1;
 pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_11 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_11 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_11 = 2;
-/// What an option is for.
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_11 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_11 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_11 = 2;
+/// How an option's value is given.
 pub type _bindgen_ty_11 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_12 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_12 = 2;
+/// What an option is for.
+pub type _bindgen_ty_12 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -350,13 +387,23 @@ extern "C" {
         value: f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_12 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_12 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_12 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_12 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_12 = 3;
+extern "C" {
+    /** Writes the value that option `key` has: its default, what it was set to, or what the option
+ preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
+ run).*/
+    pub fn beltrami_get_option(
+        context: *mut beltrami_context,
+        key: i32,
+        value: *mut f64,
+    ) -> beltrami_status;
+}
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_13 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_13 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_13 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_13 = 3;
 /// Element types of buffers.
-pub type _bindgen_ty_12 = ::core::ffi::c_int;
+pub type _bindgen_ty_13 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -919,11 +966,24 @@ pub struct beltrami_surface {
     /// pin_count items of 2, F32 or F64, in the unit of positions
     pub pin_uvs: beltrami_buffer,
     pub pin_count: u64,
+    /** optional: vertex_count items of 1, F32 or F64: factors; an edge
+ has the geometric mean of its ends*/
+    pub vertex_paint: beltrami_buffer,
+    /** optional: painted_edge_count items of 2, U32 or U64: edges by
+ their vertices; pairs that are no edge are ignored*/
+    pub painted_edges: beltrami_buffer,
+    /** painted_edge_count items of 1, F32 or F64: factors, which
+ multiply those of the ends; those of one edge multiply*/
+    pub edge_paint: beltrami_buffer,
+    pub painted_edge_count: u64,
+    /** optional: face_count items of 1, U32 or U64: where they differ a
+ seam costs the factor of the option material-seams*/
+    pub materials: beltrami_buffer,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 272usize];
+    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 376usize];
     [
         "Alignment of beltrami_surface",
     ][::core::mem::align_of::<beltrami_surface>() - 8usize];
@@ -978,6 +1038,21 @@ const _: () = {
     [
         "Offset of field: beltrami_surface::pin_count",
     ][::core::mem::offset_of!(beltrami_surface, pin_count) - 264usize];
+    [
+        "Offset of field: beltrami_surface::vertex_paint",
+    ][::core::mem::offset_of!(beltrami_surface, vertex_paint) - 272usize];
+    [
+        "Offset of field: beltrami_surface::painted_edges",
+    ][::core::mem::offset_of!(beltrami_surface, painted_edges) - 296usize];
+    [
+        "Offset of field: beltrami_surface::edge_paint",
+    ][::core::mem::offset_of!(beltrami_surface, edge_paint) - 320usize];
+    [
+        "Offset of field: beltrami_surface::painted_edge_count",
+    ][::core::mem::offset_of!(beltrami_surface, painted_edge_count) - 344usize];
+    [
+        "Offset of field: beltrami_surface::materials",
+    ][::core::mem::offset_of!(beltrami_surface, materials) - 352usize];
 };
 impl Default for beltrami_surface {
     fn default() -> Self {
@@ -1091,11 +1166,18 @@ pub struct beltrami_atlas {
     pub cpu_seconds: f64,
     /// of the whole process so far
     pub peak_memory_bytes: u64,
+    /// edges, see beltrami_get_seams
+    pub seams: u64,
+    /// 1 where seams were searched for: with the cut AUTO; else 0
+    pub searched: i32,
+    /** 1 where those meet what was asked for: energy (to 0.0001), p99,
+ charts (or one for each component), seam length; else 0*/
+    pub reached: i32,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 240usize];
+    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 256usize];
     ["Alignment of beltrami_atlas"][::core::mem::align_of::<beltrami_atlas>() - 8usize];
     [
         "Offset of field: beltrami_atlas::struct_size",
@@ -1190,6 +1272,15 @@ const _: () = {
     [
         "Offset of field: beltrami_atlas::peak_memory_bytes",
     ][::core::mem::offset_of!(beltrami_atlas, peak_memory_bytes) - 232usize];
+    [
+        "Offset of field: beltrami_atlas::seams",
+    ][::core::mem::offset_of!(beltrami_atlas, seams) - 240usize];
+    [
+        "Offset of field: beltrami_atlas::searched",
+    ][::core::mem::offset_of!(beltrami_atlas, searched) - 248usize];
+    [
+        "Offset of field: beltrami_atlas::reached",
+    ][::core::mem::offset_of!(beltrami_atlas, reached) - 252usize];
 };
 /// A chart: a connected piece of the surface.
 #[repr(C)]
@@ -1414,6 +1505,19 @@ extern "C" {
     /** Writes the chart of each face, all bits set for a face without area: `type` U32 or U64. Errors:
  INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_face_charts(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the seams, those given and those found, as items of 2 vertices of the input, of vertices
+ that count as one the least: `type` U32 or U64. They are the edges of the surface at which UVs
+ part, each once, the lesser vertex first, in increasing order; open borders are none. Given back
+ as `seams` of the surface, with the cut GIVEN, they make the same charts; but an edge of several
+ layers of faces is cut in all of them. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_seams(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
         type_: i32,

@@ -149,6 +149,26 @@ impl<'a> Atlas<'a> {
         self.origins::<u64>().into_iter().map(|vertex| items[count(vertex)].clone()).collect()
     }
 
+    /// The seams, those given and those found, as pairs of vertices in `u32` or `u64`: edges at which
+    /// UVs part, each once, the lesser vertex first, in increasing order; open borders are none. Of
+    /// vertices that count as one it is the least. As [`seams`](crate::Surface::seams) of the
+    /// surface, with [`Cut::Given`](crate::Cut::Given), they make the same charts.
+    pub fn seams<T: Index>(&self) -> Vec<[T; 2]> {
+        let mut seams = vec![[T::default(); 2]; count(self.raw().seams)];
+        let out = seams.as_mut_ptr().cast();
+        // SAFETY: there is room for two numbers of this type per seam.
+        self.read(|context| unsafe { sys::beltrami_get_seams(context, out, T::TYPE, 0) });
+        seams
+    }
+
+    /// Whether the atlas is what its seams were searched for: in energy (to 0.0001), 99th
+    /// percentile, charts (or one for each component) and length of seams. `None` where none were
+    /// searched for.
+    pub fn reached_target(&self) -> Option<bool> {
+        let raw = self.raw();
+        (raw.searched != 0).then_some(raw.reached != 0)
+    }
+
     /// The triangles that were computed on and that the certificates speak of: three corners each,
     /// in the orientation in which they are positive, in `u32` or `u64`.
     pub fn triangles<T: Index>(&self) -> Vec<[T; 3]> {

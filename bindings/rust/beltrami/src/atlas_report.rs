@@ -120,6 +120,8 @@ pub struct AtlasSummary {
     pub left_out: usize,
     /// Area of the surface, in its unit squared.
     pub area: f64,
+    /// Edges in [`Atlas::seams`](crate::Atlas::seams).
+    pub seams: usize,
     /// Length of the seams on the surface, each counted once, without open borders.
     pub seam_length: f64,
     /// Area of the UVs over that of their bounding box.
@@ -162,6 +164,7 @@ impl AtlasSummary {
             filled_holes: count(raw.filled_holes),
             left_out: count(raw.left_out),
             area: raw.area,
+            seams: count(raw.seams),
             seam_length: raw.seam_length,
             utilisation: raw.utilisation,
             symmetric_dirichlet: raw.symmetric_dirichlet,

@@ -36,7 +36,7 @@ pub use flattener::Flattener;
 pub use library::{build_info, has, version};
 pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
 pub use options::{
-    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options,
+    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, Preset,
     UnwrapOptions, Weld, OPTIONS,
 };
 pub use parameterization::{Parameterization, Stage, Status, Summary};

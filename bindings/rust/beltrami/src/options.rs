@@ -9,7 +9,7 @@ use std::time::Duration;
 use beltrami_sys as sys;
 
 use crate::error::Error;
-pub use table::{Cut, Delaunay, Energy, Flatten, Injectivity, Method, Weld, OPTIONS};
+pub use table::{Cut, Delaunay, Energy, Flatten, Injectivity, Method, Preset, Weld, OPTIONS};
 
 /// What an option takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -280,10 +280,10 @@ impl Values {
         Ok(())
     }
 
+    /// First all defaults, so that a preset that is set holds for what is not.
     fn all(&self) -> impl Iterator<Item = (i32, Value)> + '_ {
-        (0..)
-            .zip(&self.0)
-            .filter_map(|(key, value)| Some((key, (*value).or_else(|| default(key))?)))
+        let defaults = (0..).zip(&self.0).filter_map(|(key, _)| Some((key, default(key)?)));
+        defaults.chain((0..).zip(&self.0).filter_map(|(key, value)| Some((key, (*value)?))))
     }
 }
 

@@ -141,6 +141,9 @@ pub struct Surface<'a> {
     densities: Option<Reals<'a>>,
     seams: Option<Edges<'a>>,
     pins: Option<(Integers<'a>, Uvs<'a>)>,
+    vertex_paint: Option<Reals<'a>>,
+    edge_paint: Option<(Edges<'a>, Reals<'a>)>,
+    materials: Option<Integers<'a>>,
 }
 
 impl<'a> Surface<'a> {
@@ -169,6 +172,9 @@ impl<'a> Surface<'a> {
             densities: None,
             seams: None,
             pins: None,
+            vertex_paint: None,
+            edge_paint: None,
+            materials: None,
         }
     }
 
@@ -205,6 +211,35 @@ impl<'a> Surface<'a> {
     /// are not as many UVs as corners.
     pub fn pins(mut self, corners: impl Into<Integers<'a>>, uvs: impl Into<Uvs<'a>>) -> Self {
         self.pins = Some((corners.into(), uvs.into()));
+        self
+    }
+
+    /// A factor for each vertex of what a seam costs there, with [`Cut::Auto`](crate::Cut::Auto):
+    /// finite and at least 0, less than 1 to draw seams. It counts from 0.05 to 20, and forces
+    /// nothing; an edge has the geometric mean of its ends.
+    pub fn vertex_paint(mut self, factors: impl Into<Reals<'a>>) -> Self {
+        self.vertex_paint = Some(factors.into());
+        self
+    }
+
+    /// Edges, by their vertices, and a factor for each that multiplies those of its ends; pairs
+    /// that are no edge are ignored. Unwrapping fails with
+    /// [`ErrorKind::InvalidArgument`](crate::ErrorKind::InvalidArgument) where there are not as many
+    /// factors as edges.
+    pub fn edge_paint(
+        mut self,
+        edges: impl Into<Edges<'a>>,
+        factors: impl Into<Reals<'a>>,
+    ) -> Self {
+        self.edge_paint = Some((edges.into(), factors.into()));
+        self
+    }
+
+    /// A number for each face: with [`Cut::Auto`](crate::Cut::Auto) seams are drawn to where they
+    /// differ, and cost [`material_seams`](crate::UnwrapOptions::material_seams) of their length
+    /// there.
+    pub fn materials(mut self, materials: impl Into<Integers<'a>>) -> Self {
+        self.materials = Some(materials.into());
         self
     }
 
@@ -250,6 +285,12 @@ impl<'a> Surface<'a> {
         if let Some((pinned, uvs)) = &self.pins {
             require("UVs of pins", Some(uvs.len()), pinned.len(), "pin")?;
         }
+        let vertices = self.vertex_count();
+        require("factors", self.vertex_paint.map(|paint| paint.len()), vertices, "vertex")?;
+        if let Some((edges, factors)) = &self.edge_paint {
+            require("factors", Some(factors.len()), edges.0.len, "painted edge")?;
+        }
+        require("materials", self.materials.map(|materials| materials.len()), faces, "face")?;
         let (indices, face_sizes) = match self.corners {
             Corners::Triangles(faces) => (faces.0.raw(), sys::beltrami_buffer::default()),
             Corners::Polygons { sizes, vertices } => (vertices.0.raw(), sizes.0.raw()),
@@ -272,6 +313,11 @@ impl<'a> Surface<'a> {
             pins: optional(self.pins.map(|(corners, _)| corners.0)),
             pin_uvs: optional(self.pins.map(|(_, uvs)| uvs.0)),
             pin_count: self.pins.map_or(0, |(corners, _)| corners.0.len as u64),
+            vertex_paint: optional(self.vertex_paint.map(|paint| paint.0)),
+            painted_edges: optional(self.edge_paint.map(|(edges, _)| edges.0)),
+            edge_paint: optional(self.edge_paint.map(|(_, factors)| factors.0)),
+            painted_edge_count: self.edge_paint.map_or(0, |(edges, _)| edges.0.len as u64),
+            materials: optional(self.materials.map(|materials| materials.0)),
             cancel: token.number(),
             ..Default::default()
         })

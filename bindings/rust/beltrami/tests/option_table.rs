@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use beltrami::{
     Cut, Delaunay, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionInfo,
-    OptionKind, Options, UnwrapOptions, Unwrapper, Weld, OPTIONS,
+    OptionKind, Options, Preset, UnwrapOptions, Unwrapper, Weld, OPTIONS,
 };
 use beltrami_sys as sys;
 
@@ -178,6 +178,9 @@ fn typed_and_named_options_are_the_same() {
     let unwrap = |name, value: &str| UnwrapOptions::new().set(name, value).unwrap();
     for &cut in Cut::ALL {
         assert_eq!(UnwrapOptions::new().cut(cut), unwrap("cut", cut.name()));
+    }
+    for &preset in Preset::ALL {
+        assert_eq!(UnwrapOptions::new().preset(preset), unwrap("preset", preset.name()));
     }
     for &weld in Weld::ALL {
         assert_eq!(UnwrapOptions::new().weld(weld), unwrap("weld", weld.name()));

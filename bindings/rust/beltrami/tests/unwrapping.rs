@@ -7,7 +7,7 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use beltrami::{
     check_atlas, check_atlas_with, triangulate, AtlasRules, CancelToken, Control, Cut, Element,
-    ErrorKind, Method, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
+    ErrorKind, Method, Preset, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
 };
 use support::{sheet, single};
 
@@ -129,6 +129,42 @@ fn charts_part_where_they_are_told_to() {
     let soup = Surface::polygons(&soup, &SIZES, &corners);
     assert_eq!(charts(&soup, &plain).0, 1);
     assert_eq!(charts(&soup, &UnwrapOptions::new().weld(Weld::Off)).0, 7);
+}
+
+#[test]
+fn seams_are_found_for_a_target_and_make_the_same_charts_again() {
+    let mut unwrapper = Unwrapper::new().unwrap();
+    let atlas = unwrapper.unwrap(&cube()).unwrap();
+    assert_eq!(atlas.reached_target(), Some(true));
+    let (seams, charts) = (atlas.seams::<u32>(), atlas.face_charts());
+    assert_eq!(seams.len(), atlas.summary().seams);
+    assert!(seams.is_sorted() && seams.iter().all(|[a, b]| a < b));
+
+    unwrapper.set_options(&UnwrapOptions::new().cut(Cut::Given)).unwrap();
+    let again = unwrapper.unwrap(&cube().seams(&seams)).unwrap();
+    assert_eq!(again.seams::<u32>(), seams);
+    assert_eq!(again.face_charts(), charts);
+    assert_eq!(again.reached_target(), None);
+
+    let budget = UnwrapOptions::new().preset(Preset::Lightmap).seam_budget(0.01);
+    unwrapper.set_options(&budget).unwrap();
+    assert_eq!(unwrapper.unwrap(&cube()).unwrap().reached_target(), Some(false));
+}
+
+#[test]
+fn paint_and_materials_are_taken_and_looked_at() {
+    let mut unwrapper = Unwrapper::new().unwrap();
+    let mut paint = [1.0_f32; 8];
+    let materials = [0_u32, 1, 1, 0, 0, 0, 0];
+    let painted = cube().vertex_paint(&paint).materials(&materials);
+    unwrapper.unwrap(&painted.edge_paint(&[[0_u32, 1]], &[0.1_f64])).unwrap();
+    let unequal = painted.edge_paint(&[[0_u32, 1], [1, 2]], &[0.1_f64]);
+    assert_eq!(unwrapper.unwrap(&unequal).unwrap_err().kind, ErrorKind::InvalidArgument);
+    let short = cube().vertex_paint(&paint[1..]);
+    assert_eq!(unwrapper.unwrap(&short).unwrap_err().kind, ErrorKind::InvalidArgument);
+    paint[5] = -1.0;
+    let error = unwrapper.unwrap(&cube().vertex_paint(&paint)).unwrap_err();
+    assert_eq!((error.kind, error.element), (ErrorKind::InvalidArgument, Some(Element::Vertex(5))));
 }
 
 #[test]

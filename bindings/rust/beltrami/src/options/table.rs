@@ -83,14 +83,23 @@ choice! {
 }
 
 choice! {
-    /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
-    /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-    /// opened). See [`UnwrapOptions::cut`].
+    /// Where seams go beside those that are given: auto (short ones that are searched for, along
+    /// which the atlas has the target-energy), minimal (a short cut graph where a piece is no
+    /// disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
+    /// or given (nowhere: those that are given are used as they are; what is no disk then is opened
+    /// as by minimal). See [`UnwrapOptions::cut`].
     Cut {
         /// Nothing but a short cut graph where a piece is no disk.
         Minimal = "minimal",
         /// Also where the corner UVs of the surface part: its charts stay what they are.
         Islands = "islands",
+        /// The default: short seams that are searched for, along which the maps have the energy
+        /// asked for by the option target-energy.
+        Auto = "auto",
+        /// Nothing: the seams that come with the surface are used as they are. What is no disk then
+        /// is opened as by MINIMAL, which does the same; seams of an earlier atlas leave nothing to
+        /// open.
+        Given = "given",
     }
 }
 
@@ -104,6 +113,25 @@ choice! {
         On = "on",
         /// Off.
         Off = "off",
+    }
+}
+
+choice! {
+    /// What the seams are for, a shorthand for the options of the search, of which those that are
+    /// given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
+    /// hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    /// See [`UnwrapOptions::preset`].
+    Preset {
+        /// The defaults.
+        None = "none",
+        /// Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner
+        /// along hard edges: hidden-seams 0, hard-seams 0.5.
+        Lightmap = "lightmap",
+        /// Textures that are painted or photographed: seams where nobody looks, though they be
+        /// longer: concave-seams 0.6, hidden-seams 2.
+        Texturing = "texturing",
+        /// One chart for each component, at the energy that it can have: max-charts 1.
+        OneChart = "one-chart",
     }
 }
 
@@ -244,14 +272,16 @@ options! {
         "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it; 0 sets no limit."
         Int(&[]), 0..=100000000000000.0, default 0, calls 3;
 
-    /// Where seams go beside those that are given: minimal (a short cut graph where a piece is no
-    /// disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is
-    /// opened).
+    /// Where seams go beside those that are given: auto (short ones that are searched for, along
+    /// which the atlas has the target-energy), minimal (a short cut graph where a piece is no
+    /// disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
+    /// or given (nowhere: those that are given are used as they are; what is no disk then is opened
+    /// as by minimal).
     ///
-    /// Default: [`Minimal`](Cut::Minimal).
+    /// Default: [`Auto`](Cut::Auto).
     cut(Cut) of [UnwrapOptions] = 15 "cut"
-        "Where seams go beside those that are given: minimal (a short cut graph where a piece is no disk) or islands (the charts of the UVs that the mesh has; what is no disk of them is opened)."
-        Choice(Cut::NAMES), 0..=1, default 0, calls 2;
+        "Where seams go beside those that are given: auto (short ones that are searched for, along which the atlas has the target-energy), minimal (a short cut graph where a piece is no disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened) or given (nowhere: those that are given are used as they are; what is no disk then is opened as by minimal)."
+        Choice(Cut::NAMES), 0..=3, default 2, calls 2;
 
     /// Degrees between the normals of two faces above which the edge between them is a seam; 180
     /// makes none.
@@ -297,4 +327,91 @@ options! {
     share_copies(bool) of [UnwrapOptions] = 20 "share-copies"
         "1 gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a layer of their own."
         Switch(&[]), 0..=1, default 0, calls 2;
+
+    /// What the seams are for, a shorthand for the options of the search, of which those that are
+    /// given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
+    /// hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    ///
+    /// Default: [`None`](Preset::None).
+    preset(Preset) of [UnwrapOptions] = 21 "preset"
+        "What the seams are for, a shorthand for the options of the search, of which those that are given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1)."
+        Choice(Preset::NAMES), 0..=3, default 0, calls 2;
+
+    /// Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
+    /// all stay: the nearer to 2, the longer the seams.
+    ///
+    /// From 2.0001 to 1000000000.
+    ///
+    /// Default: 2.05.
+    target_energy(f64) of [UnwrapOptions] = 22 "target-energy"
+        "Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that all stay: the nearer to 2, the longer the seams."
+        Float(&[]), 2.0001..=1000000000, default 2.05, calls 2;
+
+    /// Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: 0.
+    target_p99(f64) of [UnwrapOptions] = 23 "target-p99"
+        "Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean."
+        Float(&[]), 0..=1000000000, default 0, calls 2;
+
+    /// Charts that the search is to stay within, but for one for each component, if there is a way;
+    /// 0 takes any number.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: 0.
+    max_charts(u32) of [UnwrapOptions] = 24 "max-charts"
+        "Charts that the search is to stay within, but for one for each component, if there is a way; 0 takes any number."
+        Int(&[]), 0..=1000000000, default 0, calls 2;
+
+    /// Length of the seams, over the root of the area, that the search is to stay within; 0 takes
+    /// any length.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: 0.
+    seam_budget(f64) of [UnwrapOptions] = 25 "seam-budget"
+        "Length of the seams, over the root of the area, that the search is to stay within; 0 takes any length."
+        Float(&[]), 0..=1000000000, default 0, calls 2;
+
+    /// How far seams seek edges where the surface is concave and avoid the convex: a times a
+    /// concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not.
+    ///
+    /// From 0 to 10.
+    ///
+    /// Default: 0.3.
+    concave_seams(f64) of [UnwrapOptions] = 26 "concave-seams"
+        "How far seams seek edges where the surface is concave and avoid the convex: a times a concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not."
+        Float(&[]), 0..=10, default 0.3, calls 2;
+
+    /// How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length,
+    /// and 1 where nothing does; 0 does not.
+    ///
+    /// From 0 to 100.
+    ///
+    /// Default: 1.
+    hidden_seams(f64) of [UnwrapOptions] = 27 "hidden-seams"
+        "How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length, and 1 where nothing does; 0 does not."
+        Float(&[]), 0..=100, default 1, calls 2;
+
+    /// What a seam along an edge costs whose faces turn by more than 60 degrees, times its length:
+    /// below 1 it is sought.
+    ///
+    /// From 0.01 to 100.
+    ///
+    /// Default: 0.7.
+    hard_seams(f64) of [UnwrapOptions] = 28 "hard-seams"
+        "What a seam along an edge costs whose faces turn by more than 60 degrees, times its length: below 1 it is sought."
+        Float(&[]), 0.01..=100, default 0.7, calls 2;
+
+    /// The same of an edge between faces of different materials, where those are given.
+    ///
+    /// From 0.01 to 100.
+    ///
+    /// Default: 0.5.
+    material_seams(f64) of [UnwrapOptions] = 29 "material-seams"
+        "The same of an edge between faces of different materials, where those are given."
+        Float(&[]), 0.01..=100, default 0.5, calls 2;
 }
