@@ -310,10 +310,10 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_PRESET,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "preset",
-        .summary = "What the seams are for, a shorthand for the options of the search, of which "
-                   "those that are given count more: none (their defaults), lightmap "
-                   "(target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams "
-                   "0.6, hidden-seams 2) or one-chart (max-charts 1).",
+        .summary =
+            "What the seams are for: sets the options of the search that are not set otherwise: "
+            "none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), "
+            "texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).",
         .minimum = 0,
         .maximum = std::size(kPresets) - 1,
         .choices = kPresets,
@@ -348,8 +348,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_MAX_CHARTS,
         .type = BELTRAMI_TYPE_INT,
         .name = "max-charts",
-        .summary = "Charts that the search is to stay within, but for one for each component, if "
-                   "there is a way; 0 takes any number.",
+        .summary = "Charts that the search is to stay within, or one for each component where "
+                   "there are more of these, if there is a way; 0 takes any number.",
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::target, &SeamTarget::max_charts>,
@@ -372,9 +372,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_CONCAVE_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "concave-seams",
-        .summary =
-            "How far seams seek edges where the surface is concave and avoid the convex: a times a "
-            "concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not.",
+        .summary = "How far seams seek concave edges and avoid convex ones: at a weight a one "
+                   "costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 "
+                   "does not tell them apart.",
         .minimum = 0,
         .maximum = 10,
         .get = get<&Options::weights, &SeamWeights::concavity>,
@@ -385,8 +385,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_HIDDEN_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "hidden-seams",
-        .summary = "How far seams hide: where all of the outside sees an edge a seam costs 1 + b "
-                   "of its length, and 1 where nothing does; 0 does not.",
+        .summary = "How far seams hide: at a weight b one costs 1 + b v times its length, where v "
+                   "goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not.",
         .minimum = 0,
         .maximum = 100,
         .get = get<&Options::weights, &SeamWeights::visibility>,
@@ -397,8 +397,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_HARD_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "hard-seams",
-        .summary = "What a seam along an edge costs whose faces turn by more than 60 degrees, "
-                   "times its length: below 1 it is sought.",
+        .summary = "What a seam costs, times its length, along an edge whose faces turn by more "
+                   "than 60 degrees: below 1 such edges are sought.",
         .minimum = 0.01,
         .maximum = 100,
         .get = get<&Options::weights, &SeamWeights::hard_edges>,
@@ -409,8 +409,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_MATERIAL_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "material-seams",
-        .summary =
-            "The same of an edge between faces of different materials, where those are given.",
+        .summary = "What a seam costs, times its length, along an edge between faces of different "
+                   "materials, where these are given: below 1 such edges are sought.",
         .minimum = 0.01,
         .maximum = 100,
         .get = get<&Options::weights, &SeamWeights::materials>,
