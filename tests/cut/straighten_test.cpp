@@ -86,15 +86,14 @@ std::vector<std::array<Index, 2>> pieces(const Surface& surface, const EdgeMarks
   return shapes;
 }
 
-/// What pieces meet at: how many vertices have one seam, how many three, and so on.
-std::vector<Index> counts_of_degrees(const Surface& surface, const EdgeMarks& marks) {
-  std::vector<Index> counts;
-  for (const Index degree : degrees(surface, marks)) {
-    if (degree == 0 || degree == 2) continue;
-    counts.resize(std::max<std::size_t>(counts.size(), degree + 1), 0);
-    ++counts[degree];
+/// How many corners pieces have at vertices that are not held and that three seams or more meet at.
+/// A vertex of four seams is worth two of three.
+Index corners(const std::vector<Index>& degree, const std::vector<bool>& is_held) {
+  Index count = 0;
+  for (std::size_t v = 0; v < degree.size(); ++v) {
+    if (degree[v] > 2 && !is_held[v]) count += degree[v] - 2;
   }
-  return counts;
+  return count;
 }
 
 TriangleList without_faces(TriangleList mesh, Index every) {
@@ -177,15 +176,19 @@ void expect_straightened(const Surface& surface, const EdgeMarks& seams,
                          const EdgeMarks& locked) {
   const EdgeMarks moved = straighten(surface, seams, cost, anchored, locked, Work(1));
   EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
-  EXPECT_EQ(counts_of_degrees(surface, moved), counts_of_degrees(surface, seams));
   EXPECT_LE(total(surface, moved, cost), total(surface, seams, cost) * (1 + 1e-12));
   const std::vector<Index> before = degrees(surface, seams), after = degrees(surface, moved);
+  std::vector<bool> held(before.size());
   for (Index v = 0; v < surface.vertex_count(); ++v) {
-    const bool stays = (before[v] != 0 && before[v] != 2) || (!anchored.empty() && anchored[v]);
-    if (stays && before[v] > 0) {
+    const bool is_anchored = !anchored.empty() && anchored[v] && before[v] > 0;
+    held[v] = surface.on_boundary[v] || is_anchored;
+    if (before[v] == 1 || held[v]) {
       EXPECT_EQ(after[v], before[v]);
+    } else {
+      EXPECT_NE(after[v], 1);
     }
   }
+  EXPECT_EQ(corners(after, held), corners(before, held));
   for (Index h = 0; h < size_of(moved); ++h) {
     if (moved[h] && !seams[h]) {
       EXPECT_TRUE(locked.empty() || !locked[h]);
@@ -306,6 +309,100 @@ TEST(Straighten, ALoopAroundATubeBecomesShortWhereverItBegan) {
   EXPECT_GT(total(surface, seams, cost), 12);
   EXPECT_LT(total(surface, moved, cost), 2 * std::numbers::pi);
   EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
+}
+
+/// `n` by `n` vertices of equilateral triangles with sides of length one: rows run along x, each by
+/// a half further than the one before.
+TriangleList triangular(Index n) {
+  TriangleList mesh;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) mesh.positions.push_back({i + j / 2.0, j * std::sqrt(0.75), 0});
+  }
+  for (Index j = 0; j + 1 < n; ++j) {
+    for (Index i = 0; i + 1 < n; ++i) {
+      const Index a = j * n + i;
+      mesh.faces.push_back({a, a + 1, a + n});
+      mesh.faces.push_back({a + 1, a + n + 1, a + n});
+    }
+  }
+  return mesh;
+}
+
+/// Paths from `centre`, each by steps of one distance between numbers of vertices after another.
+EdgeMarks marked_star(const Surface& surface, Index centre,
+                      const std::vector<std::vector<std::array<Index, 2>>>& branches) {
+  EdgeMarks marks(surface.twin.size(), false);
+  for (const std::vector<std::array<Index, 2>>& branch : branches) {
+    std::vector<Index> path{centre};
+    for (const auto& [by, times] : branch) {
+      for (Index i = 0; i < times; ++i) path.push_back(path.back() + by);
+    }
+    const EdgeMarks more = marked_path(surface, path);
+    for (Index h = 0; h < size_of(marks); ++h) marks[h] = marks[h] || more[h];
+  }
+  return marks;
+}
+
+TEST(Straighten, TheNodeOfATMoves) {
+  // The arms are a shortest path between their ends, and the stem is one to them. But others are as
+  // short, and come nearer to the end of the stem.
+  constexpr Index n = 61;
+  const Surface surface = built(triangular(n));
+  const std::vector<double> cost = lengths(surface);
+  const Index left = 20 * n + 10, centre = left + 5;
+  const EdgeMarks seams = marked_star(surface, centre, {{{-1, 5}}, {{1, 15}, {n, 10}}, {{n, 15}}});
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  expect_straightened(surface, seams, cost, {}, {});
+  EXPECT_NEAR(total(surface, seams, cost), 45, 1e-9);
+  EXPECT_NEAR(total(surface, moved, cost), 35, 1e-9);
+  EXPECT_EQ(degrees(surface, moved)[centre], 0);
+}
+
+TEST(Straighten, ThreeEndsMeetWhereTheirWaysAreLeast) {
+  constexpr Index n = 61;
+  const Surface surface = built(triangular(n));
+  const std::vector<double> cost = lengths(surface);
+  // Ends at equal distances in directions 120 degrees apart, which lead along edges; their node is
+  // far away.
+  const Index centre = 30 * n + 30, off = centre + 9;
+  const std::vector<Index> ends{centre + 20, centre + 20 * (n - 1), centre - 20 * n};
+  const EdgeMarks seams =
+      marked_star(surface, off, {{{1, 11}}, {{n - 1, 20}, {-1, 9}}, {{-1, 9}, {-n, 20}}});
+  for (const Index v : ends) EXPECT_EQ(degrees(surface, seams)[v], 1);
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  expect_straightened(surface, seams, cost, {}, {});
+  EXPECT_NEAR(total(surface, moved, cost), 60, 1e-9);
+  EXPECT_EQ(degrees(surface, moved)[centre], 3);
+}
+
+TEST(Straighten, AnAnchoredNodeStays) {
+  constexpr Index n = 61;
+  const Surface surface = built(triangular(n));
+  const Index off = 30 * n + 39;
+  const EdgeMarks seams =
+      marked_star(surface, off, {{{1, 11}}, {{n - 1, 20}, {-1, 9}}, {{-1, 9}, {-n, 20}}});
+  std::vector<bool> anchored(surface.positions.size(), false);
+  anchored[off] = true;
+  const EdgeMarks moved = straighten(surface, seams, lengths(surface), anchored, {}, Work(1));
+  EXPECT_EQ(degrees(surface, moved)[off], 3);
+}
+
+TEST(Straighten, ANodeOfFourBecomesTwo) {
+  // The diagonals of a long rectangle: its least tree has two nodes.
+  constexpr Index n = 61;
+  const Surface surface = built(triangular(n));
+  const std::vector<double> cost = lengths(surface);
+  const Index centre = 30 * n + 30;
+  const EdgeMarks seams = marked_star(
+      surface, centre,
+      {{{1, 15}, {n, 6}}, {{-1, 9}, {n - 1, 6}}, {{-1, 15}, {-n, 6}}, {{1, 9}, {1 - n, 6}}});
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  expect_straightened(surface, seams, cost, {}, {});
+  const std::vector<Index> degree = degrees(surface, moved);
+  EXPECT_EQ(std::count(degree.begin(), degree.end(), 3), 2);
+  EXPECT_EQ(std::count(degree.begin(), degree.end(), 4), 0);
+  EXPECT_NEAR(total(surface, seams, cost), 72, 1e-9);
+  EXPECT_NEAR(total(surface, moved, cost), 54, 1e-9);
 }
 
 TEST(Straighten, WhatIsCarriedFromACoarseSurfacePartsTheSameAndCostsLess) {
