@@ -286,7 +286,8 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
   OpenedSurface& opened = mapped.opened;
   run_stage("cut", work.part(0, kCut), stages, [&](StageStatistics&, const Work& inner) {
     opened = open_surface(admitted, input.cuts, options.fill_limit,
-                          {options.admit.polygons, options.diagonals}, target, inner);
+                          {options.admit.polygons, options.diagonals}, target, options.weights,
+                          input.hints, inner);
   });
   mapped.pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
   require_no_conflict(opened.charts, mapped.pins, input.pins);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "admit/admit.h"
+#include "atlas/open.h"
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"
@@ -21,14 +22,6 @@
 #include "exact/atlas_certificate.h"
 
 namespace beltrami {
-
-/// What draws seams that are searched for, as SeamHints has it: of the input's vertices and faces,
-/// each list empty where nothing is given.
-struct InputHints {
-  std::vector<double> vertex_paint;     ///< per vertex
-  std::vector<PaintedEdge> edge_paint;  ///< pairs that are no edge do nothing
-  std::vector<Index> materials;         ///< per face
-};
 
 /// Any triangles, and what comes with them. Lists are empty where nothing is given.
 struct AtlasInput {

@@ -1,6 +1,7 @@
 #include "atlas/open.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -68,11 +69,43 @@ EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
   return locked;
 }
 
+/// The hints for the filled surface; `input`: the input's vertex of each of its real ones.
+SeamHints hints_for(const FilledSurface& filled, const std::vector<Index>& input,
+                    const Admitted& admitted, const InputHints& given) {
+  const Surface& surface = filled.surface;
+  SeamHints hints;
+  if (!given.vertex_paint.empty()) {
+    hints.vertex_paint.assign(surface.positions.size(), 1);
+    for (std::size_t v = 0; v < input.size(); ++v) {
+      hints.vertex_paint[v] = given.vertex_paint[input[v]];
+    }
+  }
+  if (!given.materials.empty()) {
+    hints.labels.assign(surface.faces.size(), kNone);
+    for (Index f = 0; f < filled.real_faces; ++f) {
+      hints.labels[f] = given.materials[admitted.input_face[f]];
+    }
+  }
+  if (given.edge_paint.empty()) return hints;
+  const auto ordered = [](Index a, Index b) { return std::pair(std::min(a, b), std::max(a, b)); };
+  std::map<std::pair<Index, Index>, double> painted;
+  for (const PaintedEdge& edge : given.edge_paint) {
+    painted[ordered(admitted.welded(edge.ends[0]), admitted.welded(edge.ends[1]))] = edge.factor;
+  }
+  for (Index h = 0; h < 3 * filled.real_faces; ++h) {
+    if (surface.edge(h) != h) continue;
+    const Index a = surface.origin(h), b = surface.target(h);
+    const auto found = painted.find(ordered(input[a], input[b]));
+    if (found != painted.end()) hints.edge_paint.push_back({{a, b}, found->second});
+  }
+  return hints;
+}
+
 }  // namespace
 
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
-                           const Work& work) {
+                           const SeamWeights& weights, const InputHints& hints, const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {
@@ -91,8 +124,11 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
   OpenedSurface opened;
   CutSurface cut;
   if (target) {
-    const SearchedSeams found = search_seams(filled.surface, filled.real_faces, topology, locked,
-                                             *target, {}, {}, work.part(kFilled, kOpened));
+    std::vector<Index> vertices(filled.real_vertices);
+    for (Index v = 0; v < filled.real_vertices; ++v) vertices[v] = admitted.input_vertex[input(v)];
+    const SearchedSeams found =
+        search_seams(filled.surface, filled.real_faces, topology, locked, *target, weights,
+                     hints_for(filled, vertices, admitted, hints), work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
   } else {

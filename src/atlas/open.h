@@ -11,6 +11,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/given.h"
+#include "cut/seam_costs.h"
 #include "cut/search.h"
 #include "mesh/chart.h"
 
@@ -20,6 +21,14 @@ namespace beltrami {
 struct AtlasChart {
   Chart chart;           ///< of vertices and faces of the surface, the virtual ones at the end
   Index real_faces = 0;  ///< the first ones
+};
+
+/// What draws seams that are searched for, as SeamHints has it: of the input's vertices and faces,
+/// each list empty where nothing is given.
+struct InputHints {
+  std::vector<double> vertex_paint;     ///< per vertex
+  std::vector<PaintedEdge> edge_paint;  ///< pairs that are no edge do nothing
+  std::vector<Index> materials;         ///< per face
 };
 
 struct OpenedSurface {
@@ -41,6 +50,6 @@ struct PolygonParts {
 /// polygon, if there is a way.
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
-                           const Work& work);
+                           const SeamWeights& weights, const InputHints& hints, const Work& work);
 
 }  // namespace beltrami
