@@ -395,7 +395,7 @@ TEST(Straighten, ANodeOfFourBecomesTwo) {
   const Index centre = 30 * n + 30;
   const EdgeMarks seams = marked_star(
       surface, centre,
-      {{{1, 15}, {n, 6}}, {{-1, 9}, {n - 1, 6}}, {{-1, 15}, {-n, 6}}, {{1, 9}, {1 - n, 6}}});
+      {{{n, 6}, {1, 15}}, {{n - 1, 6}, {-1, 9}}, {{-n, 6}, {-1, 15}}, {{1 - n, 6}, {1, 9}}});
   const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
   expect_straightened(surface, seams, cost, {}, {});
   const std::vector<Index> degree = degrees(surface, moved);
