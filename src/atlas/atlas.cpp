@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/locality.h"
 #include "mesh/surface.h"
 #include "repair/rounding.h"
 
@@ -23,6 +24,8 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 16384;
+/// Smaller surfaces are in the caches anyway.
+constexpr Index kWorthArranging = 50'000;
 // Where the stages end in the progress.
 constexpr double kAdmitted = 0.04, kMapped = 0.9, kPlaced = 0.95;
 constexpr double kCut = 0.15;      // of opening and mapping
@@ -48,6 +51,24 @@ Admitted admitted_surface(const std::vector<Vec3>& positions, const std::vector<
   apart.weld_distance.reset();
   Admitted as_it_stands = admit(positions, faces, apart, work);
   return is_disk(as_it_stands) ? as_it_stands : admitted;
+}
+
+/// Numbers a large surface by where it is: what follows goes over it many times, and takes half the
+/// time where neighbours lie close in memory.
+void arrange_surface(Admitted& admitted, const Work& work) {
+  if (admitted.surface.face_count() < kWorthArranging) return;
+  std::vector<Triangle> faces = std::move(admitted.surface.faces);
+  const Arrangement order = arrange(admitted.surface.positions, faces, work);
+  admitted.surface = build_surface(in_order(admitted.surface.positions, order.vertices, work),
+                                   std::move(faces), work);
+  admitted.topology = topology_of(admitted.surface, work);
+  admitted.input_vertex = in_order(admitted.input_vertex, order.vertices, work);
+  admitted.input_face = in_order(admitted.input_face, order.faces, work);
+  std::vector<bool> reversed(order.faces.size());
+  for (std::size_t f = 0; f < reversed.size(); ++f) {
+    reversed[f] = admitted.reversed[order.faces[f]];
+  }
+  admitted.reversed = std::move(reversed);
 }
 
 /// Scales the surface by the power of two that brings it to about unit area, and returns its
@@ -98,7 +119,7 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
   }
   ChartInfo info;
   info.faces = part.real_faces;
-  info.first_face = admitted_.input_face[chart.input_face[0]];
+  info.first_face = first_input_face(part, admitted_);
   for (std::size_t v = 0; v < uvs.size(); ++v) {
     if (place[v] == kNone) continue;  // of virtual faces alone
     place[v] = size_of(atlas_.uvs);
@@ -359,6 +380,7 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   int exponent = 0;
   stage("admit", 0, kAdmitted, [&](const Work& inner) {
     admitted = admitted_surface(input.positions, input.faces, options, inner);
+    arrange_surface(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
   });
   Mapped mapped = open_and_map_to_target(input, admitted, exponent, options,

@@ -101,7 +101,42 @@ SeamHints hints_for(const FilledSurface& filled, const std::vector<Index>& input
   return hints;
 }
 
+/// A surface that has been arranged has its faces in another order than the input.
+void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts) {
+  std::vector<std::pair<Index, Index>> order;
+  for (Index c = 0; c < size_of(charts); ++c) {
+    order.emplace_back(first_input_face(charts[c], admitted), c);
+  }
+  if (std::is_sorted(order.begin(), order.end())) return;
+  std::sort(order.begin(), order.end());
+  std::vector<AtlasChart> sorted;
+  for (const auto& [face, c] : order) sorted.push_back(std::move(charts[c]));
+  charts.swap(sorted);
+}
+
+/// The marks, and those of a short cut graph of each piece that is no disk along them.
+EdgeMarks opened_further(const Surface& surface, EdgeMarks marks, const EdgeMarks& locked,
+                         const Work& work) {
+  std::vector<Index> twin = surface.twin;
+  for (std::size_t h = 0; h < twin.size(); ++h) {
+    if (marks[h]) twin[h] = kNone;
+  }
+  const SplitSurface parted = split_fans(surface.positions, surface.faces, twin, work);
+  const EdgeMarks more =
+      open_minimal(parted.surface, topology_of(parted.surface, work), locked, work);
+  for (std::size_t h = 0; h < marks.size(); ++h) marks[h] = marks[h] || more[h];
+  return marks;
+}
+
 }  // namespace
+
+Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
+  Index first = admitted.input_face[chart.chart.input_face[0]];
+  for (Index f = 1; f < chart.real_faces; ++f) {
+    first = std::min(first, admitted.input_face[chart.chart.input_face[f]]);
+  }
+  return first;
+}
 
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
@@ -131,6 +166,10 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
                      hints_for(filled, vertices, admitted, hints), work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
+    if (!cut.non_disks.empty()) {
+      cut = cut_into_charts(filled.surface,
+                            opened_further(filled.surface, found.seams, locked, work), work);
+    }
   } else {
     const EdgeMarks marks =
         open_minimal(filled.surface, topology, locked, work.part(kFilled, kOpened));
@@ -147,6 +186,7 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
     for (Index& v : chart.input_vertex) v = v < filled.real_vertices ? input(v) : kNone;
     opened.charts.push_back({std::move(chart), real_faces});
   }
+  sort_by_first_face(admitted, opened.charts);
   return opened;
 }
 

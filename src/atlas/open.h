@@ -31,8 +31,11 @@ struct InputHints {
   std::vector<Index> materials;         ///< per face
 };
 
+/// The least of its faces, of the input.
+Index first_input_face(const AtlasChart& chart, const Admitted& admitted);
+
 struct OpenedSurface {
-  std::vector<AtlasChart> charts;  ///< by their least face
+  std::vector<AtlasChart> charts;  ///< by their least face of the input
   Index filled_holes = 0;
   double predicted_energy = 2;  ///< of seams that were searched
 };

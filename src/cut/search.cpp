@@ -25,6 +25,8 @@ constexpr Index kCoarseFaces = 10'000;
 constexpr double kWorthSimplifying = 1.3;
 /// Faces that a component keeps on the average.
 constexpr Index kLeastFaces = 300;
+/// A seam goes so far around to leave an edge that it was carried to, and that is locked.
+constexpr double kLockedCost = 1000;
 /// What an edge inside a filled hole costs of its length: no seam will be there.
 constexpr double kVirtualCost = 0.1;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
@@ -246,7 +248,7 @@ EdgeMarks marks_of(const Surface& surface, const std::vector<std::array<Index, 2
 }
 
 /// The seams on the fine surface, straightened there.
-EdgeMarks carried(const Coarse& coarse, const Surface& fine, const std::vector<double>& cost,
+EdgeMarks carried(const Coarse& coarse, const Surface& fine, std::vector<double> cost,
                   const EdgeMarks& locked, const Attempt& found, const Work& work) {
   std::vector<std::array<Index, 2>> edges;
   const Surface& surface = coarse.surface;
@@ -260,7 +262,14 @@ EdgeMarks carried(const Coarse& coarse, const Surface& fine, const std::vector<d
   }
   const EdgeMarks marks =
       marks_of(fine, carry_edges(coarse.history, edges, fine.on_boundary, anchors));
-  return straighten(fine, marks, cost, anchors, locked, work);
+  if (locked.empty()) return straighten(fine, marks, cost, anchors, locked, work);
+  // The coarse surface does not know of locked edges: seams on them go around, or give way.
+  for (std::size_t h = 0; h < locked.size(); ++h) {
+    if (locked[h]) cost[h] *= kLockedCost;
+  }
+  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, work);
+  for (std::size_t h = 0; h < locked.size(); ++h) free[h] = free[h] && !locked[h];
+  return free;
 }
 
 }  // namespace

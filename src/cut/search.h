@@ -25,11 +25,12 @@ struct SearchedSeams {
 };
 
 /// Marks seams that make disks of all components, so short as they are found, along which the maps
-/// have the energy asked for. All of it is decided on a coarse surface, by a model of the maps and
-/// then by maps, and carried to the fine one. `real_faces`: those after them are virtual, they
-/// weigh and cost nothing. `locked`: edges that are not to be cut where there is a way, or none.
-/// Preconditions: `topology` is the surface's; hints are of its vertices and faces; area about 1.
-/// Throws Error SOLVER.
+/// have the energy asked for. (Where seams of a simplified surface were carried to locked edges and
+/// cannot leave them, these are left out, and a piece may be no disk.) All of it is decided on a
+/// coarse surface, by a model of the maps and then by maps, and carried to the fine one.
+/// `real_faces`: those after them are virtual, they weigh and cost nothing. `locked`: edges that
+/// are not to be cut where there is a way, or none. Preconditions: `topology` is the surface's;
+/// hints are of its vertices and faces; area about 1. Throws Error SOLVER.
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
                            const SeamWeights& weights, const SeamHints& hints, const Work& work);
