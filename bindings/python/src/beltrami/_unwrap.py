@@ -228,9 +228,9 @@ def unwrap(
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
     preset : {"none", "lightmap", "texturing", "one-chart"}, default "none"
-        What the seams are for, a shorthand for the options of the search, of which those that are
-        given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
-        hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+        What the seams are for: sets the options of the search that are not set otherwise: none
+        (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
+        (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
     target_energy : float, default 2.05, or as the preset has it
         Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
         all stay: the nearer to 2, the longer the seams. A number from 2.0001 to 1,000,000,000.
@@ -238,24 +238,24 @@ def unwrap(
         Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean. A number from
         0 to 1,000,000,000.
     max_charts : int, default 0, or as the preset has it
-        Charts that the search is to stay within, but for one for each component, if there is a way;
-        0 takes any number. A number from 0 to 1,000,000,000.
+        Charts that the search is to stay within, or one for each component where there are more of
+        these, if there is a way; 0 takes any number. A number from 0 to 1,000,000,000.
     seam_budget : float, default 0.0
         Length of the seams, over the root of the area, that the search is to stay within; 0 takes
         any length. A number from 0 to 1,000,000,000.
     concave_seams : float, default 0.3, or as the preset has it
-        How far seams seek edges where the surface is concave and avoid the convex: a times a
-        concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not. A number from 0
-        to 10.
+        How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of
+        its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart. A
+        number from 0 to 10.
     hidden_seams : float, default 1.0, or as the preset has it
-        How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length,
-        and 1 where nothing does; 0 does not. A number from 0 to 100.
+        How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
+        seen from nowhere, to 1, seen from all sides; 0 does not. A number from 0 to 100.
     hard_seams : float, default 0.7, or as the preset has it
-        What a seam along an edge costs whose faces turn by more than 60 degrees, times its length:
-        below 1 it is sought. A number from 0.01 to 100.
+        What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
+        below 1 such edges are sought. A number from 0.01 to 100.
     material_seams : float, default 0.5
-        The same of an edge between faces of different materials, where those are given. A number
-        from 0.01 to 100.
+        What a seam costs, times its length, along an edge between faces of different materials,
+        where these are given: below 1 such edges are sought. A number from 0.01 to 100.
 
     Returns
     -------

@@ -117,10 +117,10 @@ choice! {
 }
 
 choice! {
-    /// What the seams are for, a shorthand for the options of the search, of which those that are
-    /// given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
-    /// hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
-    /// See [`UnwrapOptions::preset`].
+    /// What the seams are for: sets the options of the search that are not set otherwise: none
+    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
+    /// (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1). See
+    /// [`UnwrapOptions::preset`].
     Preset {
         /// The defaults.
         None = "none",
@@ -328,13 +328,13 @@ options! {
         "1 gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a layer of their own."
         Switch(&[]), 0..=1, default 0, calls 2;
 
-    /// What the seams are for, a shorthand for the options of the search, of which those that are
-    /// given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
-    /// hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    /// What the seams are for: sets the options of the search that are not set otherwise: none
+    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
+    /// (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
     ///
     /// Default: [`None`](Preset::None).
     preset(Preset) of [UnwrapOptions] = 21 "preset"
-        "What the seams are for, a shorthand for the options of the search, of which those that are given count more: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1)."
+        "What the seams are for: sets the options of the search that are not set otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1)."
         Choice(Preset::NAMES), 0..=3, default 0, calls 2;
 
     /// Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
@@ -356,14 +356,14 @@ options! {
         "Energy that no more than 1% of the area is to exceed; 0 leaves it to the mean."
         Float(&[]), 0..=1000000000, default 0, calls 2;
 
-    /// Charts that the search is to stay within, but for one for each component, if there is a way;
-    /// 0 takes any number.
+    /// Charts that the search is to stay within, or one for each component where there are more of
+    /// these, if there is a way; 0 takes any number.
     ///
     /// From 0 to 1000000000.
     ///
     /// Default: 0.
     max_charts(u32) of [UnwrapOptions] = 24 "max-charts"
-        "Charts that the search is to stay within, but for one for each component, if there is a way; 0 takes any number."
+        "Charts that the search is to stay within, or one for each component where there are more of these, if there is a way; 0 takes any number."
         Int(&[]), 0..=1000000000, default 0, calls 2;
 
     /// Length of the seams, over the root of the area, that the search is to stay within; 0 takes
@@ -376,42 +376,43 @@ options! {
         "Length of the seams, over the root of the area, that the search is to stay within; 0 takes any length."
         Float(&[]), 0..=1000000000, default 0, calls 2;
 
-    /// How far seams seek edges where the surface is concave and avoid the convex: a times a
-    /// concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not.
+    /// How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of
+    /// its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart.
     ///
     /// From 0 to 10.
     ///
     /// Default: 0.3.
     concave_seams(f64) of [UnwrapOptions] = 26 "concave-seams"
-        "How far seams seek edges where the surface is concave and avoid the convex: a times a concavity c from -1 to 1 costs a seam exp(-a c) of its length; 0 does not."
+        "How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart."
         Float(&[]), 0..=10, default 0.3, calls 2;
 
-    /// How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length,
-    /// and 1 where nothing does; 0 does not.
+    /// How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
+    /// seen from nowhere, to 1, seen from all sides; 0 does not.
     ///
     /// From 0 to 100.
     ///
     /// Default: 1.
     hidden_seams(f64) of [UnwrapOptions] = 27 "hidden-seams"
-        "How far seams hide: where all of the outside sees an edge a seam costs 1 + b of its length, and 1 where nothing does; 0 does not."
+        "How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not."
         Float(&[]), 0..=100, default 1, calls 2;
 
-    /// What a seam along an edge costs whose faces turn by more than 60 degrees, times its length:
-    /// below 1 it is sought.
+    /// What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
+    /// below 1 such edges are sought.
     ///
     /// From 0.01 to 100.
     ///
     /// Default: 0.7.
     hard_seams(f64) of [UnwrapOptions] = 28 "hard-seams"
-        "What a seam along an edge costs whose faces turn by more than 60 degrees, times its length: below 1 it is sought."
+        "What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees: below 1 such edges are sought."
         Float(&[]), 0.01..=100, default 0.7, calls 2;
 
-    /// The same of an edge between faces of different materials, where those are given.
+    /// What a seam costs, times its length, along an edge between faces of different materials,
+    /// where these are given: below 1 such edges are sought.
     ///
     /// From 0.01 to 100.
     ///
     /// Default: 0.5.
     material_seams(f64) of [UnwrapOptions] = 29 "material-seams"
-        "The same of an edge between faces of different materials, where those are given."
+        "What a seam costs, times its length, along an edge between faces of different materials, where these are given: below 1 such edges are sought."
         Float(&[]), 0.01..=100, default 0.5, calls 2;
 }
