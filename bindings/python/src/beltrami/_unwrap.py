@@ -23,6 +23,7 @@ from ._tables import (
     FlattenChoice,
     InjectivityChoice,
     MethodChoice,
+    PresetChoice,
     UnwrapOptions,
     WeldChoice,
 )

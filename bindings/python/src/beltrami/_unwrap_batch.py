@@ -15,6 +15,7 @@ from ._tables import (
     FlattenChoice,
     InjectivityChoice,
     MethodChoice,
+    PresetChoice,
     WeldChoice,
 )
 
