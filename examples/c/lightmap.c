@@ -93,6 +93,8 @@ int main(void) {
   /* Numbers that single precision holds, in the unit square; edges of crates are seams. */
   require(beltrami_set_int(context, BELTRAMI_OPTION_FLOAT32, 1), context, "float32");
   require(beltrami_set_int(context, BELTRAMI_OPTION_UNIT_SQUARE, 1), context, "unit-square");
+  require(beltrami_set_int(context, BELTRAMI_OPTION_PRESET, BELTRAMI_PRESET_LIGHTMAP), context,
+          "preset");
   require(beltrami_set_float(context, BELTRAMI_OPTION_HARD_ANGLE, 60), context, "hard-angle");
   require(beltrami_unwrap(context, &surface, NULL, NULL), context, "beltrami_unwrap");
 

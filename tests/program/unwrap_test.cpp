@@ -98,13 +98,14 @@ TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return Json::parse(directory.read("r.json"))["charts"].get<int>();
   };
-  EXPECT_EQ(charts(in, {"--labels", "materials"}), 2);
-  EXPECT_EQ(charts(in, {"--seams", directory.file("seams", "0 2\n2 3\n3 1\n1 0\n")}), 2);
+  EXPECT_EQ(charts(in, {"--labels", "materials", "--cut", "given"}), 2);
+  const std::string seams = directory.file("seams", "0 2\n2 3\n3 1\n1 0\n");
+  EXPECT_EQ(charts(in, {"--seams", seams, "--cut", "given"}), 2);
   EXPECT_EQ(charts(in, {"--hard-angle", "45"}), 6);
   const std::string islands = directory.path("islands.obj");
   ASSERT_EQ(run({"unwrap", in, islands, "--hard-angle", "45"}).exit_code, 0);
   EXPECT_EQ(charts(islands, {"--cut", "islands"}), 6);
-  EXPECT_EQ(charts(islands, {}), 1);
+  EXPECT_EQ(charts(islands, {"--cut", "minimal"}), 1);
 }
 
 TEST(Unwrap, SeamsThatAreWrittenMakeTheSameCharts) {
