@@ -166,7 +166,7 @@ Json energy_json(const Report& report) {
 
 Json target_json(const Report& report) {
   if (!report.atlas || !report.target) return nullptr;
-  return {{"energy", number(*report.target)}, {"reached", report.atlas->reached != 0}};
+  return {{"energy", number(report.target->energy)}, {"reached", report.atlas->reached != 0}};
 }
 
 Json repair_json(const Report& report) {
@@ -241,8 +241,13 @@ void append_atlas(const Report& report, std::string& text) {
   append(text, "energy     %.6g mean, %.6g at the 99th percentile, %.6g max (2 is isometric)\n",
          atlas.symmetric_dirichlet, atlas.p99, atlas.max);
   if (!report.target) return;
-  append(text, "target     %s, for a mean energy of %.6g\n",
-         atlas.reached != 0 ? "reached" : "MISSED", *report.target);
+  const Target& target = *report.target;
+  append(text, "target     %s: %.6g mean", atlas.reached != 0 ? "reached" : "MISSED",
+         target.energy);
+  if (target.p99 > 0) append(text, ", %.6g at the 99th percentile", target.p99);
+  if (target.charts > 0) append(text, ", charts up to %lld", static_cast<long long>(target.charts));
+  if (target.seams > 0) append(text, ", seams up to %.4g root areas", target.seams);
+  text += "\n";
 }
 
 /// What had to be done to the input, where that is anything.

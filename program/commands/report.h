@@ -38,6 +38,13 @@ struct FailedChart {
   beltrami_chart chart{};
 };
 
+/// What seams were searched for; 0: any.
+struct Target {
+  double energy = 0, p99 = 0;
+  std::int64_t charts = 0;
+  double seams = 0;  ///< length over the root of the area
+};
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -59,7 +66,7 @@ struct Report {
   std::optional<std::uint64_t> coarse_faces, flips_before_repair;
   std::optional<beltrami_result> result;
   std::optional<beltrami_atlas> atlas;
-  std::optional<double> target;  ///< energy that seams were searched for
+  std::optional<Target> target;
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output

@@ -161,7 +161,11 @@ class Unwrapping {
     atlas.struct_size = sizeof atlas;
     require(beltrami_get_atlas(context, &atlas));
     report_.atlas = atlas;
-    if (atlas.searched != 0) report_.target = options_.real(BELTRAMI_OPTION_TARGET_ENERGY);
+    if (atlas.searched != 0) {
+      report_.target = {
+          options_.real(BELTRAMI_OPTION_TARGET_ENERGY), options_.real(BELTRAMI_OPTION_TARGET_P99),
+          options_.integer(BELTRAMI_OPTION_MAX_CHARTS), options_.real(BELTRAMI_OPTION_SEAM_BUDGET)};
+    }
     report_.triangles = atlas.triangles;
     report_.area = atlas.area;
     report_.unreferenced_vertices = atlas.unused_vertices;

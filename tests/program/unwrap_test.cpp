@@ -133,14 +133,15 @@ TEST(Unwrap, SaysWhetherTheTargetIsReached) {
   const std::string report = directory.path("r.json");
   Outcome outcome = run({"unwrap", in, out, "--report", report});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("target     reached, for a mean energy of 2.05"), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find("target     reached: 2.05 mean\n"), std::string::npos) << outcome.out;
   Json json = Json::parse(directory.read("r.json"));
   EXPECT_EQ(json["target"]["energy"], 2.05);
   EXPECT_EQ(json["target"]["reached"], true);
   outcome = run({"unwrap", in, out, "--seam-budget", "0.01", "--report", report});
   ASSERT_EQ(outcome.exit_code, 0) << "no error: " << outcome.err;
-  EXPECT_NE(outcome.out.find("target     MISSED"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("target     MISSED: 2.05 mean, seams up to 0.01 root areas\n"),
+            std::string::npos)
+      << outcome.out;
   EXPECT_EQ(Json::parse(directory.read("r.json"))["target"]["reached"], false);
 }
 
