@@ -1,8 +1,10 @@
 #include "cut/local_maps.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -57,6 +59,20 @@ std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, double 
   return std::move(done.uvs);
 }
 
+/// The energy that is exceeded on 1% of the area.
+double percentile_of(std::vector<Vec2> energies_and_areas) {
+  std::sort(energies_and_areas.begin(), energies_and_areas.end(), [](const Vec2& a, const Vec2& b) {
+    return std::tie(a.x(), a.y()) > std::tie(b.x(), b.y());
+  });
+  double area = 0, beyond = 0;
+  for (const Vec2& face : energies_and_areas) area += face.y();
+  for (const Vec2& face : energies_and_areas) {
+    beyond += face.y();
+    if (beyond > 0.01 * area) return face.x();
+  }
+  return 2;
+}
+
 }  // namespace
 
 LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
@@ -77,7 +93,8 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
   }
   maps.uvs.resize(maps.cut.charts.size());
   maps.energies.assign(surface.faces.size(), kNoEnergy);
-  std::vector<Vec2> sums(maps.uvs.size(), Vec2::Zero());  // of energy times area, and of area
+  std::vector<Vec2> sums(maps.uvs.size(), Vec2::Zero());     // of energy times area, and of area
+  std::vector<std::vector<Vec2>> measured(maps.uvs.size());  // energies and areas
   parallel_for(work, size_of(maps.uvs), 1, [&](std::int64_t c, std::int64_t) {
     const Chart& chart = maps.cut.charts[c];
     maps.uvs[c] =
@@ -92,11 +109,15 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
       if (!std::isfinite(face.symmetric_dirichlet)) continue;
       maps.energies[chart.input_face[f]] = face.symmetric_dirichlet;
       sums[c] += Vec2(face.symmetric_dirichlet * face.area, face.area);
+      measured[c].emplace_back(face.symmetric_dirichlet, face.area);
     }
   });
   Vec2 sum = Vec2::Zero();
   for (const Vec2& own : sums) sum += own;
   maps.energy = sum.y() > 0 ? sum.x() / sum.y() : 2;
+  std::vector<Vec2> all;
+  for (const std::vector<Vec2>& own : measured) all.insert(all.end(), own.begin(), own.end());
+  maps.p99 = percentile_of(std::move(all));
   return maps;
 }
 

@@ -19,6 +19,7 @@ struct LocalMaps {
   std::vector<double> energies;  ///< per face of the surface: symmetric Dirichlet, NaN if virtual,
                                  ///< without area or folded
   double energy = 2;             ///< their mean by area
+  double p99 = 2;                ///< that exceeded on 1% of the area
 };
 
 /// Flattens every chart of the surface cut along `seams`, by composite majorization to `tolerance`.

@@ -38,13 +38,14 @@ SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
 }  // namespace
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, const Work& work)
+                       EdgeMarks seams, double budget, const Work& work)
     : surface_(surface),
       cost_(cost),
       degree_(surface.positions.size()),
       anchored_(surface.positions.size(), false),
       model_(surface, real_faces, work),
-      scale_(std::sqrt(surface_area(surface, work))) {
+      scale_(std::sqrt(surface_area(surface, work))),
+      budget_(budget * scale_) {
   take(std::move(seams));
 }
 
@@ -111,6 +112,21 @@ std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
   return apart;
 }
 
+/// Whether the seams stay within their budget with a path.
+bool SeamSearch::affords(const SeamPath& path) const {
+  if (budget_ == 0) return true;
+  double length = 0;
+  const auto add = [&](Index h) {
+    const std::vector<Vec3>& p = surface_.positions;
+    length += (p[surface_.target(h)] - p[surface_.origin(h)]).norm();
+  };
+  for (Index h = 0; h < size_of(seams_); ++h) {
+    if (seams_[h] && surface_.edge(h) == h) add(h);
+  }
+  for (const Index h : path.halfedges) add(h);
+  return length <= budget_;
+}
+
 bool SeamSearch::extend_once() {
   std::vector<bool> root(degree_.size());
   for (std::size_t v = 0; v < root.size(); ++v) {
@@ -123,6 +139,7 @@ bool SeamSearch::extend_once() {
   SeamPath chosen;
   for (const Index v : ends) {
     for (SeamPath path = paths.from(v); !path.vertices.empty(); path = last_half(path, paths)) {
+      if (!affords(path)) continue;
       const double gain = model_.energy() - model_.energy_with(path.vertices);
       if (!(gain > kLeastGain)) break;
       const double worth = gain / (path.cost + kLeastCost * scale_);

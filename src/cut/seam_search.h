@@ -17,9 +17,10 @@ namespace beltrami {
 class SeamSearch {
  public:
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
-  /// where no seam may be. Keeps references to `surface` and `cost`.
+  /// where no seam may be; `budget`: seams of more length over the root of the area are not
+  /// extended, 0: any. Keeps references to `surface` and `cost`.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-             EdgeMarks seams, const Work& work);
+             EdgeMarks seams, double budget, const Work& work);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. False where nothing helps any more.
@@ -55,6 +56,7 @@ class SeamSearch {
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
   bool extend_once();
+  bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs() const;
   std::vector<bool> joined_to(Index vertex) const;
   bool reconnect(const std::vector<Index>& arc);
@@ -71,7 +73,8 @@ class SeamSearch {
   std::vector<Index> degree_;  ///< per vertex: seams at it
   std::vector<bool> anchored_;
   ConformalModel model_;
-  double scale_;  ///< root of the area
+  double scale_;   ///< root of the area
+  double budget_;  ///< of length
   double cost_of_seams_ = 0;
 };
 

@@ -29,6 +29,8 @@ constexpr Index kLeastFaces = 300;
 constexpr double kLockedCost = 1000;
 /// What an edge inside a filled hole costs of its length: no seam will be there.
 constexpr double kVirtualCost = 0.1;
+/// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
+constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
 /// Where a map lies on itself on no more of its area, contact mends it at little cost.
@@ -120,12 +122,13 @@ struct Attempt {
   std::vector<bool> anchors;
   double cost = std::numeric_limits<double>::infinity();
   double energy = std::numeric_limits<double>::infinity();
+  double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
 
   /// Of two that reach the target the shorter one, else the one that is nearer to it.
-  bool is_better_than(const Attempt& other, double target) const {
-    const bool reaches = energy <= target;
-    if (reaches != (other.energy <= target)) return reaches;
-    return reaches ? cost < other.cost : energy < other.energy;
+  bool is_better_than(const Attempt& other) const {
+    const bool reaches = excess <= 1;
+    if (reaches != (other.excess <= 1)) return reaches;
+    return reaches ? cost < other.cost : excess < other.excess;
   }
 };
 
@@ -149,7 +152,7 @@ class Closure {
         search_(
             coarse.surface, coarse.real_faces, path_cost_,
             open_minimal(coarse.surface, topology_of(coarse.surface, work), coarse.locked, work),
-            work) {}
+            target.seam_budget * kSpent, work) {}
 
   Attempt run();
 
@@ -157,6 +160,7 @@ class Closure {
   void shorten_seams(double model_energy);
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps);
+  double missed_by(const LocalMaps& maps) const;
 
   const Coarse& coarse_;
   const SeamTarget& target_;
@@ -188,6 +192,7 @@ LocalMaps Closure::map(const LocalMaps* before) const {
 bool Closure::part_overlaps(const LocalMaps& maps) {
   EdgeMarks seams = search_.seams();
   bool parted = false;
+  Index charts = size_of(maps.uvs);
   for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
     const Chart& chart = maps.cut.charts[c];
     std::vector<double> cost(chart.mesh.twin.size());
@@ -195,6 +200,11 @@ bool Closure::part_overlaps(const LocalMaps& maps) {
     for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost_[surface_halfedge(h)];
     const OverlapSplit split =
         split_overlaps(chart.mesh, maps.uvs[c], cost, kCoarseOverlap, work_.aside());
+    charts += split.parts - 1;
+    if (target_.max_charts > 0 && charts > target_.max_charts) {
+      charts -= split.parts - 1;
+      continue;  // contact keeps its parts apart
+    }
     for (Index h = 0; h < size_of(cost); ++h) {
       if (!split.seams[h]) continue;
       mark_edge(coarse_.surface, surface_halfedge(h), seams);
@@ -205,29 +215,32 @@ bool Closure::part_overlaps(const LocalMaps& maps) {
   return parted;
 }
 
+/// The excess of maps over 2 by that which is asked for, of the mean or of the percentile.
+double Closure::missed_by(const LocalMaps& maps) const {
+  double most = (maps.energy - 2) / (target_.energy - 2);
+  if (target_.p99 > 0) most = std::max(most, (maps.p99 - 2) / (target_.p99 - 2));
+  return most;
+}
+
 Attempt Closure::run() {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
-  const double wanted = target_.energy - 2;
   for (int round = 0; round < kRounds; ++round) {
     work_.report(static_cast<double>(round) / kRounds);
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool goes_on = search_.extend(model_energy);
     shorten_seams(model_energy);
     maps = map(round == 0 ? nullptr : &maps);
-    if ((maps.energy - 2 <= kWorthParting * wanted || !goes_on) && part_overlaps(maps)) {
-      maps = map(&maps);
+    const bool is_last = !goes_on || round + 1 == kRounds;
+    if ((missed_by(maps) <= kWorthParting || is_last) && part_overlaps(maps)) maps = map(&maps);
+    const double excess = missed_by(maps);
+    if (excess <= kWorthParting || is_last) {
+      Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy, excess};
+      if (attempt.is_better_than(best)) best = std::move(attempt);
     }
-    const double excess = maps.energy - 2;
-    if (excess <= kWorthParting * wanted || !goes_on || round + 1 == kRounds) {
-      Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy};
-      if (attempt.is_better_than(best, target_.energy)) best = std::move(attempt);
-    }
-    if (excess <= wanted && excess >= kNear * wanted) break;
-    if (excess > wanted && !goes_on) break;
-    const double step =
-        std::clamp(kAim * wanted / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
+    if (excess <= 1 ? excess >= kNear : is_last) break;
+    const double step = std::clamp(kAim / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
     model_energy = 2 + std::max(search_.energy() - 2, kLeastExcess) * step;
   }
   return best;
