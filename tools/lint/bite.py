@@ -1,4 +1,4 @@
-"""Breaks the rule of includes in small files, to see the check refuse them."""
+"""Breaks the rules in small files, to see the checks refuse them, alone and in a group."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from groups import groups_of, unit_of
 from includes import Project, check
+from lint import tidy
 
 FILES = {
     "src/base/types.h": "#pragma once\nusing Index = int;\n"
@@ -35,6 +37,29 @@ CASES = {
         ["2: types.h"],
     ),
 }
+# Sources, and which of them may be read together.
+HELPER = "namespace {{\nint helper() {{ return {}; }}\n}}\nint {}() {{ return helper(); }}\n"
+APART = {
+    "one.cpp": HELPER.format(1, "one"),
+    "two.cpp": HELPER.format(2, "two"),
+    "three.cpp": "struct Three {\n  Three(int x);\n};\nint helper_of_three();\n",
+}
+GROUPS = [["one.cpp", "three.cpp"], ["two.cpp"]]
+DEFECT = "three.cpp:2:3: error: single-argument constructors must be marked explicit"
+
+
+def grouped(folder: Path) -> int:
+    """Return 1 unless files are grouped by their names, and what is wrong in a group is found."""
+    (folder / ".clang-tidy").symlink_to(Path(__file__).parents[2] / ".clang-tidy")
+    for name, text in APART.items():
+        (folder / name).write_text(text)
+    groups = groups_of({str(folder / name): ["-std=c++20"] for name in APART})
+    names = [[Path(name).name for name in group] for group in groups]
+    found = "".join(tidy(unit_of(groups[0], folder), ["-std=c++20"]))
+    if names == GROUPS and found.count("error:") == 1 and DEFECT in found:
+        return 0
+    print(f"groups.py: expected {GROUPS} and {DEFECT}, found {names} and {found}")
+    return 1
 
 
 def main() -> int:
@@ -57,6 +82,7 @@ def main() -> int:
             if short != expected:
                 print(f"includes.py on {name}: expected {expected}, found {found}")
                 status = 1
+        status |= grouped(root / "src" / "base")
     return status
 
 

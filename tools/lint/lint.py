@@ -2,6 +2,9 @@
 
     lint.py BUILD ROOT CACHE
 
+Both read the sources in groups (groups.py); those of a group in which anything is found are looked
+at one by one.
+
 BUILD has compile_commands.json. A source is looked at again only if it, a header of the project
 that it includes, its command, the configuration or a tool has changed: CACHE keeps an empty file
 by the hash of all that for each that was clean. Prints what is found; exits with 1 if there is any.
@@ -15,11 +18,15 @@ import os
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+import clang_tidy
+from groups import groups_of, unit_of
 from includes import Project, check
 
+TIDY = Path(sys.executable).parent / "clang-tidy"
 UNKNOWN_TO_CLANG = {"-fcx-limited-range", "-fno-gnu-unique"}  # GCC's
 
 
@@ -52,47 +59,64 @@ def key_of(source: Path, words: list[str], project: Project, tools: str) -> str:
 
 def tidy(name: str, words: list[str]) -> list[str]:
     """Return clang-tidy's complaints, without its counts of what it does not show."""
-    done = subprocess.run(
-        ["clang-tidy", "--quiet", name, "--", *words], capture_output=True, text=True
-    )
+    done = subprocess.run([TIDY, "--quiet", name, "--", *words], capture_output=True, text=True)
     return [done.stdout + done.stderr] if done.returncode else []
+
+
+def verdicts_on(
+    groups: list[list[str]], commands: dict[str, list[str]], project: Project, units: Path
+) -> Iterator[tuple[list[str], list[str]]]:
+    """Yield each group with what is found in it; the files of the larger ones go into `units`."""
+    resources = next(Path(clang_tidy.__file__).parent.glob("data/lib/clang/*"))
+    with ProcessPoolExecutor() as pool:
+        verdicts = []
+        for group in groups:
+            unit, words = unit_of(group, units), commands[group[0]]
+            verdicts.append(
+                (
+                    pool.submit(tidy, unit, words),
+                    pool.submit(check, unit, words, str(resources), project),
+                )
+            )
+        for group, (tidied, checked) in zip(groups, verdicts, strict=True):
+            yield group, tidied.result() + checked.result()
 
 
 def main() -> int:
     """Print what is found in the sources that are not known to be clean."""
     build, root, cache = (Path(argument).resolve() for argument in sys.argv[1:])
-    resources = output_of("clang", "-print-resource-dir").strip()
     configuration = [root / ".clang-tidy", *root.glob("*/.clang-tidy")]
     here = Path(__file__).parent
-    tools = output_of("clang-tidy", "--version") + "".join(
-        path.read_text() for path in [*configuration, *here.glob("*.py")]
+    tools = "".join(
+        path.read_text()
+        for path in [*configuration, *here.glob("*.py"), here.parent / "requirements.txt"]
     )
     project = Project(root)
-    entries = {
-        entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())
-    }
-    pending = {}
-    for name, entry in sorted(entries.items()):
+    entries = json.loads((build / "compile_commands.json").read_text())
+    commands, marks = {}, {}
+    for name, entry in sorted({entry["file"]: entry for entry in entries}.items()):
         source = project.file(name)
         if source is not None:
             words = arguments(entry)
-            pending[name] = (words, cache / key_of(source, words, project, tools))
-    pending = {name: (words, mark) for name, (words, mark) in pending.items() if not mark.exists()}
+            mark = cache / key_of(source, words, project, tools)
+            if not mark.exists():
+                commands[name], marks[name] = words, mark
     os.chdir(build)  # the flags are relative to it
-    cache.mkdir(parents=True, exist_ok=True)
+    units = cache / "groups"
+    units.mkdir(parents=True, exist_ok=True)
+    todo = groups_of(commands)
     complaints: dict[str, None] = {}
-    with ProcessPoolExecutor() as pool:
-        verdicts = {}
-        for name, (words, _) in pending.items():
-            verdicts[name] = (
-                pool.submit(tidy, name, words),
-                pool.submit(check, name, words, resources, project),
-            )
-        for name, (_, mark) in pending.items():
-            found = [line for verdict in verdicts[name] for line in verdict.result()]
-            complaints |= dict.fromkeys(found)
+    while todo:
+        again = []
+        for group, found in verdicts_on(todo, commands, project, units):
             if not found:
-                mark.touch()
+                for name in group:
+                    marks[name].touch()
+            elif len(group) > 1:
+                again += [[name] for name in group]
+            else:
+                complaints |= dict.fromkeys(found)
+        todo = again
     for complaint in complaints:
         print(complaint)
     return 1 if complaints else 0
