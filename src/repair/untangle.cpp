@@ -5,6 +5,7 @@
 
 #include "base/portable_math.h"
 #include "descend/newton.h"
+#include "descend/newton_loop.h"
 #include "descend/newton_step.h"
 #include "energy/density.h"
 #include "exact/certificate.h"

@@ -22,7 +22,8 @@ from clang.cindex import (
 
 # Where the names in #include directives are looked up, besides the folder of the file.
 FOLDERS = ("include", "src", "program", "tests", "")
-SCOPES = {CursorKind.NAMESPACE, CursorKind.TRANSLATION_UNIT, CursorKind.LINKAGE_SPEC}
+# Not extern "C": what leads to the C ABI may be included instead.
+SCOPES = {CursorKind.NAMESPACE, CursorKind.TRANSLATION_UNIT}
 
 
 class Project:

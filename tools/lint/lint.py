@@ -28,11 +28,8 @@ from includes import Project, check
 
 TIDY = Path(sys.executable).parent / "clang-tidy"
 UNKNOWN_TO_CLANG = {"-fcx-limited-range", "-fno-gnu-unique"}  # GCC's
-
-
-def output_of(*command: str) -> str:
-    """Return what a command prints."""
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+# GCC looks for shadows, of which a group has others; and libstdc++ calls what it calls deprecated.
+NO_WARNINGS = ["-Wno-shadow", "-Wno-deprecated-declarations"]
 
 
 def arguments(entry: dict) -> list[str]:
@@ -40,7 +37,8 @@ def arguments(entry: dict) -> list[str]:
     words = shlex.split(entry["command"])[1:]
     if not Path(words[0]).suffix and not words[0].startswith("-"):  # after a launcher
         words = words[1:]
-    return [word for word in words[: words.index("-o")] if word not in UNKNOWN_TO_CLANG]
+    known = [word for word in words[: words.index("-o")] if word not in UNKNOWN_TO_CLANG]
+    return known + NO_WARNINGS
 
 
 def key_of(source: Path, words: list[str], project: Project, tools: str) -> str:
