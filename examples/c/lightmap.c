@@ -21,10 +21,11 @@ static void make_level(void) {
   uint32_t box, i, k;
   for (box = 0; box < CRATES; ++box) {
     const float size = 0.5f + 0.1f * (float)(box % 7);
+    const uint32_t column = box % 20, row = box / 20;
     for (i = 0; i < 8; ++i) {
       float* p = positions[8 * box + i];
-      p[0] = 3 * (float)(box % 20) + (i & 1 ? size : 0);
-      p[1] = 3 * (float)(box / 20) + (i & 2 ? size : 0);
+      p[0] = 3 * (float)column + (i & 1 ? size : 0);
+      p[1] = 3 * (float)row + (i & 2 ? size : 0);
       p[2] = i & 4 ? 2 * size : 0;
     }
     for (i = 0; i < 6; ++i) {

@@ -49,7 +49,6 @@ class ConformalModel {
   double energy_of(const Eigen::VectorXd& u) const;
 
   const Surface& surface_;
-  Index real_vertices_ = 0;
   Eigen::VectorXd area_;    ///< per vertex, a third of its real faces; 1 in all
   Eigen::VectorXd defect_;  ///< per vertex: K
   SparseMatrix laplacian_;  ///< of the intrinsic Delaunay triangulation, whole
