@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "base/types.h"
 #include "base/work.h"
 #include "cut/surface_sketch.h"
 
