@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 
 namespace beltrami {
 namespace {
