@@ -453,7 +453,7 @@ TEST_P(Simplify, ReportsGrowingFractionsFromZeroToOne) {
 
 TEST_P(Simplify, IsCancelledByItsProgress) {
   const DiskMesh fine = grid(40, 40, wavy);
-  const DiskMesh copy = fine;
+  const DiskMesh copy = grid(40, 40, wavy);
   for (int allowed = 0; allowed < 8; ++allowed) {
     int calls = 0;
     const Work work({}, [&](double, const char*) { return calls++ == allowed; });
