@@ -1,50 +1,62 @@
 #include "cut/seam_paths.h"
 
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
 
 #include "base/interrupt.h"
 
 namespace beltrami {
 
 SeamPaths::SeamPaths(const Surface& surface, const std::vector<bool>& is_root,
-                     const std::vector<double>& cost)
+                     const std::vector<double>& cost, double bound)
     : surface_(surface),
-      cost_(surface.positions.size(), std::numeric_limits<double>::infinity()),
+      cost_of_edge_(cost),
+      bound_(bound),
+      costs_(surface.positions.size(), std::numeric_limits<double>::infinity()),
       towards_(surface.positions.size(), kNone) {
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  Queue queue;
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     if (!is_root[v]) continue;
-    cost_[v] = 0;
+    costs_[v] = 0;
     queue.emplace(0, v);
   }
+  grow(queue);
+}
+
+void SeamPaths::add_roots(std::span<const Index> vertices) {
+  Queue queue;
+  for (const Index v : vertices) {
+    costs_[v] = 0;
+    towards_[v] = kNone;
+    queue.emplace(0, v);
+  }
+  grow(queue);
+}
+
+void SeamPaths::grow(Queue& queue) {
   PollSometimes poll;
   while (!queue.empty()) {
     poll();
     const auto [reached, v] = queue.top();
     queue.pop();
-    if (reached > cost_[v] || surface.outgoing[v] == kNone) continue;
+    if (reached > costs_[v] || surface_.outgoing[v] == kNone) continue;
     const auto relax = [&, reached = reached](Index h, Index other) {
-      const double through = reached + cost[h];
-      if (!(through < cost_[other])) return;
-      cost_[other] = through;
+      const double through = reached + cost_of_edge_[h];
+      if (!(through < costs_[other]) || through > bound_) return;
+      costs_[other] = through;
       towards_[other] = h;
       queue.emplace(through, other);
     };
-    surface.for_each_outgoing(v, [&](Index h) {
-      relax(h, surface.target(h));
-      if (surface.rotate(h) == kNone)
-        relax(Surface::previous(h), surface.origin(Surface::previous(h)));
+    surface_.for_each_outgoing(v, [&](Index h) {
+      relax(h, surface_.target(h));
+      const Index in = Surface::previous(h);
+      if (surface_.rotate(h) == kNone) relax(in, surface_.origin(in));
     });
   }
 }
 
 SeamPath SeamPaths::from(Index vertex) const {
   SeamPath path;
-  path.cost = cost_[vertex];
+  path.cost = costs_[vertex];
   while (towards_[vertex] != kNone) {
     const Index h = towards_[vertex];
     path.halfedges.push_back(h);

@@ -1,6 +1,10 @@
 // Cheapest ways to the seams and borders that there are.
 #pragma once
 
+#include <functional>
+#include <queue>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -17,21 +21,31 @@ struct SeamPath {
   double cost = 0;
 };
 
-/// The forest of cheapest paths.
+/// The forest of cheapest paths: Dijkstra's algorithm.
 class SeamPaths {
  public:
   /// `is_root`: per vertex, whether it is on a seam or border; `cost`: per half-edge, infinite
-  /// where no path may go. Dijkstra's algorithm.
+  /// where no path may go. Paths that cost more than `bound` are not looked for. Keeps references
+  /// to `surface` and `cost`.
   SeamPaths(const Surface& surface, const std::vector<bool>& is_root,
-            const std::vector<double>& cost);
+            const std::vector<double>& cost, double bound);
+
+  /// The paths when these are roots, too.
+  void add_roots(std::span<const Index> vertices);
 
   /// Per vertex, infinite where no path leads.
-  const std::vector<double>& costs() const { return cost_; }
+  const std::vector<double>& costs() const { return costs_; }
   SeamPath from(Index vertex) const;
 
  private:
+  using Entry = std::pair<double, Index>;
+  using Queue = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
+  void grow(Queue& queue);
+
   const Surface& surface_;
-  std::vector<double> cost_;
+  const std::vector<double>& cost_of_edge_;
+  double bound_;
+  std::vector<double> costs_;
   std::vector<Index> towards_;  ///< per vertex a half-edge at it, of its way, or kNone
 };
 

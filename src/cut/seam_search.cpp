@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -56,6 +57,7 @@ void SeamSearch::take(EdgeMarks seams, std::vector<bool> anchors) {
 
 void SeamSearch::take(EdgeMarks seams) {
   seams_ = std::move(seams);
+  paths_.reset();
   std::fill(degree_.begin(), degree_.end(), 0);
   cost_of_seams_ = 0;
   for (Index h = 0; h < size_of(seams_); ++h) {
@@ -68,6 +70,7 @@ void SeamSearch::take(EdgeMarks seams) {
 }
 
 void SeamSearch::mark(Index halfedge, bool is) {
+  if (!is) paths_.reset();
   seams_[halfedge] = is;
   if (surface_.twin[halfedge] != kNone) seams_[surface_.twin[halfedge]] = is;
   const Index change = is ? 1 : -1;
@@ -127,12 +130,17 @@ bool SeamSearch::affords(const SeamPath& path) const {
   return length <= budget_;
 }
 
-bool SeamSearch::extend_once() {
+const SeamPaths& SeamSearch::paths() {
+  if (paths_) return *paths_;
   std::vector<bool> root(degree_.size());
   for (std::size_t v = 0; v < root.size(); ++v) {
     root[v] = degree_[v] > 0 || surface_.on_boundary[v];
   }
-  const SeamPaths paths(surface_, root, cost_);
+  return paths_.emplace(surface_, root, cost_, std::numeric_limits<double>::infinity());
+}
+
+bool SeamSearch::extend_once() {
+  const SeamPaths& paths = this->paths();
   std::vector<Index> ends = candidates(paths);
   if (ends.size() > kTried) ends.resize(kTried);
   double best = 0;
@@ -151,6 +159,7 @@ bool SeamSearch::extend_once() {
   }
   if (chosen.halfedges.empty()) return false;
   for (const Index h : chosen.halfedges) mark(h, true);
+  paths_->add_roots(chosen.vertices);
   anchored_[chosen.vertices.front()] = true;
   refresh();
   return true;
@@ -272,7 +281,7 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc) {
   const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
   std::vector<Index> path = arc;
   if (!joined[end]) {
-    const SeamPaths paths(surface_, joined, cost_);
+    const SeamPaths paths(surface_, joined, cost_, cost);
     const std::vector<bool> others = joined_to(end);
     Index nearest = end;
     for (Index v = 0; v < surface_.vertex_count(); ++v) {

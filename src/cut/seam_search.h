@@ -1,6 +1,7 @@
 // Where seams are worth their length, by the conformal model.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/types.h"
@@ -60,6 +61,7 @@ class SeamSearch {
   std::vector<std::vector<Index>> arcs() const;
   std::vector<bool> joined_to(Index vertex) const;
   bool reconnect(const std::vector<Index>& arc);
+  const SeamPaths& paths();
   void mark(Index halfedge, bool is);
   std::vector<Branch> branches() const;
   Branch branch_from(Index tip) const;
@@ -73,8 +75,9 @@ class SeamSearch {
   std::vector<Index> degree_;  ///< per vertex: seams at it
   std::vector<bool> anchored_;
   ConformalModel model_;
-  double scale_;   ///< root of the area
-  double budget_;  ///< of length
+  std::optional<SeamPaths> paths_;  ///< to the seams that there are, where known
+  double scale_;                    ///< root of the area
+  double budget_;                   ///< of length
   double cost_of_seams_ = 0;
 };
 

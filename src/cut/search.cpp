@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
@@ -37,6 +38,7 @@ constexpr double kMapTolerance = 1e-3;
 constexpr double kCoarseOverlap = 0.005;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
+constexpr std::int64_t kGrain = 16384;
 constexpr int kRounds = 8;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
 constexpr double kNear = 0.95;
@@ -53,18 +55,61 @@ struct Coarse {
   Index real_faces = 0;
   EdgeMarks locked;
   std::vector<double> cost;        ///< per half-edge
+  std::vector<double> factor;      ///< per vertex, what seams there cost for their length by shape
   std::vector<Index> fine_vertex;  ///< per vertex; empty: this is the fine surface
   CollapseHistory history;
 };
 
-/// What seams cost, less inside filled holes.
-std::vector<double> costs_of(const Surface& surface, Index real_faces, const SeamWeights& weights,
-                             const SeamHints& hints, const Work& work) {
-  std::vector<double> cost = seam_costs(surface, weights, hints, work);
+/// Edges inside filled holes cost less.
+void cheapen_virtual(const Surface& surface, Index real_faces, std::vector<double>& cost) {
   for (Index h = 3 * real_faces; h < size_of(cost); ++h) {
     const Index twin = surface.twin[h];
     if (twin == kNone || twin / 3 >= real_faces) cost[h] *= kVirtualCost;
   }
+}
+
+std::vector<double> costs_of(const Surface& surface, Index real_faces, const SeamWeights& weights,
+                             const SeamHints& hints, const Work& work) {
+  std::vector<double> cost = seam_costs(surface, weights, hints, work);
+  cheapen_virtual(surface, real_faces, cost);
+  return cost;
+}
+
+/// Per vertex, what the edges at it cost for their length, without paint and labels.
+std::vector<double> factors_of_shape(const Surface& surface, const SeamWeights& weights,
+                                     double hard_angle, const Work& work) {
+  SeamHints hints;
+  hints.hard_angle = hard_angle;
+  const std::vector<double> cost = seam_costs(surface, weights, hints, work);
+  const std::vector<double> length = edge_lengths(surface, work);
+  std::vector<Vec2> sums(surface.positions.size(), Vec2::Zero());
+  for (Index h = 0; h < size_of(cost); ++h) sums[surface.origin(h)] += Vec2(cost[h], length[h]);
+  std::vector<double> factors;
+  for (const Vec2& sum : sums) factors.push_back(sum.y() > 0 ? sum.x() / sum.y() : 1);
+  return factors;
+}
+
+/// What seams cost on the fine surface: as at the coarse vertices that its own became.
+std::vector<double> fine_costs(const Coarse& coarse, const Surface& fine, Index real_faces,
+                               const SeamWeights& weights, const SeamHints& hints,
+                               const Work& work) {
+  std::vector<double> factor(fine.positions.size(), 1);
+  for (std::size_t v = 0; v < coarse.factor.size(); ++v) {
+    factor[coarse.fine_vertex[v]] = coarse.factor[v];
+  }
+  const auto& steps = coarse.history.steps;
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    factor[step->vertex] = factor[step->target];
+  }
+  std::vector<double> cost = edge_lengths(fine, work);
+  parallel_for(work, fine.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto h = static_cast<Index>(3 * begin); h < 3 * end; ++h) {
+      cost[h] *= std::sqrt(factor[fine.origin(h)] * factor[fine.target(h)]);
+    }
+  });
+  if (!hints.labels.empty()) weigh_labels(fine, hints.labels, weights.materials, cost, work);
+  weigh_paint(fine, hints.vertex_paint, hints.edge_paint, cost, work);
+  cheapen_virtual(fine, real_faces, cost);
   return cost;
 }
 
@@ -110,6 +155,7 @@ Coarse coarsen(const Surface& fine, Index real_faces, const Topology& topology,
       simple.fine_face.begin());
   coarse.cost = costs_of(simple.mesh, coarse.real_faces, weights,
                          coarse_hints(hints, simple, fine.vertex_count()), work);
+  coarse.factor = factors_of_shape(simple.mesh, weights, hints.hard_angle, work);
   coarse.surface = std::move(simple.mesh);
   coarse.fine_vertex = std::move(simple.fine_vertex);
   coarse.history = std::move(simple.history);
@@ -294,8 +340,8 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       coarsen(surface, real_faces, topology, locked, weights, hints, work.part(0, 0.3));
   Attempt found = Closure(coarse, target, work.part(0.3, 0.9)).run();
   if (coarse.fine_vertex.empty()) return {std::move(found.seams), found.energy};
-  return {carried(coarse, surface, costs_of(surface, real_faces, weights, hints, work), locked,
-                  found, work.part(0.9, 1)),
+  return {carried(coarse, surface, fine_costs(coarse, surface, real_faces, weights, hints, work),
+                  locked, found, work.part(0.9, 1)),
           found.energy};
 }
 
