@@ -41,9 +41,9 @@ constexpr double kWorthParting = 1.3;
 constexpr std::int64_t kGrain = 16384;
 constexpr int kRounds = 8;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
-constexpr double kNear = 0.95;
+constexpr double kNear = 0.98;
 /// The next target of the model aims at so much of the excess asked for.
-constexpr double kAim = 0.98;
+constexpr double kAim = 0.99;
 /// By how much the model is corrected in a round.
 constexpr double kLeastStep = 0.3, kMostStep = 2;
 /// The model's excess is not to be believed below.
