@@ -62,6 +62,8 @@ ConformalModel::ConformalModel(const Surface& surface, Index real_faces, const W
       if (i != j) entries.emplace_back(face[j], face[i], entry(0, 0));
     });
   }
+  // Vertices that no face names have an entry, too: they are pinned.
+  for (Index v = 0; v < surface.vertex_count(); ++v) entries.emplace_back(v, v, 0);
   laplacian_.resize(surface.vertex_count(), surface.vertex_count());
   laplacian_.setFromTriplets(entries.begin(), entries.end());
   std::vector<Place> places;
@@ -75,7 +77,7 @@ void ConformalModel::pin(const std::vector<bool>& pinned) {
   const double spring = kPinned * laplacian_.diagonal().mean();
   Eigen::VectorXd force = -defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
-    if (surface_.on_boundary[v]) pinned_[v] = true;
+    if (surface_.on_boundary[v] || surface_.outgoing[v] == kNone) pinned_[v] = true;
     if (!pinned_[v]) continue;
     held.coeffRef(v, v) += spring;
     force[v] = 0;

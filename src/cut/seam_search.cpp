@@ -266,6 +266,12 @@ std::vector<bool> SeamSearch::joined_to(Index vertex) const {
   return joined;
 }
 
+/// Whether an edge that is no seam joins none and no border: it would part nothing.
+bool SeamSearch::is_alone(Index halfedge) const {
+  const auto is_free = [&](Index v) { return degree_[v] == 0 && !surface_.on_boundary[v]; };
+  return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
+}
+
 /// Whether the two parts were joined at less cost. Where the seams stay joined without it, the arc
 /// goes around a handle or between charts.
 bool SeamSearch::reconnect(const std::vector<Index>& arc) {
@@ -288,6 +294,7 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc) {
       if (others[v] && paths.costs()[v] < paths.costs()[nearest]) nearest = v;
     }
     if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
+    if (path.size() == 1 && is_alone(path.front())) path = arc;
   }
   const bool is_new = path != arc;
   for (const Index h : path) mark(h, true);
@@ -359,13 +366,20 @@ void SeamSearch::shrink(double target) {
   }
 }
 
-/// Whether its edges are still seams that hang on their last vertex alone.
+/// Whether its edges are still seams that hang on their last vertex alone, and can go: an edge that
+/// stays alone would part nothing.
 bool SeamSearch::is_branch(const Branch& branch) const {
   for (std::size_t i = 0; i < branch.vertices.size(); ++i) {
     if (degree_[branch.vertices[i]] != (i == 0 ? 1 : 2)) return false;
   }
-  const Index last = surface_.target(branch.halfedges.back());
-  return surface_.on_boundary[last] || degree_[last] >= 2;
+  const Index gone = branch.halfedges.back(), last = surface_.target(gone);
+  if (surface_.on_boundary[last] || degree_[last] > 2) return true;
+  bool stays = false;
+  surface_.for_each_outgoing(last, [&](Index h) {
+    if (!seams_[h] || h == surface_.twin[gone]) return;
+    stays = surface_.on_boundary[surface_.target(h)] || degree_[surface_.target(h)] > 1;
+  });
+  return stays;
 }
 
 }  // namespace beltrami

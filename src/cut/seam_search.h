@@ -60,6 +60,7 @@ class SeamSearch {
   bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs() const;
   std::vector<bool> joined_to(Index vertex) const;
+  bool is_alone(Index halfedge) const;
   bool reconnect(const std::vector<Index>& arc);
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);
