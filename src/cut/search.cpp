@@ -39,6 +39,8 @@ constexpr double kCoarseOverlap = 0.005;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
 constexpr std::int64_t kGrain = 16384;
+/// Beyond any excess of the model; and what differs by less is one.
+constexpr double kFar = 1e9, kSame = 1.02;
 constexpr int kRounds = 8;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
 constexpr double kNear = 0.98;
@@ -272,6 +274,7 @@ Attempt Closure::run() {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
+  double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
   for (int round = 0; round < kRounds; ++round) {
     work_.report(static_cast<double>(round) / kRounds);
     if (search_.energy() < model_energy) search_.shrink(model_energy);
@@ -286,8 +289,16 @@ Attempt Closure::run() {
       if (attempt.is_better_than(best)) best = std::move(attempt);
     }
     if (excess <= 1 ? excess >= kNear : is_last) break;
-    const double step = std::clamp(kAim / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
-    model_energy = 2 + std::max(search_.energy() - 2, kLeastExcess) * step;
+    const double model_excess = std::max(search_.energy() - 2, kLeastExcess);
+    double& bound = excess <= 1 ? reached : missed;
+    bound = excess <= 1 ? std::max(bound, model_excess) : std::min(bound, model_excess);
+    if (reached > 0 && reached < missed && missed < kFar) {
+      if (missed < kSame * reached) break;
+      model_energy = 2 + std::sqrt(reached * missed);
+    } else {
+      const double step = std::clamp(kAim / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
+      model_energy = 2 + model_excess * step;
+    }
   }
   return best;
 }
