@@ -1,0 +1,229 @@
+// The model of a map that keeps the lengths of seams: nothing is distorted where nothing has to be,
+// and candidates are judged as if they were taken.
+#include "cut/conformal_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "base/portable_math.h"
+#include "support/cuts.h"
+#include "support/meshes.h"
+#include "support/solids.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::random_below;
+using meshes::TriangleList;
+
+Surface built(const TriangleList& mesh) {
+  return build_surface(mesh.positions, mesh.faces, Work(1));
+}
+
+/// Per vertex, false but for these.
+std::vector<bool> only(const Surface& surface, const std::vector<Index>& vertices) {
+  std::vector<bool> is(surface.positions.size(), false);
+  for (const Index v : vertices) is[v] = true;
+  return is;
+}
+
+/// Closed and open, with handles, in pieces.
+std::vector<TriangleList> surfaces() {
+  return {disks::blob(3),
+          meshes::torus(10),
+          meshes::shaken(meshes::double_torus(8), 0.05, 1),
+          meshes::bumps(14, 12),
+          meshes::torus_with_hole(9),
+          meshes::together({disks::blob(2), meshes::torus(8), meshes::bumps(8, 8)})};
+}
+
+/// A vertex inside of every component, and more of them at random.
+std::vector<bool> random_pins(const Surface& surface, Index chance, std::mt19937_64& generator) {
+  const Topology topology = topology_of(surface, Work(1));
+  std::vector<bool> pinned(surface.positions.size(), false);
+  for (const Component& component : topology.components) {
+    pinned[surface.faces[component.first_face][0]] = true;
+  }
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    if (random_below(generator, chance) == 0) pinned[v] = true;
+  }
+  return pinned;
+}
+
+std::vector<Index> picked(const Surface& surface, const std::vector<bool>& is_wanted,
+                          const std::vector<bool>& pinned, bool of_pinned, Index most,
+                          std::mt19937_64& generator) {
+  std::vector<Index> found;
+  for (const Index v : meshes::shuffled(surface.vertex_count(), generator())) {
+    if (size_of(found) == most) break;
+    if (is_wanted[v] && pinned[v] == of_pinned && !surface.on_boundary[v]) found.push_back(v);
+  }
+  return found;
+}
+
+TEST(ConformalModel, NothingIsScaledAtPins) {
+  std::mt19937_64 generator(1);
+  for (const TriangleList& mesh : surfaces()) {
+    const Surface surface = built(mesh);
+    ConformalModel model(surface, surface.face_count(), Work(1));
+    const std::vector<bool> pinned = random_pins(surface, 10, generator);
+    model.pin(pinned);
+    double greatest = 0;
+    for (const double u : model.factors()) greatest = std::max(greatest, std::abs(u));
+    for (Index v = 0; v < surface.vertex_count(); ++v) {
+      if (!pinned[v] && !surface.on_boundary[v]) continue;
+      EXPECT_LE(std::abs(model.factors()[v]), 1e-5 * greatest);
+      EXPECT_EQ(model.gains()[v], 0);
+    }
+    EXPECT_GT(greatest, 0.01);
+    EXPECT_GT(model.energy(), 2 + 1e-5);
+  }
+}
+
+TEST(ConformalModel, WhatIsFlatOrDevelopableIsNotDistorted) {
+  const TriangleList cylinder = meshes::moved(meshes::grid(12, 9), [](const Vec3& p) {
+    return Vec3(portable::cos(4 * p.x()), portable::sin(4 * p.x()), p.y());
+  });
+  for (const TriangleList& mesh : {meshes::fan(9), meshes::grid(12, 9), cylinder}) {
+    const Surface surface = built(mesh);
+    ConformalModel model(surface, surface.face_count(), Work(1));
+    model.pin(only(surface, {}));
+    EXPECT_NEAR(model.energy(), 2, 1e-9);
+  }
+}
+
+TEST(ConformalModel, AConeIsDistortedUnlessItsTipIsPinned) {
+  TriangleList mesh = meshes::fan(8);
+  mesh.positions[0].z() = 1;
+  const Surface surface = built(disks::refined(mesh, 3));
+  ConformalModel model(surface, surface.face_count(), Work(1));
+  model.pin(only(surface, {}));
+  EXPECT_GT(model.energy(), 2.01);
+  // Where angles are missing, they become wider, and lengths shorter.
+  EXPECT_GT(model.gains()[0], 0);
+  EXPECT_EQ(*std::min_element(model.factors().begin(), model.factors().end()), model.factors()[0]);
+  model.pin(only(surface, {0}));
+  EXPECT_NEAR(model.energy(), 2, 1e-6);
+}
+
+TEST(ConformalModel, MorePinsAreJudgedAsIfTheyWereThere) {
+  std::mt19937_64 generator(2);
+  for (const TriangleList& mesh : surfaces()) {
+    const Surface surface = built(mesh);
+    ConformalModel model(surface, surface.face_count(), Work(1));
+    for (int trial = 0; trial < 4; ++trial) {
+      std::vector<bool> pinned = random_pins(surface, 30, generator);
+      model.pin(pinned);
+      const std::vector<bool> all(pinned.size(), true);
+      const auto more = picked(surface, all, pinned, false, 1 + 3 * trial, generator);
+      const double with = model.energy_with(more);
+      for (const Index v : more) pinned[v] = true;
+      model.pin(pinned);
+      EXPECT_NEAR(with, model.energy(), 1e-6);
+    }
+  }
+}
+
+TEST(ConformalModel, FewerPinsAreJudgedAsIfTheyWereGone) {
+  std::mt19937_64 generator(3);
+  for (const TriangleList& mesh : surfaces()) {
+    const Surface surface = built(mesh);
+    ConformalModel model(surface, surface.face_count(), Work(1));
+    for (int trial = 0; trial < 4; ++trial) {
+      // Neighbours among them, and some that stay.
+      std::vector<bool> pinned = random_pins(surface, 3, generator);
+      std::vector<bool> wanted(pinned.size(), true);
+      for (const Component& component : topology_of(surface, Work(1)).components) {
+        wanted[surface.faces[component.first_face][0]] = false;
+      }
+      model.pin(pinned);
+      const auto gone = picked(surface, wanted, pinned, true, 1 + 5 * trial, generator);
+      const double without = model.energy_without(gone);
+      for (const Index v : gone) pinned[v] = false;
+      model.pin(pinned);
+      EXPECT_NEAR(without, model.energy(), 1e-6);
+    }
+  }
+}
+
+TEST(ConformalModel, GainsAreThoseOfThePinsToFirstOrder) {
+  // A slight bump: pins gain little, and in proportion.
+  const TriangleList mesh = meshes::height_field(16, 16, [](double x, double y) {
+    return 0.02 * portable::sin(6 * x) * portable::sin(5 * y);
+  });
+  const Surface surface = built(mesh);
+  ConformalModel model(surface, surface.face_count(), Work(1));
+  model.pin(only(surface, {}));
+  const std::vector<double> gains = model.gains();
+  std::vector<std::pair<double, Index>> order;
+  for (Index v = 0; v < surface.vertex_count(); ++v) order.emplace_back(gains[v], v);
+  std::sort(order.rbegin(), order.rend());
+  const Index best = order.front().second, middling = order[order.size() / 3].second;
+  const auto real = [&](Index v) { return model.energy() - model.energy_with({&v, 1}); };
+  EXPECT_GT(real(best), 0);
+  EXPECT_GT(real(best), real(middling));
+}
+
+TEST(ConformalModel, SizeDoesNotMatter) {
+  for (const TriangleList& mesh : surfaces()) {
+    const auto energy = [&](double scale) {
+      const Surface surface =
+          built(meshes::moved(mesh, [&](const Vec3& p) { return Vec3(scale * p); }));
+      std::mt19937_64 generator(4);
+      ConformalModel model(surface, surface.face_count(), Work(1));
+      model.pin(random_pins(surface, 20, generator));
+      return model.energy();
+    };
+    EXPECT_NEAR(energy(1), energy(1000), 1e-9);
+    EXPECT_EQ(energy(1), energy(0x1p-30));
+  }
+}
+
+TEST(ConformalModel, VirtualFacesWeighNothing) {
+  // A flat grid with a spike, the foot of which is pinned. The faces of the spike are the last.
+  TriangleList mesh = meshes::grid(16, 16);
+  const auto from_spike = [&](Index v) {
+    const Vec3 way = mesh.positions[v] - Vec3(0.75, 0.75, 0);
+    return std::max(std::abs(way.x()), std::abs(way.y()));
+  };
+  const auto is_flat = [&](const Triangle& face) {
+    return std::all_of(face.begin(), face.end(), [&](Index v) { return from_spike(v) > 0.12; });
+  };
+  const auto spike = std::stable_partition(mesh.faces.begin(), mesh.faces.end(), is_flat);
+  const auto real_faces = static_cast<Index>(spike - mesh.faces.begin());
+  std::vector<bool> foot(mesh.positions.size(), false);
+  for (Index v = 0; v < size_of(mesh.positions); ++v) {
+    foot[v] = from_spike(v) > 0.12 && from_spike(v) < 0.13;
+    if (from_spike(v) < 0.12) mesh.positions[v].z() = from_spike(v) < 0.01 ? 0.6 : 0.3;
+  }
+  const Surface surface = built(mesh);
+  const auto energy = [&](Index faces) {
+    ConformalModel model(surface, faces, Work(1));
+    model.pin(foot);
+    return model.energy();
+  };
+  EXPECT_GT(energy(surface.face_count()), 2 + 1e-3);
+  EXPECT_NEAR(energy(real_faces), 2, 1e-6);
+}
+
+TEST(ConformalModel, VerticesWithoutFacesDoNothing) {
+  const TriangleList mesh = disks::blob(2);
+  const auto energy = [](const TriangleList& of, Index pin) {
+    const Surface surface = built(of);
+    ConformalModel model(surface, surface.face_count(), Work(1));
+    model.pin(only(surface, {pin}));
+    return model.energy();
+  };
+  EXPECT_NEAR(energy(meshes::with_unused_in_front(mesh, 3), 3), energy(mesh, 0), 1e-6);
+}
+
+}  // namespace
+}  // namespace beltrami
