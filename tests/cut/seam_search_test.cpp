@@ -28,6 +28,7 @@ using meshes::random_below;
 using meshes::TriangleList;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kAnyLength = 0;
 
 Surface built(const TriangleList& mesh) {
   return build_surface(mesh.positions, mesh.faces, Work(1));
@@ -80,7 +81,7 @@ std::vector<double> bellman_ford(const Surface& surface, const std::vector<bool>
 
 void expect_paths(const Surface& surface, const std::vector<bool>& root,
                   const std::vector<double>& cost) {
-  const SeamPaths paths(surface, root, cost);
+  const SeamPaths paths(surface, root, cost, kNever);
   EXPECT_EQ(paths.costs(), bellman_ford(surface, root, cost));
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     const SeamPath path = paths.from(v);
@@ -117,6 +118,12 @@ TEST(SeamPaths, AreTheCheapest) {
       std::vector<bool> root(surface.positions.size(), false);
       for (int i = 0; i < 3; ++i) root[random_below(generator, size_of(root))] = true;
       expect_paths(surface, root, cost);
+      SeamPaths paths(surface, root, cost, kNever);
+      const Index more = random_below(generator, size_of(root));
+      if (root[more]) continue;
+      paths.add_roots({&more, 1});
+      root[more] = true;
+      EXPECT_EQ(paths.costs(), bellman_ford(surface, root, cost));
     }
   }
 }
@@ -131,7 +138,7 @@ TEST(SeamPaths, AlongTheBorderAsWell) {
   std::vector<bool> root(surface.positions.size(), false);
   root[0] = true;
   expect_paths(surface, root, cost);
-  const std::vector<double> costs = SeamPaths(surface, root, cost).costs();
+  const std::vector<double> costs = SeamPaths(surface, root, cost, kNever).costs();
   EXPECT_EQ(*std::max_element(costs.begin(), costs.end()), 6);
 }
 
@@ -251,7 +258,8 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
       const Trial trial(mesh, seed % 2 == 0 ? 1.5 : 6, generator);
       const EdgeMarks seams = trial.opened();
       const std::size_t pieces = trial.charts(seams);
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, Work(1));
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                        Work(1));
       for (int i = 0; i < 12; ++i) {
         step(trial, search, generator);
         trial.expect_sound(search, pieces);
@@ -266,7 +274,7 @@ TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
     SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      Work(1));
+                      kAnyLength, Work(1));
     const EdgeMarks before = search.seams();
     double excess = search.energy() - 2;
     for (int i = 0; i < 4; ++i) {
@@ -287,7 +295,8 @@ TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
 TEST(SeamSearch, AnExtensionReachedDoesNothing) {
   std::mt19937_64 generator(6);
   const Trial trial(disks::blob(3), 1, generator);
-  SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(), Work(1));
+  SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                    kAnyLength, Work(1));
   ASSERT_TRUE(search.extend(2.1));
   const EdgeMarks seams = search.seams();
   EXPECT_TRUE(search.extend(search.energy()));
@@ -299,7 +308,7 @@ TEST(SeamSearch, ShrinksUpToTheEnergyAskedForAndNotBeyond) {
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
     SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      Work(1));
+                      kAnyLength, Work(1));
     const double most = search.energy();
     search.extend(2 + 0.1 * (most - 2));
     const double least = search.energy(), cost = search.cost();
@@ -320,7 +329,7 @@ TEST(SeamSearch, JoinsPartsAnewWhereThatIsCheaper) {
   const EdgeMarks seams = trial.opened();
   std::vector<double> cost = trial.cost;
   for (Index h = 0; h < size_of(cost); ++h) cost[h] *= seams[h] ? 10 : 1;
-  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, Work(1));
+  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, Work(1));
   const double before = search.cost();
   search.reconnect();
   EXPECT_LT(search.cost(), 0.5 * before);
@@ -340,7 +349,7 @@ TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
     if (a * b == 3) cheap[h] = 0.1;
   }
   for (const std::vector<double>& costs : {cost, cheap}) {
-    SeamSearch search(surface, surface.face_count(), costs, seams, Work(1));
+    SeamSearch search(surface, surface.face_count(), costs, seams, kAnyLength, Work(1));
     ASSERT_EQ(search.cost(), 2);
     search.reconnect();
     search.shrink(1000);
@@ -366,7 +375,8 @@ TEST(SeamSearch, LockedEdgesStayUncut) {
         ASSERT_FALSE(locked[h] && seams[h]);
         if (locked[h]) trial.cost[h] = kNever;
       }
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, Work(1));
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                        Work(1));
       search.extend(2 + 0.1 * (search.energy() - 2));
       search.reconnect();
       search.shrink(2 + 2 * (search.energy() - 2));
