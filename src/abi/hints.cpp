@@ -29,7 +29,7 @@ void require_search(const beltrami_surface& header, const AtlasOptions& options)
   if (given == nullptr || options.target) return;
   throw Error(Fault::kInvalidArgument,
               std::string(given) +
-                  " of the surface have no effect where no seams are searched for: leave them out, "
+                  " of the surface has no effect where no seams are searched for: leave it out, "
                   "or take cut=auto");
 }
 
