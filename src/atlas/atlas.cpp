@@ -296,7 +296,7 @@ struct Mapped {
   OpenedSurface opened;
   AssignedPins pins;
   std::vector<MappedChart> maps;
-  double energy = 0;
+  AtlasEnergy energy;
 };
 
 /// Opens the surface and flattens its charts, as the stages "cut" and "flatten".
@@ -316,19 +316,30 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
     mapped.maps = map_charts(opened.charts, mapped.pins, options.chart, inner);
     require_met(mapped.maps, input.pins);
     std::vector<ChartInfo> charts(opened.charts.size());
-    mapped.energy = measure_charts(opened.charts, mapped.maps, charts, inner).symmetric_dirichlet;
+    mapped.energy = measure_charts(opened.charts, mapped.maps, charts, inner);
   });
   return mapped;
 }
 
+bool misses(double energy, double target) {
+  return target > 0 && energy > target + kMissed;
+}
+
 /// The target at which coarse maps would leave fine ones the energy that is asked for, if what
-/// these have more stays; none where a cut cannot bring it.
+/// these have more stays; none where that is met, or where a cut cannot bring it.
 std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const Mapped& mapped) {
-  const double more = mapped.energy - mapped.opened.predicted_energy;
+  const double mean = mapped.energy.symmetric_dirichlet, p99 = mapped.energy.p99;
+  const double predicted = mapped.opened.predicted_energy;
+  if (misses(predicted, target.energy)) return std::nullopt;  // the search has done what it can
   SeamTarget lower = target;
-  lower.energy = target.energy - kMoreThanMissed * more;
-  if (!(lower.energy >= 2 + kLeastAim * (target.energy - 2))) return std::nullopt;
-  return lower;
+  if (misses(mean, target.energy)) lower.energy -= kMoreThanMissed * (mean - predicted);
+  if (misses(p99, target.p99)) lower.p99 -= kMoreThanMissed * (p99 - target.p99);
+  const auto is_possible = [](double aim, double asked) {
+    return asked == 0 || aim >= 2 + kLeastAim * (asked - 2);
+  };
+  const bool is_lower = lower.energy < target.energy || lower.p99 < target.p99;
+  const bool all = is_possible(lower.energy, target.energy) && is_possible(lower.p99, target.p99);
+  return is_lower && all ? std::optional(lower) : std::nullopt;
 }
 
 /// Where fine maps miss the target that coarse ones met, once more with a lower one.
@@ -340,11 +351,11 @@ Mapped open_and_map_to_target(const AtlasInput& input, const Admitted& admitted,
   };
   if (!options.target) return run(options.target, work);
   Mapped mapped = run(options.target, work.part(0, kFirstTry));
-  if (mapped.energy <= options.target->energy + kMissed) return mapped;
   const std::optional<SeamTarget> lower = aimed_lower(*options.target, mapped);
   if (!lower || work.out_of_time()) return mapped;
   Mapped again = run(lower, work.part(kFirstTry, 1));
-  return again.energy < mapped.energy ? std::move(again) : std::move(mapped);
+  const bool is_better = again.energy.symmetric_dirichlet < mapped.energy.symmetric_dirichlet;
+  return is_better ? std::move(again) : std::move(mapped);
 }
 
 }  // namespace

@@ -281,14 +281,15 @@ Attempt Closure::run() {
     const bool goes_on = search_.extend(model_energy);
     shorten_seams(model_energy);
     maps = map(round == 0 ? nullptr : &maps);
-    const bool is_last = !goes_on || round + 1 == kRounds;
+    const bool ends = round + 1 == kRounds || work_.out_of_time();
+    const bool is_last = !goes_on || ends;
     if ((missed_by(maps) <= kWorthParting || is_last) && part_overlaps(maps)) maps = map(&maps);
     const double excess = missed_by(maps);
     if (excess <= kWorthParting || is_last) {
       Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy, excess};
       if (attempt.is_better_than(best)) best = std::move(attempt);
     }
-    if (excess <= 1 ? excess >= kNear : is_last) break;
+    if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
     const double model_excess = std::max(search_.energy() - 2, kLeastExcess);
     double& bound = excess <= 1 ? reached : missed;
     bound = excess <= 1 ? std::max(bound, model_excess) : std::min(bound, model_excess);
