@@ -54,7 +54,8 @@ Admitted admitted_surface(const std::vector<Vec3>& positions, const std::vector<
 }
 
 /// Numbers a large surface by where it is: what follows goes over it many times, and takes half the
-/// time where neighbours lie close in memory.
+/// time where neighbours lie close in memory. Its vertices and faces are no longer in the order of
+/// the input's.
 void arrange_surface(Admitted& admitted, const Work& work) {
   if (admitted.surface.face_count() < kWorthArranging) return;
   std::vector<Triangle> faces = std::move(admitted.surface.faces);

@@ -30,8 +30,8 @@ class ConformalModel {
   /// Per vertex, the logarithm of the factor of lengths.
   const std::vector<double>& factors() const { return u_; }
 
-  /// The symmetric Dirichlet energy of that map, at its best scale: 2 sqrt(<e^2u> <e^-2u>), means
-  /// by area; at least 2.
+  /// What a real map's symmetric Dirichlet energy is taken for: that of the conformal map with the
+  /// factors 0.4 u at its best scale, 2 sqrt(<e^0.8u> <e^-0.8u>), means by area; at least 2.
   double energy() const { return energy_; }
 
   /// That energy if `vertices` were pinned, too. Precondition: none of them is.

@@ -197,21 +197,6 @@ void SeamSearch::judge(Branch& branch) const {
   branch.worth = (branch.energy - model_.energy()) / (branch.cost + kLeastCost * scale_);
 }
 
-std::vector<SeamSearch::Branch> SeamSearch::branches() const {
-  std::vector<Branch> found;
-  for (Index v = 0; v < surface_.vertex_count(); ++v) {
-    if (degree_[v] != 1 || surface_.on_boundary[v]) continue;
-    Branch whole = branch_from(v);
-    if (whole.halfedges.empty()) continue;
-    judge(whole);
-    found.push_back(std::move(whole));
-  }
-  std::sort(found.begin(), found.end(), [](const Branch& a, const Branch& b) {
-    return std::pair(a.worth, a.vertices.front()) < std::pair(b.worth, b.vertices.front());
-  });
-  return found;
-}
-
 /// The seams between vertices that other than two meet at, or that were ends of paths, each by its
 /// half-edges in order; the most costly first.
 std::vector<std::vector<Index>> SeamSearch::arcs() const {

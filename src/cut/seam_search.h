@@ -64,7 +64,6 @@ class SeamSearch {
   bool reconnect(const std::vector<Index>& arc);
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);
-  std::vector<Branch> branches() const;
   Branch branch_from(Index tip) const;
   void judge(Branch& branch) const;
   std::vector<Branch> ends_of(Branch branch) const;
