@@ -13,6 +13,7 @@
 #include "chart/options.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
@@ -38,12 +39,12 @@ std::vector<Vec2> map_before(const Chart& chart, const std::vector<std::array<Ve
   return uvs;
 }
 
-std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, double tolerance,
-                            const Work& work) {
+std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injectivity injectivity,
+                            double tolerance, const Work& work) {
   DiskMesh mesh = chart.mesh;
   const Normalisation frame = normalise(mesh.positions, mesh.faces, work);
   ChartOptions options;
-  options.injectivity = Injectivity::kLocal;
+  options.injectivity = injectivity;
   options.tolerance = tolerance;
   for (Vec2& w : start) w *= std::ldexp(1.0, frame.exponent);
   Descent done;
@@ -73,6 +74,29 @@ double percentile_of(std::vector<Vec2> energies_and_areas) {
   return 2;
 }
 
+/// Takes energies, their mean and the percentile from the maps.
+void measure(Index real_faces, LocalMaps& maps) {
+  maps.energies.assign(maps.cut.chart_of_face.size(), kNoEnergy);
+  std::vector<Vec2> measured;  // energies and areas
+  Vec2 sum = Vec2::Zero();     // of energy times area, and of area
+  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
+    const Chart& chart = maps.cut.charts[c];
+    for (Index f = 0; f < chart.mesh.face_count(); ++f) {
+      if (chart.input_face[f] >= real_faces) continue;
+      const auto [i, j, k] = chart.mesh.faces[f];
+      const std::vector<Vec3>& p = chart.mesh.positions;
+      const std::vector<Vec2>& w = maps.uvs[c];
+      const FaceDistortion face = measure_face({p[i], p[j], p[k]}, {w[i], w[j], w[k]});
+      if (!std::isfinite(face.symmetric_dirichlet)) continue;
+      maps.energies[chart.input_face[f]] = face.symmetric_dirichlet;
+      sum += Vec2(face.symmetric_dirichlet * face.area, face.area);
+      measured.emplace_back(face.symmetric_dirichlet, face.area);
+    }
+  }
+  maps.energy = sum.y() > 0 ? sum.x() / sum.y() : 2;
+  maps.p99 = percentile_of(std::move(measured));
+}
+
 }  // namespace
 
 LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
@@ -92,32 +116,29 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
     }
   }
   maps.uvs.resize(maps.cut.charts.size());
-  maps.energies.assign(surface.faces.size(), kNoEnergy);
-  std::vector<Vec2> sums(maps.uvs.size(), Vec2::Zero());     // of energy times area, and of area
-  std::vector<std::vector<Vec2>> measured(maps.uvs.size());  // energies and areas
   parallel_for(work, size_of(maps.uvs), 1, [&](std::int64_t c, std::int64_t) {
     const Chart& chart = maps.cut.charts[c];
     maps.uvs[c] =
         map_chart(chart, corners.empty() ? std::vector<Vec2>() : map_before(chart, corners),
-                  tolerance, work.aside());
-    for (Index f = 0; f < chart.mesh.face_count(); ++f) {
-      if (chart.input_face[f] >= real_faces) continue;
-      const auto [i, j, k] = chart.mesh.faces[f];
-      const std::vector<Vec3>& p = chart.mesh.positions;
-      const std::vector<Vec2>& w = maps.uvs[c];
-      const FaceDistortion face = measure_face({p[i], p[j], p[k]}, {w[i], w[j], w[k]});
-      if (!std::isfinite(face.symmetric_dirichlet)) continue;
-      maps.energies[chart.input_face[f]] = face.symmetric_dirichlet;
-      sums[c] += Vec2(face.symmetric_dirichlet * face.area, face.area);
-      measured[c].emplace_back(face.symmetric_dirichlet, face.area);
-    }
+                  Injectivity::kLocal, tolerance, work.aside());
   });
-  Vec2 sum = Vec2::Zero();
-  for (const Vec2& own : sums) sum += own;
-  maps.energy = sum.y() > 0 ? sum.x() / sum.y() : 2;
-  std::vector<Vec2> all;
-  for (const std::vector<Vec2>& own : measured) all.insert(all.end(), own.begin(), own.end());
-  maps.p99 = percentile_of(std::move(all));
+  measure(real_faces, maps);
+  return maps;
+}
+
+LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const Work& work) {
+  std::vector<std::size_t> crossing;
+  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
+    if (!is_simple(maps.cut.charts[c].mesh.boundary, maps.uvs[c])) crossing.push_back(c);
+  }
+  if (crossing.empty()) return maps;
+  parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
+    const std::size_t c = crossing[i];
+    std::vector<Vec2> uvs = map_chart(maps.cut.charts[c], {}, Injectivity::kGlobal, tolerance,
+                                      work.aside());
+    if (is_simple(maps.cut.charts[c].mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
+  });
+  measure(real_faces, maps);
   return maps;
 }
 

@@ -28,4 +28,8 @@ struct LocalMaps {
 LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
                       double tolerance, const LocalMaps* before, const Work& work);
 
+/// The maps, those that lie on themselves replaced by others that do not, where these are found:
+/// the boundary is kept simple by contact. Their energies are what such charts cost in truth.
+LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const Work& work);
+
 }  // namespace beltrami

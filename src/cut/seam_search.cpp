@@ -22,8 +22,13 @@ constexpr double kLeastCost = 0.02;
 constexpr double kLeastGain = 1e-7;
 /// More rounds gain nothing.
 constexpr int kReconnections = 4;
-/// Parts of a branch that may go alone: its half, quarter and eighth.
-constexpr std::size_t kEnds = 3;
+/// Parts of a branch that may go alone: its half, quarter and so on.
+constexpr std::size_t kEnds = 4;
+/// Seams cost about the excess of the energy over 2 to the power of minus that.
+constexpr double kPrice = 0.36;
+constexpr int kExchanges = 6;
+/// What is gained less in a round is not worth another.
+constexpr double kLeastExchange = 1e-3;
 
 /// What is left of a path without the half at its start; nothing of the shortest.
 SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
@@ -39,7 +44,8 @@ SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
 }  // namespace
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, double budget, const Work& work)
+                       EdgeMarks seams, std::vector<bool> anchors, double budget,
+                       const Work& work)
     : surface_(surface),
       cost_(cost),
       degree_(surface.positions.size()),
@@ -47,7 +53,7 @@ SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vect
       model_(surface, real_faces, work),
       scale_(std::sqrt(surface_area(surface, work))),
       budget_(budget * scale_) {
-  take(std::move(seams));
+  take(std::move(seams), std::move(anchors));
 }
 
 void SeamSearch::take(EdgeMarks seams, std::vector<bool> anchors) {
@@ -85,22 +91,26 @@ void SeamSearch::refresh() {
   model_.pin(pinned);
 }
 
-/// Local extremes of the factor, and of what pinning them would gain, the best for their cost.
+/// Local extremes of the stress, and of what pinning them would gain, the best for their cost. In a
+/// plate that is clamped at a distance d a point yields in proportion to d^2.
 std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
-  const std::vector<double> gains = model_.gains();
-  const std::vector<double>& u = model_.factors();
+  const std::vector<double>& stress = model_.stress();
+  const auto gain = [&](Index v) {
+    const double ratio = stress[v] / (paths.costs()[v] + kLeastCost * scale_);
+    return ratio * ratio;
+  };
   std::vector<std::pair<double, Index>> found;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
     if (surface_.on_boundary[v] || degree_[v] > 0 || surface_.outgoing[v] == kNone) continue;
-    if (!std::isfinite(paths.costs()[v]) || !(gains[v] > 0)) continue;
+    if (!std::isfinite(paths.costs()[v]) || !(gain(v) > 0)) continue;
     bool is_peak = true, is_extreme = true;
     surface_.for_each_outgoing(v, [&](Index h) {
       const Index other = surface_.target(h);
-      is_peak = is_peak && gains[v] >= gains[other];
-      is_extreme = is_extreme && std::abs(u[v]) >= std::abs(u[other]);
+      is_peak = is_peak && gain(v) >= gain(other);
+      is_extreme = is_extreme && std::abs(stress[v]) >= std::abs(stress[other]);
     });
     if (is_peak || is_extreme) {
-      found.emplace_back(-gains[v] / (paths.costs()[v] + kLeastCost * scale_), v);
+      found.emplace_back(-gain(v) / (paths.costs()[v] + kLeastCost * scale_), v);
     }
   }
   std::sort(found.begin(), found.end());
@@ -365,6 +375,71 @@ bool SeamSearch::is_branch(const Branch& branch) const {
     stays = surface_.on_boundary[surface_.target(h)] || degree_[surface_.target(h)] > 1;
   });
   return stays;
+}
+
+
+bool SeamSearch::move_branch(Index tip, double price) {
+  Branch old = branch_from(tip);
+  if (old.halfedges.empty() || !is_branch(old)) return false;
+  const double before = model_.energy();
+  const std::vector<bool> anchors = anchored_;
+  for (const Index h : old.halfedges) mark(h, false);
+  refresh();
+  const SeamPaths& paths = this->paths();
+  const double least = kLeastCost * scale_;
+  double best = old.cost + least - price * (model_.energy() - before);
+  best -= kLeastGain + 1e-3 * (old.cost + least);
+  SeamPath chosen;
+  bool moved = best > 0;
+  if (moved) best = 0;
+  std::vector<Index> ends = candidates(paths);
+  for (const Index v : ends) {
+    for (SeamPath path = paths.from(v); !path.vertices.empty(); path = last_half(path, paths)) {
+      if (!affords(path)) continue;
+      const double gain = model_.energy() - model_.energy_with(path.vertices);
+      const double value = path.cost + least - price * gain;
+      if (value < best) {
+        best = value;
+        chosen = path;
+        moved = true;
+      }
+      if (price * gain < least) break;
+    }
+  }
+  if (!moved) {
+    for (const Index h : old.halfedges) mark(h, true);
+    paths_.reset();
+    anchored_ = anchors;
+    refresh();
+    return false;
+  }
+  for (const Index h : chosen.halfedges) mark(h, true);
+  paths_.reset();
+  if (!chosen.vertices.empty()) anchored_[chosen.vertices.front()] = true;
+  refresh();
+  return true;
+}
+
+void SeamSearch::exchange(double target) {
+  for (int round = 0; round < kExchanges; ++round) {
+    const EdgeMarks before = seams_;
+    const std::vector<bool> anchors = anchored_;
+    const double cost = cost_of_seams_;
+    const double price = kPrice * cost / (target - 2);
+    bool moved = false;
+    for (Index v = 0; v < surface_.vertex_count(); ++v) {
+      if (degree_[v] == 1 && !surface_.on_boundary[v]) moved = move_branch(v, price) || moved;
+    }
+    if (!moved) return;
+    reconnect();
+    if (model_.energy() > target) extend(target);
+    shrink(target);
+    reconnect();
+    if (model_.energy() > target) extend(target);
+    if (model_.energy() <= target && cost_of_seams_ < cost * (1 - kLeastExchange)) continue;
+    take(before, anchors);
+    return;
+  }
 }
 
 }  // namespace beltrami

@@ -1,4 +1,4 @@
-// Where seams are worth their length, by the conformal model.
+// Where seams are worth their length, by the elastic model.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
-#include "cut/conformal_model.h"
+#include "cut/elastic_model.h"
 #include "cut/edge_marks.h"
 #include "cut/seam_paths.h"
 #include "mesh/surface.h"
@@ -21,7 +21,7 @@ class SeamSearch {
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
   /// extended, 0: any. Keeps references to `surface` and `cost`.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-             EdgeMarks seams, double budget, const Work& work);
+             EdgeMarks seams, std::vector<bool> anchors, double budget, const Work& work);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. False where nothing helps any more.
@@ -35,6 +35,10 @@ class SeamSearch {
   /// Takes back branches, or their ends, that are worth the least, as long as the energy of the
   /// model stays at most `target`.
   void shrink(double target);
+
+  /// Puts branches where they are worth more for their cost, at the price that energy has at
+  /// `target`, and goes there, as long as something is gained.
+  void exchange(double target);
 
   double energy() const { return model_.energy(); }
   double cost() const { return cost_of_seams_; }
@@ -54,6 +58,7 @@ class SeamSearch {
     double worth = 0;   ///< energy gained for the cost
   };
 
+  bool move_branch(Index tip, double price);
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
   bool extend_once();
@@ -74,7 +79,7 @@ class SeamSearch {
   EdgeMarks seams_;
   std::vector<Index> degree_;  ///< per vertex: seams at it
   std::vector<bool> anchored_;
-  ConformalModel model_;
+  ElasticModel model_;
   std::optional<SeamPaths> paths_;  ///< to the seams that there are, where known
   double scale_;                    ///< root of the area
   double budget_;                   ///< of length

@@ -1,46 +1,37 @@
 #include "cut/search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
+#include "cut/search_level.h"
 #include "cut/seam_search.h"
 #include "cut/split_overlaps.h"
 #include "cut/straighten.h"
-#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {
 
 /// Seams are decided on so many faces: finer ones add little to what is to be seen of a shape.
 constexpr Index kCoarseFaces = 10'000;
-/// A surface of a few more is taken as it is.
-constexpr double kWorthSimplifying = 1.3;
-/// Faces that a component keeps on the average.
-constexpr Index kLeastFaces = 300;
-/// A seam goes so far around to leave an edge that it was carried to, and that is locked.
-constexpr double kLockedCost = 1000;
-/// What an edge inside a filled hole costs of its length: no seam will be there.
-constexpr double kVirtualCost = 0.1;
+/// What is to be joined by long seams is seen on so many.
+constexpr Index kRoughFaces = 3000;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
 /// Where a map lies on itself on no more of its area, contact mends it at little cost.
-constexpr double kCoarseOverlap = 0.005;
+const double kCoarseOverlap = getenv("OVER") ? atof(getenv("OVER")) : 0.03;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
-constexpr std::int64_t kGrain = 16384;
 /// Beyond any excess of the model; and what differs by less is one.
 constexpr double kFar = 1e9, kSame = 1.02;
-constexpr int kRounds = 8;
+constexpr int kRounds = 8, kTrims = 3;
 /// Where the excess is so near to the one asked for, a further round gains nothing.
 constexpr double kNear = 0.98;
 /// The next target of the model aims at so much of the excess asked for.
@@ -50,123 +41,10 @@ constexpr double kLeastStep = 0.3, kMostStep = 2;
 /// The model's excess is not to be believed below.
 constexpr double kLeastExcess = 1e-4;
 
-/// The surface on which seams are sought.
-struct Coarse {
-  Surface surface;
-  Index real_faces = 0;
-  EdgeMarks locked;
-  std::vector<double> cost;        ///< per half-edge
-  std::vector<double> factor;      ///< per vertex, what seams there cost for their length by shape
-  std::vector<Index> fine_vertex;  ///< per vertex; empty: this is the fine surface
-  CollapseHistory history;
-};
-
-/// Edges inside filled holes cost less.
-void cheapen_virtual(const Surface& surface, Index real_faces, std::vector<double>& cost) {
-  for (Index h = 3 * real_faces; h < size_of(cost); ++h) {
-    const Index twin = surface.twin[h];
-    if (twin == kNone || twin / 3 >= real_faces) cost[h] *= kVirtualCost;
-  }
-}
-
-std::vector<double> costs_of(const Surface& surface, Index real_faces, const SeamWeights& weights,
-                             const SeamHints& hints, const Work& work) {
-  std::vector<double> cost = seam_costs(surface, weights, hints, work);
-  cheapen_virtual(surface, real_faces, cost);
-  return cost;
-}
-
-/// Per vertex, what the edges at it cost for their length, without paint and labels.
-std::vector<double> factors_of_shape(const Surface& surface, const SeamWeights& weights,
-                                     double hard_angle, const Work& work) {
-  SeamHints hints;
-  hints.hard_angle = hard_angle;
-  const std::vector<double> cost = seam_costs(surface, weights, hints, work);
-  const std::vector<double> length = edge_lengths(surface, work);
-  std::vector<Vec2> sums(surface.positions.size(), Vec2::Zero());
-  for (Index h = 0; h < size_of(cost); ++h) sums[surface.origin(h)] += Vec2(cost[h], length[h]);
-  std::vector<double> factors;
-  for (const Vec2& sum : sums) factors.push_back(sum.y() > 0 ? sum.x() / sum.y() : 1);
-  return factors;
-}
-
-/// What seams cost on the fine surface: as at the coarse vertices that its own became.
-std::vector<double> fine_costs(const Coarse& coarse, const Surface& fine, Index real_faces,
-                               const SeamWeights& weights, const SeamHints& hints,
-                               const Work& work) {
-  std::vector<double> factor(fine.positions.size(), 1);
-  for (std::size_t v = 0; v < coarse.factor.size(); ++v) {
-    factor[coarse.fine_vertex[v]] = coarse.factor[v];
-  }
-  const auto& steps = coarse.history.steps;
-  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-    factor[step->vertex] = factor[step->target];
-  }
-  std::vector<double> cost = edge_lengths(fine, work);
-  parallel_for(work, fine.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto h = static_cast<Index>(3 * begin); h < 3 * end; ++h) {
-      cost[h] *= std::sqrt(factor[fine.origin(h)] * factor[fine.target(h)]);
-    }
-  });
-  if (!hints.labels.empty()) weigh_labels(fine, hints.labels, weights.materials, cost, work);
-  weigh_paint(fine, hints.vertex_paint, hints.edge_paint, cost, work);
-  cheapen_virtual(fine, real_faces, cost);
-  return cost;
-}
-
-/// The hints for a coarse surface: of an edge, the paint goes to its ends.
-SeamHints coarse_hints(const SeamHints& fine, const CoarseSurface& coarse, Index fine_vertices) {
-  SeamHints hints;
-  hints.hard_angle = fine.hard_angle;
-  std::vector<double> paint = fine.vertex_paint;
-  if (!fine.edge_paint.empty()) {
-    paint.resize(fine_vertices, 1);
-    for (const PaintedEdge& edge : fine.edge_paint) {
-      for (const Index v : edge.ends) paint[v] *= edge.factor;
-    }
-  }
-  for (const Index v : coarse.fine_vertex) {
-    if (!paint.empty()) hints.vertex_paint.push_back(paint[v]);
-  }
-  for (const Index f : coarse.fine_face) {
-    if (!fine.labels.empty()) hints.labels.push_back(fine.labels[f]);
-  }
-  return hints;
-}
-
-Coarse coarsen(const Surface& fine, Index real_faces, const Topology& topology,
-               const EdgeMarks& locked, const SeamWeights& weights, const SeamHints& hints,
-               const Work& work) {
-  Index target = 0;
-  for (const Component& component : topology.components) {
-    target += std::min(component.faces, kLeastFaces);
-  }
-  target = std::max(target, kCoarseFaces);
-  Coarse coarse;
-  if (fine.face_count() <= kWorthSimplifying * target) {
-    coarse.surface = fine;
-    coarse.real_faces = real_faces;
-    coarse.locked = locked;
-    coarse.cost = costs_of(fine, real_faces, weights, hints, work);
-    return coarse;
-  }
-  CoarseSurface simple = simplify_surface(fine, topology.loops, target, work);
-  coarse.real_faces = static_cast<Index>(
-      std::lower_bound(simple.fine_face.begin(), simple.fine_face.end(), real_faces) -
-      simple.fine_face.begin());
-  coarse.cost = costs_of(simple.mesh, coarse.real_faces, weights,
-                         coarse_hints(hints, simple, fine.vertex_count()), work);
-  coarse.factor = factors_of_shape(simple.mesh, weights, hints.hard_angle, work);
-  coarse.surface = std::move(simple.mesh);
-  coarse.fine_vertex = std::move(simple.fine_vertex);
-  coarse.history = std::move(simple.history);
-  return coarse;
-}
-
 /// Seams and what is known of them.
 struct Attempt {
-  EdgeMarks seams;
-  std::vector<bool> anchors;
+  AnchoredSeams seams;
+  double model_energy = 2;
   double cost = std::numeric_limits<double>::infinity();
   double energy = std::numeric_limits<double>::infinity();
   double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
@@ -180,36 +58,40 @@ struct Attempt {
 };
 
 /// Costs for paths: infinite along edges that are not to be cut.
-std::vector<double> path_costs(const Coarse& coarse) {
-  std::vector<double> cost = coarse.cost;
-  for (std::size_t h = 0; h < coarse.locked.size(); ++h) {
-    if (coarse.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
+std::vector<double> path_costs(const SearchLevel& level) {
+  std::vector<double> cost = level.cost;
+  for (std::size_t h = 0; h < level.locked.size(); ++h) {
+    if (level.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
   }
   return cost;
 }
 
-/// Corrects the model by maps until these have the energy that is asked for.
-class Closure {
+/// Seams of a level: by the model, and corrected by maps until these have the energy asked for.
+class LevelSearch {
  public:
-  Closure(const Coarse& coarse, const SeamTarget& target, const Work& work)
-      : coarse_(coarse),
+  LevelSearch(const SearchLevel& level, AnchoredSeams start, const SeamTarget& target,
+              const Work& work)
+      : level_(level),
         target_(target),
         work_(work),
-        path_cost_(path_costs(coarse)),
-        search_(
-            coarse.surface, coarse.real_faces, path_cost_,
-            open_minimal(coarse.surface, topology_of(coarse.surface, work), coarse.locked, work),
-            target.seam_budget * kSpent, work) {}
+        path_cost_(path_costs(level)),
+        search_(level.surface, level.real_faces, path_cost_, std::move(start.seams),
+                std::move(start.anchors), target.seam_budget * kSpent, work) {}
 
-  Attempt run();
+  /// By the model alone.
+  AnchoredSeams sketch();
+  /// `is_sketched`: the start is a sketch.
+  Attempt run(bool is_sketched);
 
  private:
   void shorten_seams(double model_energy);
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps);
   double missed_by(const LocalMaps& maps) const;
+  bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);
+  void trim(LocalMaps& maps, Attempt& best);
 
-  const Coarse& coarse_;
+  const SearchLevel& level_;
   const SeamTarget& target_;
   const Work work_;
   std::vector<double> path_cost_;
@@ -218,25 +100,33 @@ class Closure {
 
 /// Short and straight seams miss some of what the others ran to: they are taken where they are
 /// shorter with what has to be added to them.
-void Closure::shorten_seams(double model_energy) {
+void LevelSearch::shorten_seams(double model_energy) {
   const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
   const double cost = search_.cost(), energy = std::max(model_energy, search_.energy());
   search_.reconnect();
-  search_.take(straighten(coarse_.surface, search_.seams(), coarse_.cost, search_.anchors(),
-                          coarse_.locked, work_.aside()));
+  search_.take(straighten(level_.surface, search_.seams(), level_.cost, search_.anchors(),
+                          level_.locked, work_.aside()));
   search_.extend(energy);
   const bool is_better = search_.cost() < cost && search_.energy() <= energy;
   if (!is_better) search_.take(before, anchors);
 }
 
-LocalMaps Closure::map(const LocalMaps* before) const {
-  return map_locally(coarse_.surface, coarse_.real_faces, search_.seams(), kMapTolerance, before,
+AnchoredSeams LevelSearch::sketch() {
+  search_.extend(target_.energy);
+  shorten_seams(target_.energy);
+  search_.exchange(std::max(target_.energy, search_.energy()));
+  shorten_seams(target_.energy);
+  return {search_.seams(), search_.anchors()};
+}
+
+LocalMaps LevelSearch::map(const LocalMaps* before) const {
+  return map_locally(level_.surface, level_.real_faces, search_.seams(), kMapTolerance, before,
                      work_);
 }
 
 /// Parts the charts that lie on themselves. Whether there was one.
-bool Closure::part_overlaps(const LocalMaps& maps) {
+bool LevelSearch::part_overlaps(const LocalMaps& maps) {
   EdgeMarks seams = search_.seams();
   bool parted = false;
   Index charts = size_of(maps.uvs);
@@ -254,7 +144,7 @@ bool Closure::part_overlaps(const LocalMaps& maps) {
     }
     for (Index h = 0; h < size_of(cost); ++h) {
       if (!split.seams[h]) continue;
-      mark_edge(coarse_.surface, surface_halfedge(h), seams);
+      mark_edge(level_.surface, surface_halfedge(h), seams);
       parted = true;
     }
   }
@@ -263,13 +153,44 @@ bool Closure::part_overlaps(const LocalMaps& maps) {
 }
 
 /// The excess of maps over 2 by that which is asked for, of the mean or of the percentile.
-double Closure::missed_by(const LocalMaps& maps) const {
+double LevelSearch::missed_by(const LocalMaps& maps) const {
   double most = (maps.energy - 2) / (target_.energy - 2);
   if (target_.p99 > 0) most = std::max(most, (maps.p99 - 2) / (target_.p99 - 2));
   return most;
 }
 
-Attempt Closure::run() {
+/// Maps along the seams that there are, and what they are worth, overlaps parted where they are
+/// near what is asked for. Whether they are.
+bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
+  maps = map(maps.uvs.empty() ? nullptr : &maps);
+  attempt = Attempt();
+  attempt.excess = missed_by(maps);
+  if (attempt.excess > kWorthParting && !is_last) return false;
+  if (part_overlaps(maps)) maps = map(&maps);
+  const LocalMaps apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
+  attempt = {{search_.seams(), search_.anchors()}, search_.energy(), search_.cost(),
+             apart.energy,                         missed_by(apart)};
+  return true;
+}
+
+/// Gives back what is left of the energy asked for: ends of branches.
+void LevelSearch::trim(LocalMaps& maps, Attempt& best) {
+  double share = 1;
+  for (int i = 0; i < kTrims && best.excess < kNear && !work_.out_of_time(); ++i) {
+    const double excess = best.model_energy - 2;
+    search_.take(best.seams.seams, best.seams.anchors);
+    search_.shrink(2 + excess * (1 + share * (kAim / std::max(best.excess, 0.5) - 1)));
+    if (search_.cost() >= best.cost) return;
+    Attempt attempt;
+    if (judge(false, maps, attempt) && attempt.is_better_than(best)) {
+      best = std::move(attempt);
+    } else {
+      share /= 2;
+    }
+  }
+}
+
+Attempt LevelSearch::run(bool is_sketched) {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
@@ -279,15 +200,16 @@ Attempt Closure::run() {
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool goes_on = search_.extend(model_energy);
     shorten_seams(model_energy);
-    maps = map(round == 0 ? nullptr : &maps);
+    if (round == 0 && !is_sketched) {
+      search_.exchange(std::max(model_energy, search_.energy()));
+      shorten_seams(model_energy);
+    }
     const bool ends = round + 1 == kRounds || work_.out_of_time();
     const bool is_last = !goes_on || ends;
-    if ((missed_by(maps) <= kWorthParting || is_last) && part_overlaps(maps)) maps = map(&maps);
-    const double excess = missed_by(maps);
-    if (excess <= kWorthParting || is_last) {
-      Attempt attempt{search_.seams(), search_.anchors(), search_.cost(), maps.energy, excess};
-      if (attempt.is_better_than(best)) best = std::move(attempt);
-    }
+    Attempt attempt;
+    const bool is_near = judge(is_last, maps, attempt);
+    const double excess = attempt.excess;
+    if (is_near && attempt.is_better_than(best)) best = std::move(attempt);
     if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
     const double model_excess = std::max(search_.energy() - 2, kLeastExcess);
     double& bound = excess <= 1 ? reached : missed;
@@ -300,46 +222,15 @@ Attempt Closure::run() {
       model_energy = 2 + model_excess * step;
     }
   }
+  if (best.excess <= 1) trim(maps, best);
   return best;
 }
 
-/// Marks the edges between these vertices.
-EdgeMarks marks_of(const Surface& surface, const std::vector<std::array<Index, 2>>& edges) {
-  EdgeMarks marks(surface.twin.size(), false);
-  for (const auto& [a, b] : edges) {
-    surface.for_each_outgoing(a, [&, b = b](Index h) {
-      if (surface.target(h) == b) mark_edge(surface, h, marks);
-      if (surface.origin(Surface::previous(h)) == b) {
-        mark_edge(surface, Surface::previous(h), marks);
-      }
-    });
-  }
-  return marks;
-}
-
-/// The seams on the fine surface, straightened there.
-EdgeMarks carried(const Coarse& coarse, const Surface& fine, std::vector<double> cost,
-                  const EdgeMarks& locked, const Attempt& found, const Work& work) {
-  std::vector<std::array<Index, 2>> edges;
-  const Surface& surface = coarse.surface;
-  for (Index h = 0; h < size_of(surface.twin); ++h) {
-    if (!found.seams[h] || surface.edge(h) != h) continue;
-    edges.push_back({coarse.fine_vertex[surface.origin(h)], coarse.fine_vertex[surface.target(h)]});
-  }
-  std::vector<bool> anchors(fine.positions.size(), false);
-  for (std::size_t v = 0; v < found.anchors.size(); ++v) {
-    if (found.anchors[v]) anchors[coarse.fine_vertex[v]] = true;
-  }
-  const EdgeMarks marks =
-      marks_of(fine, carry_edges(coarse.history, edges, fine.on_boundary, anchors));
-  if (locked.empty()) return straighten(fine, marks, cost, anchors, locked, work);
-  // The coarse surface does not know of locked edges: seams on them go around, or give way.
-  for (std::size_t h = 0; h < locked.size(); ++h) {
-    if (locked[h]) cost[h] *= kLockedCost;
-  }
-  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, work);
-  for (std::size_t h = 0; h < locked.size(); ++h) free[h] = free[h] && !locked[h];
-  return free;
+/// A cut graph that is as short as is easily had.
+AnchoredSeams opened(const SearchLevel& level, const Work& work) {
+  const Surface& surface = level.surface;
+  return {open_minimal(surface, topology_of(surface, work), level.locked, work),
+          std::vector<bool>(surface.positions.size(), false)};
 }
 
 }  // namespace
@@ -347,13 +238,29 @@ EdgeMarks carried(const Coarse& coarse, const Surface& fine, std::vector<double>
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
                            const SeamWeights& weights, const SeamHints& hints, const Work& work) {
-  const Coarse coarse =
-      coarsen(surface, real_faces, topology, locked, weights, hints, work.part(0, 0.3));
-  Attempt found = Closure(coarse, target, work.part(0.3, 0.9)).run();
-  if (coarse.fine_vertex.empty()) return {std::move(found.seams), found.energy};
-  return {carried(coarse, surface, fine_costs(coarse, surface, real_faces, weights, hints, work),
-                  locked, found, work.part(0.9, 1)),
-          found.energy};
+  const SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces,
+                                           weights, hints, work.part(0, 0.3));
+  AnchoredSeams start;
+  bool is_sketched = false;
+  if (coarse.locked.empty()) {  // which rough seams would not heed
+    const SearchLevel rough =
+        coarser_level(coarse.surface, coarse.real_faces, topology_of(coarse.surface, work), {},
+                      kRoughFaces, weights, coarse.hints, work);
+    is_sketched = !rough.fine_vertex.empty();
+    if (is_sketched) {
+      const AnchoredSeams sketch = LevelSearch(rough, opened(rough, work), target, work).sketch();
+      start = carry_to_finer(rough, coarse.surface, coarse.cost, {}, sketch, work);
+    }
+  }
+  if (!is_sketched) start = opened(coarse, work);
+  Attempt found =
+      LevelSearch(coarse, std::move(start), target, work.part(0.3, 0.9)).run(is_sketched);
+  if (coarse.fine_vertex.empty()) return {std::move(found.seams.seams), found.energy};
+  AnchoredSeams fine =
+      carry_to_finer(coarse, surface,
+                     finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
+                     found.seams, work.part(0.9, 1));
+  return {std::move(fine.seams), found.energy};
 }
 
 }  // namespace beltrami

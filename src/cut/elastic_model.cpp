@@ -1,4 +1,4 @@
-#include "cut/conformal_model.h"
+#include "cut/elastic_model.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -20,12 +20,10 @@ namespace {
 /// A pinned vertex is held by a spring so many times as stiff as a vertex of average weight: what
 /// it yields is below what the model is good for, and the pattern of the matrix stays.
 constexpr double kPinned = 1e7;
-/// Beyond, the squares of factors are no numbers.
-constexpr double kMostFactor = 300;
-/// A map that is free to be no conformal one is less distorted: the part of the factors that
-/// counts. Seams were shortest with it on 20 scans, sculpted meshes and CAD parts (0.25 to 0.7
-/// tried).
-constexpr double kRealShare = 0.4;
+/// What virtual faces weigh of their area: with nothing the sheet there would be infinitely soft.
+constexpr double kVirtualArea = 1e-3;
+/// The least area of a vertex, of their mean.
+constexpr double kLeastArea = 1e-6;
 
 double corner_angle(const RestTriangle& rest, int k) {
   const Complex to = rest.corner(next_corner(k)) - rest.corner(k);
@@ -36,24 +34,27 @@ double corner_angle(const RestTriangle& rest, int k) {
 
 }  // namespace
 
-ConformalModel::ConformalModel(const Surface& surface, Index real_faces, const Work& work)
+ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work& work)
     : surface_(surface),
-      area_(Eigen::VectorXd::Zero(surface.vertex_count())),
       defect_(Eigen::VectorXd::Zero(surface.vertex_count())),
       solver_(make_spd_solver({}, work)) {
+  const Index count = surface.vertex_count();
   const auto rest = rest_triangles(surface.positions, surface.faces, work);
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(count);
+  double whole = 0;  // that of the real faces
+  std::vector<Cotangents> cotangents;
+  for (Index v = 0; v < count; ++v) {
     defect_[v] = surface.on_boundary[v] ? 0 : 2 * std::numbers::pi;
   }
-  std::vector<Cotangents> cotangents;
   for (Index f = 0; f < surface.face_count(); ++f) {
+    const double weighed = (f < real_faces ? 1 : kVirtualArea) * rest[f].area();
+    whole += f < real_faces ? rest[f].area() : 0;
     for (int k = 0; k < 3; ++k) {
       defect_[surface.faces[f][k]] -= corner_angle(rest[f], k);
-      if (f < real_faces) area_[surface.faces[f][k]] += rest[f].area() / 3;
+      area[surface.faces[f][k]] += weighed / 3;
     }
     cotangents.push_back(modified_cotangents(rest[f], 0));
   }
-  area_ /= area_.sum();
   const DelaunayTriangulation delaunay = intrinsic_delaunay(surface, std::move(cotangents), work);
   std::vector<Eigen::Triplet<double>> entries;
   for (Index f = 0; f < size_of(delaunay.faces); ++f) {
@@ -64,19 +65,22 @@ ConformalModel::ConformalModel(const Surface& surface, Index real_faces, const W
     });
   }
   // Vertices that no face names have an entry, too: they are pinned.
-  for (Index v = 0; v < surface.vertex_count(); ++v) entries.emplace_back(v, v, 0);
-  laplacian_.resize(surface.vertex_count(), surface.vertex_count());
-  laplacian_.setFromTriplets(entries.begin(), entries.end());
+  for (Index v = 0; v < count; ++v) entries.emplace_back(v, v, 0);
+  SparseMatrix laplacian(count, count);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd softness =
+      (area.array().max(kLeastArea * area.mean()) / whole).inverse().matrix();
+  bilaplacian_ = laplacian * softness.asDiagonal() * laplacian;
   std::vector<Place> places;
   for (const Vec3& p : surface.positions) places.push_back(place_of(p));
-  solver_->analyze(laplacian_.triangularView<Eigen::Lower>(), places);
+  solver_->analyze(bilaplacian_.triangularView<Eigen::Lower>(), places);
 }
 
-void ConformalModel::pin(const std::vector<bool>& pinned) {
+void ElasticModel::pin(const std::vector<bool>& pinned) {
   pinned_ = pinned;
-  SparseMatrix held = laplacian_.triangularView<Eigen::Lower>();
-  const double spring = kPinned * laplacian_.diagonal().mean();
-  Eigen::VectorXd force = -defect_;
+  SparseMatrix held = bilaplacian_.triangularView<Eigen::Lower>();
+  const double spring = kPinned * bilaplacian_.diagonal().mean();
+  Eigen::VectorXd force = defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
     if (surface_.on_boundary[v] || surface_.outgoing[v] == kNone) pinned_[v] = true;
     if (!pinned_[v]) continue;
@@ -85,49 +89,34 @@ void ConformalModel::pin(const std::vector<bool>& pinned) {
   }
   poll_interrupt();
   if (factorize_shifted(*solver_, held) < 0) {
-    throw Error(Fault::kSolver, "the Laplacian of the coarse surface is not definite");
+    throw Error(Fault::kSolver, "the model of the coarse surface is not definite");
   }
-  const Eigen::VectorXd u = solver_->solve(force);
-  u_.assign(u.begin(), u.end());
-  energy_ = energy_of(u);
+  const Eigen::VectorXd stress = solver_->solve(force);
+  stress_.assign(stress.begin(), stress.end());
+  energy_ = 2 + 2 * std::max(force.dot(stress), 0.0);
 }
 
-double ConformalModel::energy_of(const Eigen::VectorXd& u) const {
-  double stretched = 0, shrunk = 0;
-  for (Eigen::Index v = 0; v < u.size(); ++v) {
-    if (area_[v] == 0) continue;
-    const double factor =
-        portable::exp(2 * kRealShare * std::clamp(u[v], -kMostFactor, kMostFactor));
-    stretched += area_[v] * factor;
-    shrunk += area_[v] / factor;
-  }
-  return 2 * std::sqrt(stretched * shrunk);
-}
-
-double ConformalModel::energy_with(std::span<const Index> vertices) const {
+double ElasticModel::energy_with(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix unit(surface_.vertex_count(), count);
   Eigen::VectorXd there(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     unit.insert(vertices[i], i) = 1;
-    there[i] = u_[vertices[i]];
+    there[i] = stress_[vertices[i]];
   }
   unit.makeCompressed();
   poll_interrupt();
   const DenseMatrix among = solver_->solve_rows(unit, {vertices.begin(), vertices.end()});
-  const Eigen::VectorXd force = unit * among.ldlt().solve(there).eval();
-  Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(u_.data(), size_of(u_));
-  u -= solver_->solve(force);
-  return energy_of(u);
+  return std::max(energy_ - 2 * there.dot(among.ldlt().solve(there)), 2.0);
 }
 
-double ConformalModel::energy_without(std::span<const Index> vertices) const {
+double ElasticModel::energy_without(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix coupling(surface_.vertex_count(), count);  // to vertices that are not pinned
   DenseMatrix among = DenseMatrix::Zero(count, count);
   std::vector<int> around;
   for (Eigen::Index i = 0; i < count; ++i) {
-    for (SparseMatrix::InnerIterator entry(laplacian_, vertices[i]); entry; ++entry) {
+    for (SparseMatrix::InnerIterator entry(bilaplacian_, vertices[i]); entry; ++entry) {
       const auto other = static_cast<Index>(entry.row());
       if (!pinned_[other]) {
         coupling.insert(other, i) = entry.value();
@@ -150,33 +139,14 @@ double ConformalModel::energy_without(std::span<const Index> vertices) const {
   }
   poll_interrupt();
   among -= near.transpose() * solver_->solve_rows(coupling, around);
-  Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(u_.data(), size_of(u_));
-  Eigen::VectorXd force = -(coupling.transpose() * u);
-  for (Eigen::Index i = 0; i < count; ++i) force[i] -= defect_[vertices[i]];
-  const Eigen::VectorXd freed = among.ldlt().solve(force);
-  u -= solver_->solve(Eigen::VectorXd(coupling * freed));
-  for (Eigen::Index i = 0; i < count; ++i) u[vertices[i]] = freed[i];
-  return energy_of(u);
-}
-
-std::vector<double> ConformalModel::gains() const {
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(surface_.vertex_count());
-  double stretched = 0, shrunk = 0;
-  std::vector<double> factors(u_.size(), 1);
-  for (std::size_t v = 0; v < u_.size(); ++v) {
-    factors[v] = portable::exp(2 * kRealShare * std::clamp(u_[v], -kMostFactor, kMostFactor));
-    stretched += area_[v] * factors[v];
-    shrunk += area_[v] / factors[v];
+  Eigen::VectorXd force(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    force[i] = defect_[vertices[i]];
+    for (SparseMatrix::InnerIterator entry(coupling, i); entry; ++entry) {
+      force[i] -= entry.value() * stress_[entry.row()];
+    }
   }
-  for (std::size_t v = 0; v < u_.size(); ++v) {
-    slope[v] = area_[v] * (factors[v] / stretched - 1 / (factors[v] * shrunk));
-  }
-  const Eigen::VectorXd pull = solver_->solve(slope);
-  std::vector<double> gains(u_.size(), 0);
-  for (std::size_t v = 0; v < u_.size(); ++v) {
-    if (!pinned_[v]) gains[v] = pull[v] * u_[v];
-  }
-  return gains;
+  return energy_ + 2 * std::max(force.dot(among.ldlt().solve(force)), 0.0);
 }
 
 }  // namespace beltrami

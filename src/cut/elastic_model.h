@@ -1,0 +1,61 @@
+// What a cut is worth, without a map: the strain of a thin sheet that is pressed flat, to first
+// order.
+//
+// Half of the symmetric Dirichlet energy is, near an isometry, one and the squares of the two
+// strains: that of an elastic sheet without lateral contraction. Such a sheet in the plane has an
+// Airy stress function x with Delta Delta x = -K, K the Gaussian curvature that is pressed out, and
+// x = dx/dn = 0 where it is free, at seams and borders (Seung & Nelson, "Defects in flexible
+// membranes with crystalline order", 1988, section III). Its energy is the integral of (Delta x)^2.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "linear/spd_solver.h"
+#include "mesh/surface.h"
+
+namespace beltrami {
+
+/// The stress function by linear elements, Delta Delta as L M^-1 L (mixed method of Ciarlet &
+/// Raviart 1974): L the cotangent Laplacian, M the areas of vertices. A seam is where x = 0; that
+/// its two sides may be stretched differently is left out, so that adding one is a change of low
+/// rank.
+class ElasticModel {
+ public:
+  /// `real_faces`: those after them are virtual and weigh hardly anything in the energy. Throws
+  /// std::bad_alloc.
+  ElasticModel(const Surface& surface, Index real_faces, const Work& work);
+
+  /// Takes the vertices that seams are at, `pinned`: per vertex, those of borders need not be. Each
+  /// component with a face must have one. Throws Error SOLVER.
+  void pin(const std::vector<bool>& pinned);
+
+  /// Per vertex, the stress function: greatest in magnitude where a seam relieves most.
+  const std::vector<double>& stress() const { return stress_; }
+
+  /// What a real map's symmetric Dirichlet energy is taken for, at least 2. Of 17 scans, sculpted
+  /// meshes and CAD parts with seams for 2.05 the excess over 2 of real maps was .83 to 1.05 times
+  /// the model's, and up to 2 times where most vertices lie on seams.
+  double energy() const { return energy_; }
+
+  /// That energy if `vertices` were pinned, too. Precondition: none of them is.
+  double energy_with(std::span<const Index> vertices) const;
+
+  /// That energy if pinned `vertices` were not. Precondition: all of them are, none is of a border,
+  /// and of each component one that is not among them.
+  double energy_without(std::span<const Index> vertices) const;
+
+ private:
+  const Surface& surface_;
+  Eigen::VectorXd defect_;  ///< per vertex: K
+  SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
+  std::vector<bool> pinned_;
+  std::unique_ptr<SpdSolver> solver_;
+  std::vector<double> stress_;
+  double energy_ = 2;
+};
+
+}  // namespace beltrami

@@ -1,0 +1,52 @@
+// The surfaces on which seams are sought, coarser and coarser, and the way of seams back.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/edge_marks.h"
+#include "cut/seam_costs.h"
+#include "mesh/surface.h"
+#include "simplify/history.h"
+
+namespace beltrami {
+
+/// A surface on which seams are sought.
+struct SearchLevel {
+  Surface surface;
+  Index real_faces = 0;
+  EdgeMarks locked;                ///< or none
+  SeamHints hints;
+  std::vector<double> cost;        ///< per half-edge, what a seam along it costs
+  std::vector<double> factor;      ///< per vertex, what seams there cost for their length by shape
+  std::vector<Index> fine_vertex;  ///< per vertex; empty: this is the finer surface itself
+  CollapseHistory history;         ///< from the finer surface to this
+};
+
+/// A simplification of `fine` to about `faces` faces, more where components would keep too few, or
+/// `fine` itself where that is hardly more. Faces after `real_faces` are virtual: edges among them
+/// cost little, for no seam will be there. A coarse surface knows of no locked edges.
+SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
+                          const EdgeMarks& locked, Index faces, const SeamWeights& weights,
+                          const SeamHints& hints, const Work& work);
+
+/// What seams cost on the finer surface, its shape being judged on the coarse one: as at the coarse
+/// vertices that its own became. Precondition: the level is no copy of it.
+std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, Index real_faces,
+                                const SeamWeights& weights, const SeamHints& hints,
+                                const Work& work);
+
+/// Seams, and the vertices in which paths ended.
+struct AnchoredSeams {
+  EdgeMarks seams;
+  std::vector<bool> anchors;  ///< per vertex
+};
+
+/// Seams of a level on the finer surface, straightened there by `cost`. Those that were carried to
+/// locked edges and cannot leave them are left out.
+AnchoredSeams carry_to_finer(const SearchLevel& level, const Surface& fine,
+                             std::vector<double> cost, const EdgeMarks& locked,
+                             const AnchoredSeams& seams, const Work& work);
+
+}  // namespace beltrami
