@@ -7,17 +7,19 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "cut/across.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {
 
 /// Ends of paths are looked for at so many places, and so many of these are looked at closely.
-constexpr std::size_t kCandidates = 12, kTried = 5;
+static double ev(const char*n,double d){return getenv(n)?atof(getenv(n)):d;}
+const std::size_t kCandidates = ev("CAND",12), kTried = ev("TRIED",5);
 /// They are so far apart, in roots of the area.
-constexpr double kApart = 0.04;
+const double kApart = ev("APART",0.04);
 /// A path costs at least so much, in roots of the area: short ones are worth little to the eye.
-constexpr double kLeastCost = 0.02;
+const double kLeastCost = ev("LEAST",0.02);
 /// Gains below that are rounding.
 constexpr double kLeastGain = 1e-7;
 /// More rounds gain nothing.
@@ -25,7 +27,7 @@ constexpr int kReconnections = 4;
 /// Parts of a branch that may go alone: its half, quarter and so on.
 constexpr std::size_t kEnds = 4;
 /// Seams cost about the excess of the energy over 2 to the power of minus that.
-constexpr double kPrice = 0.36;
+const double kPrice = ev("PRICE",0.36);
 constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
@@ -267,8 +269,8 @@ bool SeamSearch::is_alone(Index halfedge) const {
   return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
 }
 
-/// Whether the two parts were joined at less cost. Where the seams stay joined without it, the arc
-/// goes around a handle or between charts.
+/// Whether the two parts were joined at less cost, or a handle opened. Where the seams stay joined
+/// without it, the arc goes around a handle, or between charts and stays.
 bool SeamSearch::reconnect(const std::vector<Index>& arc) {
   double cost = 0;
   for (const Index h : arc) {
@@ -290,6 +292,14 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc) {
     }
     if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
     if (path.size() == 1 && is_alone(path.front())) path = arc;
+  } else {
+    std::vector<bool> is_on(degree_.size());
+    for (Index v = 0; v < surface_.vertex_count(); ++v) {
+      is_on[v] = degree_[v] > 0 || surface_.on_boundary[v];
+    }
+    std::vector<Index> across = path_across(surface_, seams_, is_on, arc.front(), cost_,
+                                            cost * (1 - kLeastGain));
+    if (!across.empty()) path.swap(across);
   }
   const bool is_new = path != arc;
   for (const Index h : path) mark(h, true);

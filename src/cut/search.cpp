@@ -20,7 +20,7 @@ namespace {
 /// Seams are decided on so many faces: finer ones add little to what is to be seen of a shape.
 constexpr Index kCoarseFaces = 10'000;
 /// What is to be joined by long seams is seen on so many.
-constexpr Index kRoughFaces = 3000;
+const Index kRoughFaces = getenv("ROUGH") ? atoi(getenv("ROUGH")) : 3000;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
@@ -113,6 +113,7 @@ void LevelSearch::shorten_seams(double model_energy) {
 }
 
 AnchoredSeams LevelSearch::sketch() {
+  search_.reconnect();
   search_.extend(target_.energy);
   shorten_seams(target_.energy);
   search_.exchange(std::max(target_.energy, search_.energy()));
@@ -194,6 +195,7 @@ Attempt LevelSearch::run(bool is_sketched) {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
+  if (!is_sketched) search_.reconnect();
   double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
   for (int round = 0; round < kRounds; ++round) {
     work_.report(static_cast<double>(round) / kRounds);
