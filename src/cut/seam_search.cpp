@@ -46,15 +46,15 @@ SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
 }  // namespace
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, std::vector<bool> anchors, double budget,
-                       const Work& work)
+                       EdgeMarks seams, double budget, const Work& work,
+                       std::vector<bool> anchors)
     : surface_(surface),
       cost_(cost),
       degree_(surface.positions.size()),
-      anchored_(surface.positions.size(), false),
       model_(surface, real_faces, work),
       scale_(std::sqrt(surface_area(surface, work))),
       budget_(budget * scale_) {
+  anchors.resize(degree_.size(), false);
   take(std::move(seams), std::move(anchors));
 }
 

@@ -19,9 +19,9 @@ class SeamSearch {
  public:
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
-  /// extended, 0: any. Keeps references to `surface` and `cost`.
+  /// extended, 0: any; `anchors`: per vertex, or none. Keeps references to `surface` and `cost`.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-             EdgeMarks seams, std::vector<bool> anchors, double budget, const Work& work);
+             EdgeMarks seams, double budget, const Work& work, std::vector<bool> anchors = {});
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. False where nothing helps any more.

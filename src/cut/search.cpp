@@ -76,7 +76,7 @@ class LevelSearch {
         work_(work),
         path_cost_(path_costs(level)),
         search_(level.surface, level.real_faces, path_cost_, std::move(start.seams),
-                std::move(start.anchors), target.seam_budget * kSpent, work) {}
+                target.seam_budget * kSpent, work, std::move(start.anchors)) {}
 
   /// By the model alone.
   AnchoredSeams sketch();

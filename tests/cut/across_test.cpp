@@ -1,0 +1,117 @@
+// Paths across an annulus: they make a disk of it, and none is cheaper.
+#include "cut/across.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "cut/cut_into_charts.h"
+#include "cut/open_minimal.h"
+#include "cut/seam_costs.h"
+#include "support/cuts.h"
+#include "support/meshes.h"
+#include "support/solids.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::TriangleList;
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
+Surface built(const TriangleList& mesh) {
+  return build_surface(mesh.positions, mesh.faces, Work(1));
+}
+
+std::vector<bool> on_seams(const Surface& surface, const EdgeMarks& seams) {
+  std::vector<bool> is_on = surface.on_boundary;
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (seams[h]) is_on[surface.origin(h)] = is_on[surface.target(h)] = true;
+  }
+  return is_on;
+}
+
+bool is_disk(const Surface& surface, const EdgeMarks& seams) {
+  const CutSurface cut = cut_into_charts(surface, seams, Work(1));
+  return cut.non_disks.empty() && cut.charts.size() == 1;
+}
+
+/// The seams of a disk without an arc between two vertices of other than two of them, by which an
+/// annulus is left: the arc's half-edges in `arc`.
+EdgeMarks without_an_arc(const Surface& surface, const EdgeMarks& seams, std::size_t which,
+                         std::vector<Index>& arc) {
+  std::vector<Index> degree(surface.positions.size(), 0);
+  std::vector<Index> first;
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (seams[h]) ++degree[surface.origin(h)];
+  }
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (seams[h] && degree[surface.origin(h)] != 2) first.push_back(h);
+  }
+  if (first.empty()) return {};
+  EdgeMarks left = seams;
+  for (Index h = first[which % first.size()]; h != kNone;) {
+    arc.push_back(h);
+    left[h] = left[surface.twin[h]] = false;
+    const Index end = surface.target(h);
+    Index on = kNone;
+    if (degree[end] == 2) {
+      surface.for_each_outgoing(end, [&](Index out) {
+        if (left[out]) on = out;
+      });
+    }
+    h = on;
+  }
+  return left;
+}
+
+TEST(PathAcross, OpensAHandleAgainAndAtNoMoreCost) {
+  for (const TriangleList& mesh :
+       {meshes::torus(10), meshes::shaken(meshes::double_torus(8), 0.05, 1)}) {
+    const Surface surface = built(mesh);
+    const std::vector<double> cost = edge_lengths(surface, Work(1));
+    const EdgeMarks seams = open_minimal(surface, topology_of(surface, Work(1)), {}, Work(1));
+    ASSERT_TRUE(is_disk(surface, seams));
+    int opened = 0;
+    for (std::size_t which = 0; which < 6; ++which) {
+      std::vector<Index> arc;
+      EdgeMarks left = without_an_arc(surface, seams, which, arc);
+      ASSERT_FALSE(left.empty());
+      double before = 0, after = 0;
+      for (const Index h : arc) before += cost[h];
+      const std::vector<Index> path =
+          path_across(surface, left, on_seams(surface, left), arc.front(), cost, kAny);
+      ASSERT_FALSE(path.empty());
+      for (const Index h : path) {
+        after += cost[h];
+        mark_edge(surface, h, left);
+      }
+      EXPECT_TRUE(is_disk(surface, left));
+      EXPECT_LE(after, before * (1 + 1e-12));
+      ++opened;
+      std::vector<Index> again;
+      EXPECT_TRUE(path_across(surface, seams, on_seams(surface, seams), arc.front(), cost, kAny)
+                      .empty());  // a disk has one loop
+    }
+    EXPECT_EQ(opened, 6);
+  }
+}
+
+TEST(PathAcross, FindsTheWidthOfARing) {
+  // Two borders: the shortest way is straight.
+  const Surface surface = built(disks::refined(meshes::annulus(12), 2));
+  const EdgeMarks none(surface.twin.size(), false);
+  const std::vector<double> cost = edge_lengths(surface, Work(1));
+  const std::vector<Index> path =
+      path_across(surface, none, on_seams(surface, none), 0, cost, kAny);
+  EXPECT_EQ(path.size(), 4U);
+  double length = 0;
+  for (const Index h : path) length += cost[h];
+  EXPECT_TRUE(path_across(surface, none, on_seams(surface, none), 0, cost, length).empty());
+}
+
+}  // namespace
+}  // namespace beltrami
