@@ -14,12 +14,9 @@ namespace beltrami {
 namespace {
 
 /// Ends of paths are looked for at so many places, and so many of these are looked at closely.
-static double ev(const char*n,double d){return getenv(n)?atof(getenv(n)):d;}
-const std::size_t kCandidates = ev("CAND",12), kTried = ev("TRIED",5);
+constexpr std::size_t kCandidates = 12, kTried = 5;
 /// They are so far apart, in roots of the area.
-const double kApart = ev("APART",0.04);
-/// A path costs at least so much, in roots of the area: short ones are worth little to the eye.
-const double kLeastCost = ev("LEAST",0.02);
+constexpr double kApart = 0.04;
 /// Gains below that are rounding.
 constexpr double kLeastGain = 1e-7;
 /// More rounds gain nothing.
@@ -27,7 +24,7 @@ constexpr int kReconnections = 4;
 /// Parts of a branch that may go alone: its half, quarter and so on.
 constexpr std::size_t kEnds = 4;
 /// Seams cost about the excess of the energy over 2 to the power of minus that.
-const double kPrice = ev("PRICE",0.36);
+constexpr double kPrice = 0.36;
 constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
@@ -46,14 +43,15 @@ SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
 }  // namespace
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, double budget, const Work& work,
-                       std::vector<bool> anchors)
+                       EdgeMarks seams, double budget, double least_cost,
+                       const Work& work, std::vector<bool> anchors)
     : surface_(surface),
       cost_(cost),
       degree_(surface.positions.size()),
       model_(surface, real_faces, work),
       scale_(std::sqrt(surface_area(surface, work))),
-      budget_(budget * scale_) {
+      budget_(budget * scale_),
+      least_cost_(least_cost * scale_) {
   anchors.resize(degree_.size(), false);
   take(std::move(seams), std::move(anchors));
 }
@@ -98,7 +96,7 @@ void SeamSearch::refresh() {
 std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
   const std::vector<double>& stress = model_.stress();
   const auto gain = [&](Index v) {
-    const double ratio = stress[v] / (paths.costs()[v] + kLeastCost * scale_);
+    const double ratio = stress[v] / (paths.costs()[v] + least_cost_);
     return ratio * ratio;
   };
   std::vector<std::pair<double, Index>> found;
@@ -112,7 +110,7 @@ std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
       is_extreme = is_extreme && std::abs(stress[v]) >= std::abs(stress[other]);
     });
     if (is_peak || is_extreme) {
-      found.emplace_back(-gain(v) / (paths.costs()[v] + kLeastCost * scale_), v);
+      found.emplace_back(-gain(v) / (paths.costs()[v] + least_cost_), v);
     }
   }
   std::sort(found.begin(), found.end());
@@ -162,7 +160,7 @@ bool SeamSearch::extend_once() {
       if (!affords(path)) continue;
       const double gain = model_.energy() - model_.energy_with(path.vertices);
       if (!(gain > kLeastGain)) break;
-      const double worth = gain / (path.cost + kLeastCost * scale_);
+      const double worth = gain / (path.cost + least_cost_);
       // A half that is worth less than the whole has halves that are.
       if (worth <= best) break;
       best = worth;
@@ -206,7 +204,7 @@ SeamSearch::Branch SeamSearch::branch_from(Index tip) const {
 
 void SeamSearch::judge(Branch& branch) const {
   branch.energy = model_.energy_without(branch.vertices);
-  branch.worth = (branch.energy - model_.energy()) / (branch.cost + kLeastCost * scale_);
+  branch.worth = (branch.energy - model_.energy()) / (branch.cost + least_cost_);
 }
 
 /// The seams between vertices that other than two meet at, or that were ends of paths, each by its
@@ -271,7 +269,7 @@ bool SeamSearch::is_alone(Index halfedge) const {
 
 /// Whether the two parts were joined at less cost, or a handle opened. Where the seams stay joined
 /// without it, the arc goes around a handle, or between charts and stays.
-bool SeamSearch::reconnect(const std::vector<Index>& arc) {
+bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
   double cost = 0;
   for (const Index h : arc) {
     // What was moved before may end here now.
@@ -292,7 +290,7 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc) {
     }
     if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
     if (path.size() == 1 && is_alone(path.front())) path = arc;
-  } else {
+  } else if (around_handles) {
     std::vector<bool> is_on(degree_.size());
     for (Index v = 0; v < surface_.vertex_count(); ++v) {
       is_on[v] = degree_[v] > 0 || surface_.on_boundary[v];
@@ -306,14 +304,23 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc) {
   return is_new;
 }
 
+bool SeamSearch::reconnect_all(bool around_handles) {
+  bool gained = false;
+  for (const std::vector<Index>& arc : arcs()) {
+    poll_interrupt();
+    gained = reconnect(arc, around_handles) || gained;
+  }
+  return gained;
+}
+
 void SeamSearch::reconnect() {
-  for (int round = 0; round < kReconnections; ++round) {
-    bool gained = false;
-    for (const std::vector<Index>& arc : arcs()) {
-      poll_interrupt();
-      gained = reconnect(arc) || gained;
-    }
-    if (!gained) break;
+  for (int round = 0; round < kReconnections && reconnect_all(false); ++round) {
+  }
+  refresh();
+}
+
+void SeamSearch::reopen() {
+  for (int round = 0; round < kReconnections && reconnect_all(true); ++round) {
   }
   refresh();
 }
@@ -396,7 +403,7 @@ bool SeamSearch::move_branch(Index tip, double price) {
   for (const Index h : old.halfedges) mark(h, false);
   refresh();
   const SeamPaths& paths = this->paths();
-  const double least = kLeastCost * scale_;
+  const double least = least_cost_;
   double best = old.cost + least - price * (model_.energy() - before);
   best -= kLeastGain + 1e-3 * (old.cost + least);
   SeamPath chosen;

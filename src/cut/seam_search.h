@@ -19,9 +19,11 @@ class SeamSearch {
  public:
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
-  /// extended, 0: any; `anchors`: per vertex, or none. Keeps references to `surface` and `cost`.
+  /// extended, 0: any; `least_cost`: what a path costs beside its own, over the root of the area,
+  /// for short ones are worth little to the eye; `anchors`: per vertex, or none. Keeps references to `surface` and `cost`.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-             EdgeMarks seams, double budget, const Work& work, std::vector<bool> anchors = {});
+             EdgeMarks seams, double budget, double least_cost, const Work& work,
+             std::vector<bool> anchors = {});
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. False where nothing helps any more.
@@ -31,6 +33,9 @@ class SeamSearch {
   /// after arc, as long as something is gained: what was joined in the order of its worth becomes a
   /// short tree (key paths exchanged, Uchoa & Werneck 2012). The energy may rise.
   void reconnect();
+
+  /// The same of the arcs around handles: each goes where it opens the surface at the least cost.
+  void reopen();
 
   /// Takes back branches, or their ends, that are worth the least, as long as the energy of the
   /// model stays at most `target`.
@@ -66,7 +71,8 @@ class SeamSearch {
   std::vector<std::vector<Index>> arcs() const;
   std::vector<bool> joined_to(Index vertex) const;
   bool is_alone(Index halfedge) const;
-  bool reconnect(const std::vector<Index>& arc);
+  bool reconnect(const std::vector<Index>& arc, bool around_handles);
+  bool reconnect_all(bool around_handles);
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);
   Branch branch_from(Index tip) const;
@@ -83,6 +89,7 @@ class SeamSearch {
   std::optional<SeamPaths> paths_;  ///< to the seams that there are, where known
   double scale_;                    ///< root of the area
   double budget_;                   ///< of length
+  double least_cost_;
   double cost_of_seams_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "cut/search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -20,13 +21,17 @@ namespace {
 /// Seams are decided on so many faces: finer ones add little to what is to be seen of a shape.
 constexpr Index kCoarseFaces = 10'000;
 /// What is to be joined by long seams is seen on so many.
-const Index kRoughFaces = getenv("ROUGH") ? atoi(getenv("ROUGH")) : 3000;
+constexpr Index kRoughFaces = 3000;
+/// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
+/// few long ones, and the better is taken.
+constexpr std::array kLeastCosts = {0.02, 0.06};
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
-/// Where a map lies on itself on no more of its area, contact mends it at little cost.
-const double kCoarseOverlap = getenv("OVER") ? atof(getenv("OVER")) : 0.03;
+/// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than so
+/// much of the excess, or the map is parted, too, where it lies on itself on less.
+constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
 /// Beyond any excess of the model; and what differs by less is one.
@@ -69,24 +74,24 @@ std::vector<double> path_costs(const SearchLevel& level) {
 /// Seams of a level: by the model, and corrected by maps until these have the energy asked for.
 class LevelSearch {
  public:
-  LevelSearch(const SearchLevel& level, AnchoredSeams start, const SeamTarget& target,
-              const Work& work)
+  LevelSearch(const SearchLevel& level, AnchoredSeams start, double least_cost,
+              const SeamTarget& target, const Work& work)
       : level_(level),
         target_(target),
         work_(work),
         path_cost_(path_costs(level)),
         search_(level.surface, level.real_faces, path_cost_, std::move(start.seams),
-                target.seam_budget * kSpent, work, std::move(start.anchors)) {}
+                target.seam_budget * kSpent, least_cost, work, std::move(start.anchors)) {}
 
   /// By the model alone.
-  AnchoredSeams sketch();
+  Attempt sketch();
   /// `is_sketched`: the start is a sketch.
   Attempt run(bool is_sketched);
 
  private:
   void shorten_seams(double model_energy);
   LocalMaps map(const LocalMaps* before) const;
-  bool part_overlaps(const LocalMaps& maps);
+  bool part_overlaps(const LocalMaps& maps, double tolerance);
   double missed_by(const LocalMaps& maps) const;
   bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);
   void trim(LocalMaps& maps, Attempt& best);
@@ -112,13 +117,17 @@ void LevelSearch::shorten_seams(double model_energy) {
   if (!is_better) search_.take(before, anchors);
 }
 
-AnchoredSeams LevelSearch::sketch() {
-  search_.reconnect();
+Attempt LevelSearch::sketch() {
+  search_.reopen();
   search_.extend(target_.energy);
   shorten_seams(target_.energy);
   search_.exchange(std::max(target_.energy, search_.energy()));
+  search_.reopen();
   shorten_seams(target_.energy);
-  return {search_.seams(), search_.anchors()};
+  Attempt sketch{{search_.seams(), search_.anchors()}, search_.energy(), search_.cost()};
+  sketch.energy = sketch.model_energy;
+  sketch.excess = (sketch.energy - 2) / (target_.energy - 2);
+  return sketch;
 }
 
 LocalMaps LevelSearch::map(const LocalMaps* before) const {
@@ -126,8 +135,8 @@ LocalMaps LevelSearch::map(const LocalMaps* before) const {
                      work_);
 }
 
-/// Parts the charts that lie on themselves. Whether there was one.
-bool LevelSearch::part_overlaps(const LocalMaps& maps) {
+/// Parts the charts that lie on themselves on more of their area. Whether there was one.
+bool LevelSearch::part_overlaps(const LocalMaps& maps, double tolerance) {
   EdgeMarks seams = search_.seams();
   bool parted = false;
   Index charts = size_of(maps.uvs);
@@ -137,7 +146,7 @@ bool LevelSearch::part_overlaps(const LocalMaps& maps) {
     const auto surface_halfedge = [&](Index h) { return 3 * chart.input_face[h / 3] + h % 3; };
     for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost_[surface_halfedge(h)];
     const OverlapSplit split =
-        split_overlaps(chart.mesh, maps.uvs[c], cost, kCoarseOverlap, work_.aside());
+        split_overlaps(chart.mesh, maps.uvs[c], cost, tolerance, work_.aside());
     charts += split.parts - 1;
     if (target_.max_charts > 0 && charts > target_.max_charts) {
       charts -= split.parts - 1;
@@ -167,8 +176,12 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
   attempt = Attempt();
   attempt.excess = missed_by(maps);
   if (attempt.excess > kWorthParting && !is_last) return false;
-  if (part_overlaps(maps)) maps = map(&maps);
-  const LocalMaps apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
+  LocalMaps apart;
+  for (const double overlap : {kMostOverlap, kLeastOverlap}) {
+    if (part_overlaps(maps, overlap)) maps = map(&maps);
+    apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
+    if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
+  }
   attempt = {{search_.seams(), search_.anchors()}, search_.energy(), search_.cost(),
              apart.energy,                         missed_by(apart)};
   return true;
@@ -183,7 +196,8 @@ void LevelSearch::trim(LocalMaps& maps, Attempt& best) {
     search_.shrink(2 + excess * (1 + share * (kAim / std::max(best.excess, 0.5) - 1)));
     if (search_.cost() >= best.cost) return;
     Attempt attempt;
-    if (judge(false, maps, attempt) && attempt.is_better_than(best)) {
+    const bool fine = judge(false, maps, attempt);
+    if (fine && attempt.is_better_than(best)) {
       best = std::move(attempt);
     } else {
       share /= 2;
@@ -195,7 +209,9 @@ Attempt LevelSearch::run(bool is_sketched) {
   Attempt best;
   LocalMaps maps;
   double model_energy = target_.energy;
-  if (!is_sketched) search_.reconnect();
+  if (!is_sketched) search_.reopen();
+  std::array<double, 2> last = {-1, -1};  // cost and energy of the model, judged before
+  double excess = kFar;
   double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
   for (int round = 0; round < kRounds; ++round) {
     work_.report(static_cast<double>(round) / kRounds);
@@ -208,14 +224,23 @@ Attempt LevelSearch::run(bool is_sketched) {
     }
     const bool ends = round + 1 == kRounds || work_.out_of_time();
     const bool is_last = !goes_on || ends;
-    Attempt attempt;
-    const bool is_near = judge(is_last, maps, attempt);
-    const double excess = attempt.excess;
-    if (is_near && attempt.is_better_than(best)) best = std::move(attempt);
+    const std::array state = {search_.cost(), search_.energy()};
+    if (state != last) {
+      Attempt attempt;
+      const bool is_near = judge(is_last, maps, attempt);
+      excess = attempt.excess;
+      if (is_near && attempt.is_better_than(best)) best = std::move(attempt);
+    }
+    last = {search_.cost(), search_.energy()};
     if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
+    // An aim between the energies that there are ends at one of them.
+    const double aimed = model_energy - 2;
     const double model_excess = std::max(search_.energy() - 2, kLeastExcess);
-    double& bound = excess <= 1 ? reached : missed;
-    bound = excess <= 1 ? std::max(bound, model_excess) : std::min(bound, model_excess);
+    if (excess <= 1) {
+      reached = std::max({reached, model_excess, std::min(aimed, missed)});
+    } else {
+      missed = std::min({missed, model_excess, std::max(aimed, reached)});
+    }
     if (reached > 0 && reached < missed && missed < kFar) {
       if (missed < kSame * reached) break;
       model_energy = 2 + std::sqrt(reached * missed);
@@ -235,6 +260,37 @@ AnchoredSeams opened(const SearchLevel& level, const Work& work) {
           std::vector<bool>(surface.positions.size(), false)};
 }
 
+/// Where the surface has many faces, first on one of fewer. `run`: what to do with a search.
+template <typename Run>
+Attempt best_of(const SearchLevel& level, const AnchoredSeams& start, const SeamTarget& target,
+                const Work& work, const Run& run) {
+  Attempt best;
+  for (std::size_t i = 0; i < kLeastCosts.size(); ++i) {
+    const double count = kLeastCosts.size();
+    LevelSearch search(level, start, kLeastCosts[i], target, work.part(i / count, (i + 1) / count));
+    Attempt attempt = run(search);
+    if (attempt.is_better_than(best)) best = std::move(attempt);
+  }
+  return best;
+}
+
+Attempt search_level(const SearchLevel& level, const SeamTarget& target, const SeamWeights& weights,
+                     const Work& work) {
+  const auto without_sketch = [&] {
+    return best_of(level, opened(level, work), target, work,
+                   [](LevelSearch& search) { return search.run(false); });
+  };
+  if (!level.locked.empty()) return without_sketch();  // which coarse seams would not heed
+  const SearchLevel rough =
+      coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
+                    kRoughFaces, weights, level.hints, work);
+  if (rough.fine_vertex.empty()) return without_sketch();
+  const Attempt sketch = best_of(rough, opened(rough, work), target, work.part(0, 0.3),
+                                 [](LevelSearch& search) { return search.sketch(); });
+  AnchoredSeams start = carry_to_finer(rough, level.surface, level.cost, {}, sketch.seams, work);
+  return LevelSearch(level, std::move(start), kLeastCosts[0], target, work.part(0.3, 1)).run(true);
+}
+
 }  // namespace
 
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
@@ -242,22 +298,8 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamWeights& weights, const SeamHints& hints, const Work& work) {
   const SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces,
                                            weights, hints, work.part(0, 0.3));
-  AnchoredSeams start;
-  bool is_sketched = false;
-  if (coarse.locked.empty()) {  // which rough seams would not heed
-    const SearchLevel rough =
-        coarser_level(coarse.surface, coarse.real_faces, topology_of(coarse.surface, work), {},
-                      kRoughFaces, weights, coarse.hints, work);
-    is_sketched = !rough.fine_vertex.empty();
-    if (is_sketched) {
-      const AnchoredSeams sketch = LevelSearch(rough, opened(rough, work), target, work).sketch();
-      start = carry_to_finer(rough, coarse.surface, coarse.cost, {}, sketch, work);
-    }
-  }
-  if (!is_sketched) start = opened(coarse, work);
-  Attempt found =
-      LevelSearch(coarse, std::move(start), target, work.part(0.3, 0.9)).run(is_sketched);
-  if (coarse.fine_vertex.empty()) return {std::move(found.seams.seams), found.energy};
+  const Attempt found = search_level(coarse, target, weights, work.part(0.3, 0.9));
+  if (coarse.fine_vertex.empty()) return {found.seams.seams, found.energy};
   AnchoredSeams fine =
       carry_to_finer(coarse, surface,
                      finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
