@@ -42,7 +42,7 @@ class EdgesByVertex {
 void CollapseHistory::append(const CollapseHistory& next) {
   const Index offset = size_of(renamed);
   for (const Step& step : next.steps) {
-    steps.push_back({step.vertex, step.target, step.first + offset});
+    steps.push_back({step.vertex, step.target, step.apexes, step.first + offset});
   }
   renamed.insert(renamed.end(), next.renamed.begin(), next.renamed.end());
 }
@@ -57,7 +57,7 @@ std::vector<std::array<Index, 2>> carry_edges(const CollapseHistory& history,
   Index end = size_of(history.renamed);
   for (auto step = history.steps.rbegin(); step != history.steps.rend(); ++step) {
     poll();
-    const auto [v, w, first] = *step;
+    const auto [v, w, apexes, first] = *step;
     const Index last = std::exchange(end, first);
     if (!seams.any(w)) continue;
     bool moved = false;

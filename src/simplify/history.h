@@ -12,7 +12,8 @@ namespace beltrami {
 struct CollapseHistory {
   struct Step {
     Index vertex, target;
-    Index first;  ///< of its entries in `renamed`, up to those of the next step
+    std::array<Index, 2> apexes;  ///< third corners of the faces that went; kNone beyond a border
+    Index first;                  ///< of its entries in `renamed`, up to those of the next step
   };
 
   std::vector<Step> steps;

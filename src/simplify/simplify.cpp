@@ -19,6 +19,7 @@
 #include "simplify/shape.h"
 #include "simplify/simplify.h"
 #include "simplify/surface.h"
+#include "simplify/sweep.h"
 
 namespace beltrami {
 namespace {
@@ -43,6 +44,14 @@ constexpr Index kBlock = 16384;
 
 /// Costs that tell which candidates are the cheaper half.
 constexpr Index kSample = 20000;
+
+/// Of a surface whose history is kept, sweeps lead to so many times the faces of the coarse one and
+/// to this share of its own at least: further on it counts that costs remember what went before.
+constexpr Index kSweptOfTarget = 8;
+constexpr double kSweptShare = 1.0 / 16;
+/// Above this share there is little to sweep.
+constexpr double kWorthSweeping = 0.5;
+constexpr double kSwept = 0.7;  // share of the progress
 
 struct Candidate {
   double cost;
@@ -150,7 +159,8 @@ bool keeps_topology(ShrinkingSurface& surface, Index v, Index target) {
 void record(const ShrinkingSurface& surface, Index v, Index target, CollapseHistory& history) {
   const EdgeFaces edge = faces_of_edge(surface, v, target);
   const std::vector<Index>& fine = surface.fine_vertex;
-  history.steps.push_back({fine[v], fine[target], size_of(history.renamed)});
+  const auto apex = [&](Index i) { return i < edge.count ? fine[edge.apex[i]] : kNone; };
+  history.steps.push_back({fine[v], fine[target], {apex(0), apex(1)}, size_of(history.renamed)});
   surface.for_each_neighbour(v, [&](Index u) {
     if (u != target && !edge.has_apex(u)) history.renamed.push_back(fine[u]);
   });
@@ -329,25 +339,21 @@ void run_passes(ShrinkingSurface& surface, Index target_faces, const Work& work)
   compact(surface, work);
 }
 
-}  // namespace
+// --- Surfaces -----------------------------------------------------------------------------------
 
-CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, const Work& work) {
-  if (target_faces >= fine.face_count()) return whole_disk(fine);
-  ShrinkingSurface surface = make_surface(fine, {fine.boundary}, work);
-  run_passes(surface, target_faces, work);
-  return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
-                     std::move(surface.collapsed_into), work);
-}
-
-CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, Index target_faces,
-                               const Work& work) {
+VertexLoops vertices_of(const Surface& surface, const BoundaryLoops& loops) {
   VertexLoops vertices(loops.count());
   for (Index i = 0; i < loops.count(); ++i) {
     for (Index k = loops.start[i]; k < loops.start[i + 1]; ++k) {
-      vertices[i].push_back(fine.origin(loops.halfedge[k]));
+      vertices[i].push_back(surface.origin(loops.halfedge[k]));
     }
   }
-  ShrinkingSurface surface = make_surface(fine, vertices, work);
+  return vertices;
+}
+
+CoarseSurface simplify_surface_in_passes(const Surface& fine, const VertexLoops& loops,
+                                         Index target_faces, const Work& work) {
+  ShrinkingSurface surface = make_surface(fine, loops, work);
   surface.keeps_history = true;
   surface.fine_face.resize(surface.faces.size());
   std::iota(surface.fine_face.begin(), surface.fine_face.end(), 0);
@@ -361,6 +367,46 @@ CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, 
   coarse.fine_face = std::move(surface.fine_face);
   coarse.history = std::move(surface.history);
   return coarse;
+}
+
+/// The coarse surface of a level as that of what the level was made of.
+CoarseSurface followed_by(const CoarseSurface& level, CoarseSurface coarse) {
+  const auto vertex = [&](Index v) { return v == kNone ? kNone : level.fine_vertex[v]; };
+  for (Index& v : coarse.fine_vertex) v = level.fine_vertex[v];
+  for (Index& f : coarse.fine_face) f = level.fine_face[f];
+  for (Index& v : coarse.history.renamed) v = level.fine_vertex[v];
+  for (CollapseHistory::Step& step : coarse.history.steps) {
+    step.vertex = vertex(step.vertex);
+    step.target = vertex(step.target);
+    for (Index& v : step.apexes) v = vertex(v);
+  }
+  CollapseHistory whole = level.history;
+  whole.append(coarse.history);
+  coarse.history = std::move(whole);
+  return coarse;
+}
+
+}  // namespace
+
+CoarseDisk simplify_in_passes(const DiskMesh& fine, Index target_faces, const Work& work) {
+  if (target_faces >= fine.face_count()) return whole_disk(fine);
+  ShrinkingSurface surface = make_surface(fine, {fine.boundary}, work);
+  run_passes(surface, target_faces, work);
+  return coarse_disk(fine, std::move(surface.fine_vertex), std::move(surface.faces),
+                     std::move(surface.collapsed_into), work);
+}
+
+CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, Index target_faces,
+                               const Work& work) {
+  const auto swept =
+      std::max(static_cast<Index>(kSweptShare * fine.face_count()), kSweptOfTarget * target_faces);
+  if (swept > kWorthSweeping * fine.face_count()) {
+    return simplify_surface_in_passes(fine, vertices_of(fine, loops), target_faces, work);
+  }
+  const CoarseSurface level = sweep_surface(fine, swept, work.part(0, kSwept));
+  const VertexLoops left = vertices_of(level.mesh, boundary_loops(level.mesh, work));
+  return followed_by(
+      level, simplify_surface_in_passes(level.mesh, left, target_faces, work.part(kSwept, 1)));
 }
 
 }  // namespace beltrami

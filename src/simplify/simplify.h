@@ -34,8 +34,9 @@ struct CoarseSurface {
   CollapseHistory history;
 };
 
-/// The same on any surface, in our passes: components, handles and boundary loops stay, each loop
-/// with at least 8 vertices (or all). `loops` are the surface's. Precondition: every vertex is used
+/// The same on any surface, in our sweeps (sweep.h) as long as it is large, and then our passes:
+/// components, handles and boundary loops stay, each loop with at least 8 vertices (or all).
+/// `loops` are the surface's. Precondition: every vertex is used
 /// by a face.
 CoarseSurface simplify_surface(const Surface& fine, const BoundaryLoops& loops, Index target_faces,
                                const Work& work);

@@ -112,7 +112,7 @@ TEST(SimplifySurface, GivesTheSameBitsOnAnyNumberOfThreads) {
 TEST(CarryEdges, ACutHasTheSameTopologyOnTheFineSurface) {
   const Work work(1);
   for (const TriangleList& mesh : surfaces()) {
-    for (const Index part : {3, 12}) {
+    for (const Index part : {3, 12, 40}) {
       const Simplified result = simplified(mesh, size_of(mesh.faces) / part);
       const Surface& coarse = result.coarse.mesh;
       const Topology topology = topology_of(coarse, work);

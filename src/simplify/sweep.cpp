@@ -1,0 +1,321 @@
+// Each sweep goes over the vertices once, and one that is not locked yet is collapsed onto the
+// cheapest of its neighbours if that is cheap enough: nothing is sorted, listed or compacted, and
+// the twins of half-edges are kept up to date in place. The cost is the error of Garland & Heckbert
+// 1997 under the planes of the faces that a vertex has by then; without memory of what went before
+// (Lindstrom & Turk 1998, "Fast and Memory Efficient Polygonal Simplification"), which a few levels
+// can do without. As in the passes a collapse locks its two vertices for the rest of the sweep, and
+// blocks of vertices go side by side.
+#include "simplify/sweep.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "simplify/quadric.h"
+#include "simplify/shape.h"
+
+namespace beltrami {
+namespace {
+
+/// Share of the squared edge length in the cost, as in the passes.
+constexpr double kEvenness = 1e-3;
+
+/// Vertices with more faces stay as they are, and so do their neighbours: one of them would cost as
+/// much as a sweep.
+constexpr int kMostFaces = 64;
+
+/// How many targets of one vertex are tried in a sweep.
+constexpr int kMaxAttempts = 3;
+
+/// Of the vertices of a sample so large, this share has collapses that are cheap enough. With more
+/// fewer sweeps are needed, and faces come out less even.
+constexpr double kCheapShare = 0.65;
+constexpr Index kSample = 5000;
+
+/// Vertices in a block.
+constexpr Index kBlock = 16384;
+
+/// A sweep that takes away less than this share of the faces is the last.
+constexpr double kWorthSweep = 0.02;
+
+constexpr std::int64_t kGrain = 16384;
+
+/// The vertices of a block, or all.
+struct Range {
+  Index begin, end;
+
+  bool has(Index v) const { return v >= begin && v < end; }
+};
+
+/// What is around a vertex.
+struct Star {
+  int count = 0;  ///< faces
+  bool inside = true;
+  std::array<Index, kMostFaces> halfedge;  ///< outgoing, counter-clockwise
+  std::array<Index, kMostFaces> ring;      ///< their targets
+
+  bool has(Index v) const {
+    return std::find(ring.begin(), ring.begin() + count, v) != ring.begin() + count;
+  }
+};
+
+struct Collapses {
+  Index count = 0;
+  std::vector<Index> reaching_out;  ///< vertices
+  CollapseHistory history;
+};
+
+class Sweeps {
+ public:
+  explicit Sweeps(const Surface& fine)
+      : fine_(fine), faces_(fine.faces), twin_(fine.twin), outgoing_(fine.outgoing) {
+    locked_.resize(outgoing_.size());
+    valence_.assign(outgoing_.size(), 0);
+    for (const Triangle& face : faces_) {
+      for (const Index v : face) ++valence_[v];
+    }
+  }
+
+  /// Returns how many collapses took place.
+  Index sweep(const Work& work);
+  CoarseSurface result(const Work& work);
+
+  // What keeps_shape asks for.
+  const Vec3& position(Index v) const { return fine_.positions[v]; }
+  template <class Visit>
+  void for_each_corner(Index v, Visit&& visit) const {
+    for_each_outgoing(v, [&](Index h) { visit(h / 3, h % 3, target(h), apex(h)); });
+  }
+
+ private:
+  Index target(Index h) const { return faces_[h / 3][next_corner(h % 3)]; }
+  Index apex(Index h) const { return faces_[h / 3][previous_corner(h % 3)]; }
+  bool may_go(Index v) const {
+    return outgoing_[v] != kNone && !fine_.on_boundary[v] && valence_[v] <= kMostFaces;
+  }
+  template <class Visit>
+  void for_each_outgoing(Index v, Visit&& visit) const {
+    const Index first = outgoing_[v];
+    Index h = first;
+    do {
+      visit(h);
+      h = twin_[Surface::previous(h)];
+    } while (h != kNone && h != first);
+  }
+
+  Star star_of(Index v, const Range& range) const;
+  std::array<double, kMostFaces> costs_of(Index v, const Star& star) const;
+  double cheap_enough() const;
+  bool keeps_topology(Index v, const Star& star, int k) const;
+  bool reaches_out(Index v, const Range& range) const;
+  void collapse(Index v, const Star& star, int k, CollapseHistory& history);
+  bool try_vertex(Index v, double max_cost, const Range& range, Collapses& done);
+
+  const Surface& fine_;
+  std::vector<Triangle> faces_;  ///< one that is gone has kNone as its first corner
+  std::vector<Index> twin_, outgoing_, valence_;
+  std::vector<std::uint8_t> locked_;  ///< bytes, since blocks write side by side
+  CollapseHistory history_;
+};
+
+/// `inside`: whether all of it is in the range.
+Star Sweeps::star_of(Index v, const Range& range) const {
+  Star star;
+  for_each_outgoing(v, [&](Index h) {
+    const Index u = target(h);
+    star.inside = star.inside && range.has(u);
+    star.halfedge[star.count] = h;
+    star.ring[star.count++] = u;
+  });
+  return star;
+}
+
+/// Of the collapses onto each vertex of the ring.
+std::array<double, kMostFaces> Sweeps::costs_of(Index v, const Star& star) const {
+  std::array<Vec3, kMostFaces> offset;
+  for (int k = 0; k < star.count; ++k) offset[k] = position(star.ring[k]) - position(v);
+  Quadric quadric;
+  for (int k = 0; k < star.count; ++k) {
+    const Vec3 normal = offset[k].cross(offset[k + 1 == star.count ? 0 : k + 1]);
+    const double twice_area = normal.norm();
+    if (twice_area > 0) quadric.add_plane(normal / twice_area, 0.5 * twice_area);
+  }
+  const double evenness = kEvenness * quadric.weight();
+  std::array<double, kMostFaces> costs;
+  for (int k = 0; k < star.count; ++k) {
+    costs[k] = std::max(0.0, quadric.change(offset[k])) + evenness * offset[k].squaredNorm();
+  }
+  return costs;
+}
+
+double Sweeps::cheap_enough() const {
+  const Range all{0, size_of(outgoing_)};
+  std::vector<double> least;
+  for (Index v = 0; v < all.end; v += 1 + all.end / kSample) {
+    if (!may_go(v)) continue;
+    const Star star = star_of(v, all);
+    const auto costs = costs_of(v, star);
+    least.push_back(*std::min_element(costs.begin(), costs.begin() + star.count));
+  }
+  if (least.empty()) return -1;
+  const auto limit =
+      least.begin() + static_cast<std::ptrdiff_t>(kCheapShare * (size_of(least) - 1));
+  std::nth_element(least.begin(), limit, least.end());
+  return *limit;
+}
+
+/// The link condition, and no vertex of too few faces.
+bool Sweeps::keeps_topology(Index v, const Star& star, int k) const {
+  const Index h = star.halfedge[k], w = star.ring[k];
+  for (const Index a : {apex(h), apex(twin_[h])}) {
+    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return false;
+  }
+  if (valence_[v] + valence_[w] - 4 < 3) return false;
+  int common = 0;
+  for_each_outgoing(w, [&](Index g) { common += star.has(target(g)) ? 1 : 0; });
+  return common == 2;
+}
+
+bool Sweeps::reaches_out(Index v, const Range& range) const {
+  bool inside = true;
+  for_each_outgoing(v, [&](Index h) { inside = inside && range.has(target(h)); });
+  return !inside;
+}
+
+/// Onto ring[k] of the star of v.
+void Sweeps::collapse(Index v, const Star& star, int k, CollapseHistory& history) {
+  const Index h = star.halfedge[k], t = twin_[h], w = star.ring[k];
+  const std::array<Index, 2> apexes{apex(h), apex(t)};
+  history.steps.push_back({v, w, apexes, size_of(history.renamed)});
+  for (int i = 0; i < star.count; ++i) {
+    const Index u = star.ring[i];
+    if (u != w && u != apexes[0] && u != apexes[1]) history.renamed.push_back(u);
+    const Index g = star.halfedge[i];
+    faces_[g / 3][g % 3] = w;
+  }
+  // The two other sides of each face that goes become one edge, of w and its apex. Neither of them
+  // is on the boundary, since v and w are not.
+  for (const Index side : {h, t}) {
+    const Index at_apex = twin_[Surface::next(side)], at_w = twin_[Surface::previous(side)];
+    twin_[at_apex] = at_w;
+    twin_[at_w] = at_apex;
+    const Index a = side == h ? apexes[0] : apexes[1];
+    if (!fine_.on_boundary[a]) outgoing_[a] = at_apex;  // else the first one is still there
+    outgoing_[w] = at_w;
+    --valence_[a];
+    faces_[side / 3][0] = kNone;
+  }
+  valence_[w] += valence_[v] - 4;
+  outgoing_[v] = kNone;
+  locked_[v] = locked_[w] = true;
+}
+
+/// Whether it has been dealt with: not so where it reaches out of the range.
+bool Sweeps::try_vertex(Index v, double max_cost, const Range& range, Collapses& done) {
+  const Star star = star_of(v, range);
+  // Not even a look at what another thread may be changing.
+  if (!star.inside) return false;
+  auto costs = costs_of(v, star);
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    int best = -1;
+    for (int k = 0; k < star.count; ++k) {
+      const Index w = star.ring[k];
+      if (costs[k] > max_cost || locked_[w] || !may_go(w)) continue;
+      const bool is_less =
+          best < 0 || (costs[k] != costs[best] ? costs[k] < costs[best] : w < star.ring[best]);
+      if (is_less) best = k;
+    }
+    if (best < 0) return true;
+    const Index w = star.ring[best];
+    if (reaches_out(w, range)) return false;
+    if (keeps_topology(v, star, best) && keeps_shape(*this, v, w, kShapeLimits[0])) {
+      collapse(v, star, best, done.history);
+      ++done.count;
+      return true;
+    }
+    costs[best] = std::numeric_limits<double>::infinity();
+  }
+  return true;
+}
+
+Index Sweeps::sweep(const Work& work) {
+  const double max_cost = cheap_enough();
+  std::fill(locked_.begin(), locked_.end(), false);
+  const Index count = size_of(outgoing_), blocks = (count + kBlock - 1) / kBlock;
+  std::vector<Collapses> of_block(blocks);
+  parallel_for(work, blocks, 1, [&](std::int64_t block, std::int64_t) {
+    Collapses& done = of_block[block];
+    const auto begin = static_cast<Index>(block) * kBlock;
+    const Range range{begin, std::min(begin + kBlock, count)};
+    for (Index v = range.begin; v < range.end; ++v) {
+      if (!may_go(v) || locked_[v]) continue;
+      if (!try_vertex(v, max_cost, range, done)) done.reaching_out.push_back(v);
+    }
+  });
+  Collapses rest;
+  for (const Collapses& done : of_block) {
+    rest.count += done.count;
+    history_.append(done.history);
+  }
+  PollSometimes poll;
+  for (const Collapses& done : of_block) {
+    for (const Index v : done.reaching_out) {
+      poll();
+      if (may_go(v) && !locked_[v]) try_vertex(v, max_cost, {0, count}, rest);
+    }
+  }
+  history_.append(rest.history);
+  return rest.count;
+}
+
+/// What is left, numbered anew.
+CoarseSurface Sweeps::result(const Work& work) {
+  CoarseSurface coarse;
+  Surface& mesh = coarse.mesh;
+  coarse.fine_vertex = parallel_filter(work, size_of(outgoing_), kGrain,
+                                       [&](Index v) { return outgoing_[v] != kNone; });
+  coarse.fine_face = parallel_filter(work, size_of(faces_), kGrain,
+                                     [&](Index f) { return faces_[f][0] != kNone; });
+  std::vector<Index> vertex(outgoing_.size()), face(faces_.size());
+  for (std::size_t v = 0; v < coarse.fine_vertex.size(); ++v) {
+    vertex[coarse.fine_vertex[v]] = static_cast<Index>(v);
+  }
+  for (std::size_t f = 0; f < coarse.fine_face.size(); ++f) {
+    face[coarse.fine_face[f]] = static_cast<Index>(f);
+  }
+  const auto halfedge = [&](Index h) { return h == kNone ? kNone : 3 * face[h / 3] + h % 3; };
+  for (const Index v : coarse.fine_vertex) {
+    mesh.positions.push_back(fine_.positions[v]);
+    mesh.outgoing.push_back(halfedge(outgoing_[v]));
+    mesh.on_boundary.push_back(fine_.on_boundary[v]);
+  }
+  for (const Index f : coarse.fine_face) {
+    const auto [a, b, c] = faces_[f];
+    mesh.faces.push_back({vertex[a], vertex[b], vertex[c]});
+    for (int k = 0; k < 3; ++k) mesh.twin.push_back(halfedge(twin_[3 * f + k]));
+  }
+  coarse.history = std::move(history_);
+  return coarse;
+}
+
+}  // namespace
+
+CoarseSurface sweep_surface(const Surface& fine, Index target_faces, const Work& work) {
+  Sweeps sweeps(fine);
+  Index faces = fine.face_count();
+  while (faces > target_faces) {
+    work.report(double(fine.face_count() - faces) / double(fine.face_count() - target_faces));
+    const Index gone = 2 * sweeps.sweep(work);
+    faces -= gone;
+    if (gone < kWorthSweep * faces) break;
+  }
+  return sweeps.result(work);
+}
+
+}  // namespace beltrami
