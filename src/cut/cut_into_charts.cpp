@@ -1,6 +1,5 @@
 #include "cut/cut_into_charts.h"
 
-#include <cstdint>
 #include <utility>
 
 #include "base/grouping.h"
@@ -11,8 +10,6 @@
 
 namespace beltrami {
 namespace {
-
-constexpr std::int64_t kGrain = 16384;
 
 /// Component `c` of the surface on its own: a disk. Its order is that of the surface.
 Chart extract(const SplitSurface& cut, const Grouping& vertices, const Grouping& faces, Index c,
@@ -40,21 +37,10 @@ Chart extract(const SplitSurface& cut, const Grouping& vertices, const Grouping&
   return chart;
 }
 
-/// The surface with the sides of its marked edges apart.
-SplitSurface cut_open(const Surface& surface, const EdgeMarks& marks, const Work& work) {
-  std::vector<Index> twin = surface.twin;
-  parallel_for(work, size_of(twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t h = begin; h < end; ++h) {
-      if (marks[h]) twin[h] = kNone;
-    }
-  });
-  return split_fans(surface.positions, surface.faces, twin, work);
-}
-
 }  // namespace
 
 CutSurface cut_into_charts(const Surface& surface, const EdgeMarks& marks, const Work& work) {
-  const SplitSurface cut = cut_open(surface, marks, work);
+  const SplitSurface cut = split_along(surface, marks, work);
   const Topology topology = topology_of(cut.surface, work);
   const Index components = size_of(topology.components);
   const std::vector<Index>& component_of = topology.component_of_face;

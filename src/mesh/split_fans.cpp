@@ -54,6 +54,47 @@ std::vector<Index> by_vertex(const Fans& fans, Index vertex_count, const Work& w
   return number;
 }
 
+/// Fills `outgoing` and `on_boundary` of a surface whose twins are known.
+void link_vertices(Surface& surface) {
+  surface.outgoing.assign(surface.positions.size(), kNone);
+  surface.on_boundary.assign(surface.positions.size(), false);
+  for (Index h = 0; h < size_of(surface.twin); ++h) {
+    const Index v = surface.origin(h);
+    // On the boundary the one whose own edge lies there, else the least.
+    if (surface.twin[h] == kNone) {
+      surface.outgoing[v] = h;
+      surface.on_boundary[v] = true;
+    } else if (surface.outgoing[v] == kNone) {
+      surface.outgoing[v] = h;
+    }
+  }
+}
+
+/// Positions and faces alone.
+SplitSurface numbered_by_fan(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                             const std::vector<Index>& twin, const Work& work) {
+  const Fans fans = walk_fans(faces, twin);
+  const std::vector<Index> number = by_vertex(fans, size_of(positions), work);
+  SplitSurface split;
+  split.vertex.resize(number.size());
+  std::vector<Vec3>& places = split.surface.positions;
+  places.resize(number.size());
+  parallel_for(work, size_of(number), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t fan = begin; fan < end; ++fan) {
+      split.vertex[number[fan]] = fans.vertex[fan];
+      places[number[fan]] = positions[fans.vertex[fan]];
+    }
+  });
+  std::vector<Triangle>& renumbered = split.surface.faces;
+  renumbered.resize(faces.size());
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (int k = 0; k < 3; ++k) renumbered[f][k] = number[fans.of_corner[3 * f + k]];
+    }
+  });
+  return split;
+}
+
 }  // namespace
 
 void part_double_edges(const std::vector<Triangle>& faces, std::vector<Index>& twin) {
@@ -83,24 +124,29 @@ void part_double_edges(const std::vector<Triangle>& faces, std::vector<Index>& t
 
 SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         const std::vector<Index>& twin, const Work& work) {
-  const Fans fans = walk_fans(faces, twin);
-  const std::vector<Index> number = by_vertex(fans, size_of(positions), work);
-  SplitSurface split;
-  split.vertex.resize(number.size());
-  std::vector<Vec3> places(number.size());
-  parallel_for(work, size_of(number), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t fan = begin; fan < end; ++fan) {
-      split.vertex[number[fan]] = fans.vertex[fan];
-      places[number[fan]] = positions[fans.vertex[fan]];
+  SplitSurface split = numbered_by_fan(positions, faces, twin, work);
+  Surface& own = split.surface;
+  own = build_surface(std::move(own.positions), std::move(own.faces), work);
+  return split;
+}
+
+SplitSurface split_along(const Surface& surface, const std::vector<bool>& apart, const Work& work) {
+  std::vector<Index> twin = surface.twin;
+  parallel_for(work, size_of(twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t h = begin; h < end; ++h) {
+      if (apart[h]) twin[h] = kNone;
     }
   });
-  std::vector<Triangle> renumbered(faces.size());
-  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      for (int k = 0; k < 3; ++k) renumbered[f][k] = number[fans.of_corner[3 * f + k]];
-    }
-  });
-  split.surface = build_surface(std::move(places), std::move(renumbered), work);
+  SplitSurface split = numbered_by_fan(surface.positions, surface.faces, twin, work);
+  Surface& own = split.surface;
+  // An edge whose sides have the same ends still is no opening.
+  for (Index h = 0; h < size_of(twin); ++h) {
+    const Index other = surface.twin[h];
+    if (!apart[h] || other == kNone) continue;
+    if (own.origin(h) == own.target(other) && own.target(h) == own.origin(other)) twin[h] = other;
+  }
+  own.twin = std::move(twin);
+  link_vertices(own);
   return split;
 }
 

@@ -28,4 +28,7 @@ void part_double_edges(const std::vector<Triangle>& faces, std::vector<Index>& t
 SplitSurface split_fans(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         const std::vector<Index>& twin, const Work& work);
 
+/// What split_fans makes of a surface whose edges `apart`, per half-edge, are not glued.
+SplitSurface split_along(const Surface& surface, const std::vector<bool>& apart, const Work& work);
+
 }  // namespace beltrami

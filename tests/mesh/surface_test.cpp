@@ -143,5 +143,29 @@ TEST(SplitFans, ClosesASlitOfOneEdge) {
   EXPECT_EQ(split.surface.twin[h], other);
 }
 
+TEST(SplitAlong, GivesTheSurfaceThatSplitFansBuilds) {
+  for (const TriangleList& mesh : {meshes::torus(8), meshes::grid(6, 5), meshes::octahedron()}) {
+    const Surface surface = built(mesh);
+    // Slits of one edge, openings and pieces of their own among them.
+    for (const Index every : {1, 2, 3, 7, 20}) {
+      std::vector<bool> apart(surface.twin.size(), false);
+      std::vector<Index> twin = surface.twin;
+      for (Index h = 0; h < size_of(twin); ++h) {
+        if (surface.edge(h) % every != 0) continue;
+        apart[h] = true;
+        twin[h] = kNone;
+      }
+      const SplitSurface one = split_along(surface, apart, Work(1)),
+                         other = split_fans(mesh.positions, mesh.faces, twin, Work(1));
+      EXPECT_EQ(one.vertex, other.vertex);
+      EXPECT_EQ(one.surface.positions, other.surface.positions);
+      EXPECT_EQ(one.surface.faces, other.surface.faces);
+      EXPECT_EQ(one.surface.twin, other.surface.twin);
+      EXPECT_EQ(one.surface.outgoing, other.surface.outgoing);
+      EXPECT_EQ(one.surface.on_boundary, other.surface.on_boundary);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace beltrami
