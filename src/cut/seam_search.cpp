@@ -65,12 +65,13 @@ void SeamSearch::take(EdgeMarks seams) {
   seams_ = std::move(seams);
   paths_.reset();
   std::fill(degree_.begin(), degree_.end(), 0);
-  cost_of_seams_ = 0;
+  cost_of_seams_ = length_of_seams_ = 0;
   for (Index h = 0; h < size_of(seams_); ++h) {
     if (!seams_[h] || surface_.edge(h) != h) continue;
     ++degree_[surface_.origin(h)];
     ++degree_[surface_.target(h)];
     cost_of_seams_ += cost_[h];
+    length_of_seams_ += length_of(h);
   }
   refresh();
 }
@@ -83,6 +84,7 @@ void SeamSearch::mark(Index halfedge, bool is) {
   degree_[surface_.origin(halfedge)] += change;
   degree_[surface_.target(halfedge)] += change;
   cost_of_seams_ += change * cost_[halfedge];
+  length_of_seams_ += change * length_of(halfedge);
 }
 
 void SeamSearch::refresh() {
@@ -125,18 +127,16 @@ std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
   return apart;
 }
 
+double SeamSearch::length_of(Index halfedge) const {
+  const std::vector<Vec3>& p = surface_.positions;
+  return (p[surface_.target(halfedge)] - p[surface_.origin(halfedge)]).norm();
+}
+
 /// Whether the seams stay within their budget with a path.
 bool SeamSearch::affords(const SeamPath& path) const {
   if (budget_ == 0) return true;
-  double length = 0;
-  const auto add = [&](Index h) {
-    const std::vector<Vec3>& p = surface_.positions;
-    length += (p[surface_.target(h)] - p[surface_.origin(h)]).norm();
-  };
-  for (Index h = 0; h < size_of(seams_); ++h) {
-    if (seams_[h] && surface_.edge(h) == h) add(h);
-  }
-  for (const Index h : path.halfedges) add(h);
+  double length = length_of_seams_;
+  for (const Index h : path.halfedges) length += length_of(h);
   return length <= budget_;
 }
 

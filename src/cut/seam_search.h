@@ -67,6 +67,7 @@ class SeamSearch {
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
   bool extend_once();
+  double length_of(Index halfedge) const;
   bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs() const;
   std::vector<bool> joined_to(Index vertex) const;
@@ -90,7 +91,7 @@ class SeamSearch {
   double scale_;                    ///< root of the area
   double budget_;                   ///< of length
   double least_cost_;
-  double cost_of_seams_ = 0;
+  double cost_of_seams_ = 0, length_of_seams_ = 0;
 };
 
 }  // namespace beltrami
