@@ -39,7 +39,8 @@ struct AdmitCounts {
 };
 
 /// The input as a surface. Corner k of its face f is corner input_corner(f, k) of the face
-/// input_face[f] of the input.
+/// input_face[f] of the input. `admit` leaves its vertices and faces in the order of the input's;
+/// they may be renumbered after it.
 struct Admitted {
   /// A face with the vertices of another one.
   struct Copy {
@@ -48,8 +49,8 @@ struct Admitted {
 
   Surface surface;  ///< its vertices are fans of corners; all are used
   Topology topology;
-  std::vector<Index> input_vertex;  ///< per vertex, the least of those welded, increasing
-  std::vector<Index> input_face;    ///< per face, increasing
+  std::vector<Index> input_vertex;  ///< per vertex, the least of those welded
+  std::vector<Index> input_face;    ///< per face
   std::vector<bool> reversed;       ///< per face of the surface
   std::vector<Index> set_aside;     ///< faces without area, which the surface lacks, increasing
   std::vector<Copy> copies;         ///< by their face

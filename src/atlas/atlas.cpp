@@ -326,6 +326,12 @@ bool misses(double energy, double target) {
   return target > 0 && energy > target + kMissed;
 }
 
+/// The excess over 2 by that which is asked for, of the mean or of the percentile.
+double excess_of(const AtlasEnergy& energy, const SeamTarget& target) {
+  const double mean = (energy.symmetric_dirichlet - 2) / (target.energy - 2);
+  return target.p99 > 0 ? std::max(mean, (energy.p99 - 2) / (target.p99 - 2)) : mean;
+}
+
 /// The target at which coarse maps would leave fine ones the energy that is asked for, if what
 /// these have more stays; none where that is met, or where a cut cannot bring it.
 std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const Mapped& mapped) {
@@ -355,7 +361,8 @@ Mapped open_and_map_to_target(const AtlasInput& input, const Admitted& admitted,
   const std::optional<SeamTarget> lower = aimed_lower(*options.target, mapped);
   if (!lower || work.out_of_time()) return mapped;
   Mapped again = run(lower, work.part(kFirstTry, 1));
-  const bool is_better = again.energy.symmetric_dirichlet < mapped.energy.symmetric_dirichlet;
+  const bool is_better =
+      excess_of(again.energy, *options.target) < excess_of(mapped.energy, *options.target);
   return is_better ? std::move(again) : std::move(mapped);
 }
 
