@@ -18,6 +18,7 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/rest_shape.h"
+#include "simplify/replay.h"
 
 namespace beltrami {
 namespace {
@@ -50,15 +51,16 @@ std::vector<Vec2> unfolded(const Chart& chart, const Work& work) {
   return uvs;
 }
 
+Vec2 scaled(const Vec2& w, int exponent) {
+  return {std::ldexp(w.x(), exponent), std::ldexp(w.y(), exponent)};
+}
+
 /// Holds the pins of a map of the disk, whose vertex i is order[i] of the chart.
 void hold(const DiskMesh& disk, const Normalisation& frame, const std::vector<Index>& order,
           const std::vector<ChartPin>& pins, const ChartOptions& options, const Work& work,
           MappedChart& map) {
   std::vector<Index> place_of(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = static_cast<Index>(i);
-  const auto scaled = [](const Vec2& w, int exponent) {
-    return Vec2(std::ldexp(w.x(), exponent), std::ldexp(w.y(), exponent));
-  };
   std::vector<Vec2> free;
   free.reserve(order.size());
   for (const Index v : order) free.push_back(scaled(map.uvs[v], frame.exponent));
@@ -78,18 +80,57 @@ void hold(const DiskMesh& disk, const Normalisation& frame, const std::vector<In
   if (!held.converged) map.outcome = std::max(map.outcome, Outcome::kNotConverged);
 }
 
-MappedChart flattened(const Chart& chart, const std::vector<ChartPin>& pins,
+/// A chart whose neighbours lie close in memory: vertex i is order[i] of it.
+struct ArrangedChart {
+  DiskMesh disk;
+  std::vector<Index> order;
+};
+
+ArrangedChart arranged(const AtlasChart& part, const Work& work) {
+  const DiskMesh& mesh = part.chart.mesh;
+  ArrangedChart chart;
+  if (!part.collapsed_into.empty()) {
+    // So large a surface has been arranged as a whole.
+    chart.disk = mesh;
+    chart.order.resize(mesh.positions.size());
+    std::iota(chart.order.begin(), chart.order.end(), 0);
+    return chart;
+  }
+  std::vector<Triangle> faces = mesh.faces;
+  chart.order = arrange(mesh.positions, faces, work).vertices;
+  chart.disk = build_disk(in_order(mesh.positions, chart.order, work), std::move(faces), work);
+  return chart;
+}
+
+/// What the chart inherits, for the disk whose vertex i is order[i] of it.
+Inherited inherited_by(const DiskMesh& disk, const Normalisation& frame,
+                       const std::vector<Index>& order, const AtlasChart& part, const Work& work) {
+  Inherited inherited;
+  if (!part.local_map.empty()) {
+    for (const Index v : order) {
+      inherited.start.push_back(scaled(part.local_map[v], frame.exponent));
+    }
+  }
+  if (part.collapsed_into.empty()) return inherited;
+  std::vector<Index> place_of(order.size()), into;
+  for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = static_cast<Index>(i);
+  for (const Index v : order) into.push_back(place_of[part.collapsed_into[v]]);
+  inherited.level = collapsed_disk(disk, std::move(into), work);
+  return inherited;
+}
+
+MappedChart flattened(const AtlasChart& part, const std::vector<ChartPin>& pins,
                       const ChartOptions& options, const Work& work) {
-  std::vector<Triangle> faces = chart.mesh.faces;
-  const std::vector<Index> order = arrange(chart.mesh.positions, faces, work).vertices;
-  DiskMesh disk = build_disk(in_order(chart.mesh.positions, order, work), std::move(faces), work);
+  const Chart& chart = part.chart;
+  auto [disk, order] = arranged(part, work);
   const Normalisation frame = normalise(disk.positions, disk.faces, work);
   const double free = pins.empty() ? 1 : kFree;
   MappedChart map;
   if (disk.face_count() <= kFewFaces) {
     map.uvs = unfolded(chart, work);
   } else {
-    const Flattening result = flatten(disk, frame, options, work.part(0, free));
+    const Inherited inherited = inherited_by(disk, frame, order, part, work);
+    const Flattening result = flatten(disk, frame, inherited, options, work.part(0, free));
     map.outcome = result.status;
     map.uvs.resize(result.uvs.size());
     for (std::size_t i = 0; i < result.uvs.size(); ++i) map.uvs[order[i]] = result.uvs[i];
@@ -98,13 +139,14 @@ MappedChart flattened(const Chart& chart, const std::vector<ChartPin>& pins,
   return map;
 }
 
-MappedChart map_chart(const Chart& chart, const std::vector<ChartPin>& pins,
+MappedChart map_chart(const AtlasChart& part, const std::vector<ChartPin>& pins,
                       const ChartOptions& options, const Work& work) {
+  const Chart& chart = part.chart;
   MappedChart map;
   try {
     map = chart.mesh.face_count() <= kFewFaces && pins.empty()
               ? MappedChart{unfolded(chart, work)}
-              : flattened(chart, pins, options, work);
+              : flattened(part, pins, options, work);
   } catch (const Error& error) {
     map = {std::vector<Vec2>(chart.mesh.positions.size(), Vec2::Zero()), Outcome::kNotInjective,
            error.fault()};
@@ -172,7 +214,7 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts, const
   };
   for (; large < size_of(order) && is_large(order[large]); ++large) {
     const Index c = order[large];
-    maps[c] = map_chart(charts[c].chart, pins_of(c), options,
+    maps[c] = map_chart(charts[c], pins_of(c), options,
                         work.part(share(mapped), share(mapped + faces(c))));
     mapped += faces(c);
   }
@@ -181,7 +223,7 @@ std::vector<MappedChart> map_charts(const std::vector<AtlasChart>& charts, const
   const Work aside = work.aside();
   parallel_for(work, size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
     const Index c = order[large + i];
-    maps[c] = map_chart(charts[c].chart, pins_of(c), options, aside);
+    maps[c] = map_chart(charts[c], pins_of(c), options, aside);
     done += faces(c);
     if (std::this_thread::get_id() == caller) work.report(share(done));
   });

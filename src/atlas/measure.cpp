@@ -109,9 +109,10 @@ double seam_length(const std::vector<AtlasChart>& charts, const std::vector<Inde
   };
   std::vector<Side> sides;
   PollSometimes poll;
-  for (const auto& [chart, real_faces] : charts) {
+  for (const AtlasChart& part : charts) {
+    const Chart& chart = part.chart;
     const DiskMesh& mesh = chart.mesh;
-    for (Index h = 0; h < 3 * real_faces; ++h) {
+    for (Index h = 0; h < 3 * part.real_faces; ++h) {
       poll();
       if (mesh.twin[h] != kNone) continue;
       const Index from = mesh.origin(h), to = mesh.target(h);

@@ -8,17 +8,25 @@
 
 #include "admit/fill.h"
 #include "base/error.h"
+#include "chart/fine_problem.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
 #include "mesh/split_fans.h"
 #include "mesh/surface.h"
+#include "simplify/replay.h"
 
 namespace beltrami {
 namespace {
 
 // Where the stages end in the progress.
 constexpr double kParted = 0.2, kFilled = 0.3, kOpened = 0.7;
+
+/// A chart inherits a level of so many times the faces of its coarse mesh: how the surface spread
+/// its faces over charts is not how their own meshes will.
+constexpr double kLevel = 4;
+/// Above this share of the faces of a chart it is simplified from the start.
+constexpr double kWorthInheriting = 0.5;
 
 /// Whether an edge lies inside a polygon: not where a side of it meets another side of the same.
 bool is_inside(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin) {
@@ -128,6 +136,41 @@ EdgeMarks opened_further(const Surface& surface, EdgeMarks marks, const EdgeMark
   return marks;
 }
 
+/// Per chart, what collapses of the surface leave to be done: per vertex the next one on its way,
+/// or itself. Of each chart so many are done again that it keeps more faces than its coarse mesh is
+/// to have. Empty for charts that would gain little, and in all where there is no history.
+std::vector<std::vector<Index>> inherited_collapses(const Surface& surface,
+                                                    const std::vector<Chart>& charts,
+                                                    const CollapseHistory& history) {
+  if (history.steps.empty()) return {};
+  std::vector<bool> kept(surface.positions.size(), false);
+  for (const Chart& chart : charts) {
+    for (std::size_t v = 0; v < chart.input_vertex.size(); ++v) {
+      if (chart.mesh.on_boundary[v]) kept[chart.input_vertex[v]] = true;
+    }
+  }
+  const std::vector<Index> step_of = repeatable_steps(history, kept);
+  std::vector<std::vector<Index>> collapsed(charts.size());
+  std::vector<Index> in_chart(kept.size());  // of what is inside, which has one vertex in one chart
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    const Chart& chart = charts[c];
+    const Index faces = chart.mesh.face_count();
+    const double share = kLevel * coarse_faces(faces, 0) / faces;
+    if (share > kWorthInheriting) continue;
+    // A collapse takes two faces.
+    const auto steps = static_cast<Index>((1 - share) * surface.face_count() / 2);
+    for (Index v = 0; v < size_of(chart.input_vertex); ++v) in_chart[chart.input_vertex[v]] = v;
+    std::vector<Index>& into = collapsed[c];
+    into.resize(chart.input_vertex.size());
+    for (Index v = 0; v < size_of(into); ++v) {
+      const Index step = step_of[chart.input_vertex[v]];
+      const bool goes = step != kNone && step < steps;
+      into[v] = goes ? in_chart[history.steps[step].target] : v;
+    }
+  }
+  return collapsed;
+}
+
 }  // namespace
 
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
@@ -158,15 +201,16 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
   const EdgeMarks locked = locked_edges(filled, admitted, polygons);
   OpenedSurface opened;
   CutSurface cut;
+  SearchedSeams found;
   if (target) {
     std::vector<Index> vertices(filled.real_vertices);
     for (Index v = 0; v < filled.real_vertices; ++v) vertices[v] = admitted.input_vertex[input(v)];
-    const SearchedSeams found =
-        search_seams(filled.surface, filled.real_faces, topology, locked, *target, weights,
-                     hints_for(filled, vertices, admitted, hints), work.part(kFilled, kOpened));
+    found = search_seams(filled.surface, filled.real_faces, topology, locked, *target, weights,
+                         hints_for(filled, vertices, admitted, hints), work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
     if (!cut.non_disks.empty()) {
+      found.maps.clear();
       cut = cut_into_charts(filled.surface,
                             opened_further(filled.surface, found.seams, locked, work), work);
     }
@@ -179,12 +223,17 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
     throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
   }
   opened.filled_holes = filled.filled_loops;
-  for (Chart& chart : cut.charts) {
+  std::vector<std::vector<Index>> collapsed =
+      inherited_collapses(filled.surface, cut.charts, found.history);
+  for (std::size_t c = 0; c < cut.charts.size(); ++c) {
+    Chart& chart = cut.charts[c];
     const auto first_virtual =
         std::lower_bound(chart.input_face.begin(), chart.input_face.end(), filled.real_faces);
     const auto real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
     for (Index& v : chart.input_vertex) v = v < filled.real_vertices ? input(v) : kNone;
     opened.charts.push_back({std::move(chart), real_faces});
+    if (!collapsed.empty()) opened.charts.back().collapsed_into = std::move(collapsed[c]);
+    if (!found.maps.empty()) opened.charts.back().local_map = std::move(found.maps[c]);
   }
   sort_by_first_face(admitted, opened.charts);
   return opened;

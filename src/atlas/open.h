@@ -21,6 +21,12 @@ namespace beltrami {
 struct AtlasChart {
   Chart chart;           ///< of vertices and faces of the surface, the virtual ones at the end
   Index real_faces = 0;  ///< the first ones
+  /// Where the surface was simplified to find its seams, what of it the chart inherits: per vertex
+  /// the next one on its way (see collapsed_disk), or itself; else empty.
+  std::vector<Index> collapsed_into = {};
+  /// Where seams were found on the surface itself, the map that they were judged by: one UV per
+  /// vertex, in the unit of the surface; else empty.
+  std::vector<Vec2> local_map = {};
 };
 
 /// What draws seams that are searched for, as SeamHints has it: of the input's vertices and faces,

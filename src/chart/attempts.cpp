@@ -20,11 +20,11 @@ namespace {
 // Shares of the progress: of the method, and where it is refined, which takes most of the time.
 constexpr double kMethod = 0.98, kMethodToRefine = 0.3;
 
-ChartMap run_method(const DiskMesh& mesh, Index coarse, const ChartOptions& options,
-                    const Work& work) {
+ChartMap run_method(const DiskMesh& mesh, Index coarse, const Inherited& inherited,
+                    const ChartOptions& options, const Work& work) {
   switch (options.method) {
     case Method::kCm:
-      return cm_mode(mesh, "cm", options, work);
+      return cm_mode(mesh, "cm", {}, options, work);
     case Method::kTutte:
       return tutte_mode(mesh, options, work);
     case Method::kGif:
@@ -33,7 +33,7 @@ ChartMap run_method(const DiskMesh& mesh, Index coarse, const ChartOptions& opti
     case Method::kUvProlongation:
       return uv_prolongation_mode(mesh, coarse, options, work);
     default:
-      return beltrami_mode(mesh, coarse, options, work);
+      return beltrami_mode(mesh, coarse, inherited, options, work);
   }
 }
 
@@ -123,10 +123,12 @@ Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std
   return {*std::move(best), tried - 1};
 }
 
-Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const ChartOptions& options,
-                 const Work& work) {
+Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const Inherited& inherited,
+                 const ChartOptions& options, const Work& work) {
   const auto method = [&](Index coarse) {
-    return [&, coarse](const Work& share) { return run_method(mesh, coarse, options, share); };
+    return [&, coarse](const Work& share) {
+      return run_method(mesh, coarse, inherited, options, share);
+    };
   };
   const Index asked_for = coarse_faces(mesh.face_count(), options.coarse_faces);
   std::vector<Way> ways = {{method(asked_for)}};

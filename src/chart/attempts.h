@@ -9,6 +9,7 @@
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/delivery.h"
+#include "chart/inherited.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
 
@@ -46,7 +47,7 @@ Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std
 /// and with the usual one if a coarser one was asked for; and at last embeddings of the fine mesh:
 /// Tutte's, then one that cannot fold. When the time is up, these alone are left. Throws Error
 /// SOLVER for the method GIF: it asks for another one, with the reason.
-Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const ChartOptions& options,
-                 const Work& work);
+Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const Inherited& inherited,
+                 const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

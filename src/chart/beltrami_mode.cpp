@@ -35,13 +35,15 @@ ChartMap flatten_fine(const FineProblem& fine, const ChartOptions& options, cons
 
 }  // namespace
 
-ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const ChartOptions& options,
-                       const Work& work) {
-  if (coarse_faces >= mesh.face_count()) return cm_mode(mesh, "coarse", options, work);
+ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited& inherited,
+                       const ChartOptions& options, const Work& work) {
+  if (coarse_faces >= mesh.face_count()) {
+    return cm_mode(mesh, "coarse", inherited.start, options, work);
+  }
   FineProblem fine{.mesh = &mesh};
-  simplify_fine(coarse_faces, work.part(0, kSimplified), fine);
+  simplify_fine(coarse_faces, inherited.level, work.part(0, kSimplified), fine);
   if (fine.coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) {
-    return joined(std::move(fine), cm_mode(mesh, "coarse", options, work.part(kSimplified, 1)));
+    return joined(std::move(fine), cm_mode(mesh, "coarse", {}, options, work.part(kSimplified, 1)));
   }
   solve_coarse(options, work.part(kSimplified, kSolved), fine);
   // The metric solve brings its own weights.

@@ -1,5 +1,7 @@
 // Composite majorization on a whole mesh: the method cm, and the coarse map of the others.
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/types.h"
 #include "base/work.h"
@@ -12,6 +14,7 @@
 #include "chart/starts.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -21,6 +24,20 @@ namespace {
 
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
 constexpr double kHopelessEnergy = 1e3;
+
+/// From a map that is near its minimum; nothing where it cannot serve.
+std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
+                                     const ChartOptions& options, const Work& work) {
+  if (start.empty() || !non_positive_faces(mesh.faces, start, work).empty()) return std::nullopt;
+  const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
+  NewtonOptions newton = newton_options(options);
+  newton.proxy_steps = 0;
+  Descent done = descend_led(mesh, rest, start, newton, work);
+  const bool is_simple =
+      !keeps_boundary_simple(options) || find_crossings(mesh.boundary, done.uvs).empty();
+  if (!is_simple || !(done.energy <= kHopelessEnergy)) return std::nullopt;
+  return done;
+}
 
 }  // namespace
 
@@ -59,11 +76,13 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   return again.energy < best.energy ? again : best;
 }
 
-ChartMap cm_mode(const DiskMesh& mesh, const char* name, const ChartOptions& options,
-                 const Work& work) {
+ChartMap cm_mode(const DiskMesh& mesh, const char* name, const std::vector<Vec2>& start,
+                 const ChartOptions& options, const Work& work) {
   ChartMap map;
   run_stage(name, work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
-    Descent done = minimise_from_scratch(mesh, options.tolerance, options, inner);
+    std::optional<Descent> from_start = minimise_from(mesh, start, options, inner);
+    Descent done = from_start ? *std::move(from_start)
+                              : minimise_from_scratch(mesh, options.tolerance, options, inner);
     stage.iterations = done.iterations;
     map.uvs = std::move(done.uvs);
     map.converged = done.converged;

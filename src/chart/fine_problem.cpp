@@ -9,6 +9,7 @@
 #include "flatten/intrinsic_delaunay.h"
 #include "repair/outliers.h"
 #include "repair/repair.h"
+#include "simplify/replay.h"
 
 namespace beltrami {
 namespace {
@@ -18,6 +19,8 @@ constexpr double kCoarseShare = 0.01;
 /// Times the tolerance, for the coarse mesh: steps are cheap there, and how a map spreads its
 /// distortion over the whole is what polishing the fine one hardly changes.
 constexpr double kCoarseTolerance = 0.1;
+/// What a level has of the faces of the coarse mesh at least: a part of it is as coarse as that.
+constexpr Index kLeastLevel = 2;
 /// Bytes per fine vertex of the simplifier's surface and its candidates, measured.
 constexpr double kSimplify = 225;
 
@@ -48,9 +51,12 @@ Index coarse_faces(Index faces, std::int64_t asked) {
   return static_cast<Index>(std::min<std::int64_t>(target, faces));
 }
 
-void simplify_fine(Index target, const Work& work, FineProblem& fine) {
+void simplify_fine(Index target, const std::optional<CoarseDisk>& level, const Work& work,
+                   FineProblem& fine) {
   run_stage("simplify", work, fine.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    fine.coarse = simplify(*fine.mesh, target, inner);
+    const bool goes_on = level && level->mesh.face_count() >= kLeastLevel * target;
+    fine.coarse =
+        goes_on ? simplify_further(*level, target, inner) : simplify(*fine.mesh, target, inner);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/types.h"
@@ -36,8 +37,10 @@ struct FineProblem {
 /// and no more than it has.
 Index coarse_faces(Index faces, std::int64_t asked);
 
-/// The stage "simplify", to `target` faces.
-void simplify_fine(Index target, const Work& work, FineProblem& fine);
+/// The stage "simplify", to `target` faces; from a `level` of the mesh, if there is one that is
+/// finer than that.
+void simplify_fine(Index target, const std::optional<CoarseDisk>& level, const Work& work,
+                   FineProblem& fine);
 
 /// The stage "coarse": composite majorization of the coarse mesh. Throws Error SOLVER.
 void solve_coarse(const ChartOptions& options, const Work& work, FineProblem& fine);

@@ -13,10 +13,10 @@ constexpr double kTried = 0.99;  // share of the progress
 
 }  // namespace
 
-Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const ChartOptions& options,
-                   const Work& work) {
+Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Inherited& inherited,
+                   const ChartOptions& options, const Work& work) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  Attempts tried = try_all(disk, frame, options, work.part(0, kTried));
+  Attempts tried = try_all(disk, frame, inherited, options, work.part(0, kTried));
   ChartMap& map = tried.best.map;
   Flattening result =
       deliver(map.retriangulated ? *map.retriangulated : disk, frame,
@@ -29,6 +29,11 @@ Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Chart
   result.cpu_seconds = cpu_seconds() - cpu;
   result.peak_memory_bytes = peak_memory_bytes();
   return result;
+}
+
+Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const ChartOptions& options,
+                   const Work& work) {
+  return flatten(disk, frame, {}, options, work);
 }
 
 }  // namespace beltrami

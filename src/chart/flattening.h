@@ -9,6 +9,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
+#include "chart/inherited.h"
 #include "chart/options.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
@@ -42,5 +43,9 @@ struct Flattening {
 /// Cancelled, Error SOLVER or std::bad_alloc.
 Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const ChartOptions& options,
                    const Work& work);
+
+/// The same with what is known of the disk, in its numbers and its unit.
+Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Inherited& inherited,
+                   const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -13,6 +13,7 @@
 #include "chart/chart_map.h"
 #include "chart/descent.h"
 #include "chart/fine_problem.h"
+#include "chart/inherited.h"
 #include "chart/memory.h"
 #include "chart/options.h"
 #include "flatten/laplacian.h"
@@ -25,12 +26,13 @@ namespace beltrami {
 /// Coarse composite majorization on `coarse_faces` faces, prolongation of its metric, and the way
 /// to flatten that the options name. The mesh as its own coarse mesh where it is as small as that,
 /// or cannot be simplified.
-ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const ChartOptions& options,
-                       const Work& work);
+ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited& inherited,
+                       const ChartOptions& options, const Work& work);
 
-/// Composite majorization on the whole mesh, as the stage `name`.
-ChartMap cm_mode(const DiskMesh& mesh, const char* name, const ChartOptions& options,
-                 const Work& work);
+/// Composite majorization on the whole mesh, as the stage `name`; from `start` where that serves,
+/// see Inherited.
+ChartMap cm_mode(const DiskMesh& mesh, const char* name, const std::vector<Vec2>& start,
+                 const ChartOptions& options, const Work& work);
 
 /// Tutte's embedding, mended.
 ChartMap tutte_mode(const DiskMesh& mesh, const ChartOptions& options, const Work& work);

@@ -14,7 +14,7 @@ namespace beltrami {
 ChartMap uv_prolongation_mode(const DiskMesh& mesh, Index coarse_faces, const ChartOptions& options,
                               const Work& work) {
   FineProblem fine{.mesh = &mesh};
-  simplify_fine(coarse_faces, work.part(0, 0.13), fine);
+  simplify_fine(coarse_faces, {}, work.part(0, 0.13), fine);
   solve_coarse(options, work.part(0.13, 0.25), fine);
   ChartMap map;
   run_stage("prolong", work.part(0.25, 1), map.statistics.stages,

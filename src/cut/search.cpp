@@ -10,8 +10,8 @@
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
-#include "cut/search_level.h"
 #include "cut/seam_search.h"
+#include "cut/search_level.h"
 #include "cut/split_overlaps.h"
 #include "cut/straighten.h"
 
@@ -53,6 +53,7 @@ struct Attempt {
   double cost = std::numeric_limits<double>::infinity();
   double energy = std::numeric_limits<double>::infinity();
   double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
+  std::vector<std::vector<Vec2>> maps;                      ///< per chart
 
   /// Of two that reach the target the shorter one, else the one that is nearer to it.
   bool is_better_than(const Attempt& other) const {
@@ -182,8 +183,12 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
     apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }
-  attempt = {{search_.seams(), search_.anchors()}, search_.energy(), search_.cost(),
-             apart.energy,                         missed_by(apart)};
+  attempt = {{search_.seams(), search_.anchors()},
+             search_.energy(),
+             search_.cost(),
+             apart.energy,
+             missed_by(apart),
+             std::move(apart.uvs)};
   return true;
 }
 
@@ -296,15 +301,16 @@ Attempt search_level(const SearchLevel& level, const SeamTarget& target, const S
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
                            const SeamWeights& weights, const SeamHints& hints, const Work& work) {
-  const SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces,
-                                           weights, hints, work.part(0, 0.3));
-  const Attempt found = search_level(coarse, target, weights, work.part(0.3, 0.9));
-  if (coarse.fine_vertex.empty()) return {found.seams.seams, found.energy};
-  AnchoredSeams fine =
-      carry_to_finer(coarse, surface,
-                     finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
-                     found.seams, work.part(0.9, 1));
-  return {std::move(fine.seams), found.energy};
+  SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces, weights,
+                                     hints, work.part(0, 0.3));
+  Attempt found = search_level(coarse, target, weights, work.part(0.3, 0.9));
+  if (coarse.fine_vertex.empty()) {
+    return {std::move(found.seams.seams), found.energy, {}, std::move(found.maps)};
+  }
+  AnchoredSeams fine = carry_to_finer(
+      coarse, surface, finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
+      found.seams, work.part(0.9, 1));
+  return {std::move(fine.seams), found.energy, std::move(coarse.history), {}};
 }
 
 }  // namespace beltrami

@@ -1,11 +1,14 @@
 // The shortest seams with which a surface flattens to a distortion that is asked for.
 #pragma once
 
+#include <vector>
+
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
 #include "cut/seam_costs.h"
 #include "mesh/surface.h"
+#include "simplify/history.h"
 
 namespace beltrami {
 
@@ -19,8 +22,11 @@ struct SeamTarget {
 };
 
 struct SearchedSeams {
-  EdgeMarks seams;    ///< on the surface given
-  double energy = 2;  ///< of the coarse maps along them
+  EdgeMarks seams;          ///< on the surface given
+  double energy = 2;        ///< of the coarse maps along them
+  CollapseHistory history;  ///< of the surface on its way to the coarse one; empty: it is its own
+  /// The maps, where the surface is its own coarse one: per chart of it cut along the seams.
+  std::vector<std::vector<Vec2>> maps;
 };
 
 /// Marks seams that make disks of all components, so short as they are found, along which the maps
