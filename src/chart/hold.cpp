@@ -93,10 +93,10 @@ double size_of_map(const std::vector<Vec2>& uvs) {
 }
 
 /// The way of one map to some pins, in the unit of the mesh.
-class Way {
+class WayToPins {
  public:
-  Way(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, const ChartOptions& options,
-      const Work& work)
+  WayToPins(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+            const ChartOptions& options, const Work& work)
       : mesh_(mesh),
         rest_(rest),
         options_(options),
@@ -187,8 +187,8 @@ class Way {
   std::vector<Vec2> targets_;
 };
 
-bool Way::minimise(NewtonOptions newton, bool simple, const Work& work,
-                   std::vector<Vec2>& uvs) const {
+bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
+                         std::vector<Vec2>& uvs) const {
   const auto run = [&] { return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work); };
   if (!simple) return run().converged;
   if (!contact_.is_pressed(uvs)) {
@@ -203,7 +203,7 @@ bool Way::minimise(NewtonOptions newton, bool simple, const Work& work,
 }
 
 /// From a map whose boundary touches itself, to the last one before it overlaps.
-bool Way::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
+bool WayToPins::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
   NewtonOptions newton = last_steps();
   newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
   NewtonResult result = minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
@@ -211,7 +211,7 @@ bool Way::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
   return result.converged && !result.refused;
 }
 
-bool Way::relax(const Work& work, std::vector<Vec2>& uvs) const {
+bool WayToPins::relax(const Work& work, std::vector<Vec2>& uvs) const {
   const bool simple = keeps_simple(uvs);
   if (!simple && keeps_boundary_simple(options_) && is_sound(uvs)) {
     return minimise_soundly(work, uvs);
@@ -220,7 +220,7 @@ bool Way::relax(const Work& work, std::vector<Vec2>& uvs) const {
 }
 
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
-bool Way::embed(std::vector<Vec2>& uvs) const {
+bool WayToPins::embed(std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
   std::vector<Vec2> trial = field.harmonic(targets_);
   if (!positive(trial)) return false;
@@ -229,7 +229,7 @@ bool Way::embed(std::vector<Vec2>& uvs) const {
 }
 
 /// `simple`: whether the boundary may not touch itself; kTouched: it was in the way.
-Way::End Way::walk(bool simple, std::vector<Vec2>& uvs) const {
+WayToPins::End WayToPins::walk(bool simple, std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
   std::vector<Vec2> trial(uvs.size());
   const int most = std::clamp(kMostFaceSteps / mesh_.face_count(), kLeastMostSteps, kMostSteps);
@@ -266,7 +266,7 @@ Way::End Way::walk(bool simple, std::vector<Vec2>& uvs) const {
 }
 
 /// From a map with folds.
-bool Way::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
+bool WayToPins::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
   put_in_place(uvs);
   const Work patient = work_.out_of_time() ? Work(1) : work_.part(kThere, kThere);
   if (!positive(uvs) && !untangle(mesh_.faces, rest_, held_, uvs, patient)) return false;
@@ -274,7 +274,7 @@ bool Way::untangle_all(std::vector<Vec2> uvs, std::vector<Vec2>& result) const {
   return true;
 }
 
-bool Way::go(std::vector<Vec2>& uvs) const {
+bool WayToPins::go(std::vector<Vec2>& uvs) const {
   if (boundary_is_held() && embed(uvs)) return true;
   std::vector<Vec2> trial = uvs;
   End end = End::kTouched;
@@ -292,7 +292,7 @@ bool Way::go(std::vector<Vec2>& uvs) const {
 }
 
 /// The map that meets the pins; nothing where none was found. `relaxed`: and has the least energy.
-std::optional<HeldMap> meet(Way& way, const std::vector<Vec2>& start, Pins pins, bool relaxed,
+std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins pins, bool relaxed,
                             const Work& work) {
   const Similarity frame = best_similarity(start, pins);
   way.set_pins(frame, pins);
@@ -316,7 +316,7 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   if (pins.size() > 2 && !non_positive_faces(mesh.faces, start, work).empty()) {
     start = start_map(mesh, rest, options, work);
   }
-  Way way(mesh, rest, options, work);
+  WayToPins way(mesh, rest, options, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
   // One pin is always met.
   std::size_t met = 1, failed = pins.size();
