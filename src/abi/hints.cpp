@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "cut/seam_costs.h"
 
 namespace beltrami {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "abi/surface.h"
 #include "atlas/atlas.h"
+#include "atlas/open.h"
 #include "base/work.h"
 
 namespace beltrami {

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "cut/seam_costs.h"
+#include "cut/search.h"
 
 namespace beltrami {
 namespace {

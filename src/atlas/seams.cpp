@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "base/error.h"
 #include "base/interrupt.h"
+#include "chart/flattening.h"
 
 namespace beltrami {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/interrupt.h"
+#include "base/types.h"
 #include "mesh/split_fans.h"
 
 namespace beltrami {

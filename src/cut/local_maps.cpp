@@ -11,9 +11,11 @@
 #include "chart/descent.h"
 #include "chart/modes.h"
 #include "chart/options.h"
+#include "descend/newton.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
+#include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 

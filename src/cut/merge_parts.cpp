@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "cut/max_flow.h"
 #include "cut/part.h"
 #include "cut/separate.h"
 #include "cut/sheets.h"

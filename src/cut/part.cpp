@@ -7,6 +7,7 @@
 #include "exact/crossings.h"
 #include "mesh/chart.h"
 #include "mesh/split_fans.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/types.h"
-#include "cut/edge_marks.h"
 #include "mesh/surface.h"
 
 namespace beltrami {

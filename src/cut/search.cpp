@@ -14,6 +14,7 @@
 #include "cut/search_level.h"
 #include "cut/split_overlaps.h"
 #include "cut/straighten.h"
+#include "mesh/chart.h"
 
 namespace beltrami {
 namespace {

@@ -12,6 +12,7 @@
 #include "base/disjoint_sets.h"
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "cut/join_loops.h"
 #include "cut/max_flow.h"
 #include "mesh/disk_mesh.h"

@@ -7,6 +7,7 @@
 #include "cut/layers.h"
 #include "cut/max_flow.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 

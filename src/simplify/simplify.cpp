@@ -70,7 +70,7 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
   Candidate best{std::numeric_limits<double>::infinity(), v, kNone};
   const Quadric& quadric = surface.quadric[v];
   const double evenness = kEvenness * quadric.weight();
-  const Vec3 from = surface.position(v);
+  const Vec3& from = surface.position(v);
   const double own_error = surface.site[v].error;
   const auto consider = [&](Index target) {
     const auto& site = surface.site[target];
