@@ -2,8 +2,8 @@
 
     lint.py BUILD ROOT CACHE
 
-Both read the sources in groups (groups.py); those of a group in which anything is found are looked
-at one by one.
+Both read the sources in groups (groups.py). Where anything is found, those of the group that it may
+be about are looked at one by one.
 
 BUILD has compile_commands.json. A source is looked at again only if it, a header of the project
 that it includes, its command, the configuration or a tool has changed: CACHE keeps an empty file
@@ -15,6 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -41,16 +42,21 @@ def arguments(entry: dict) -> list[str]:
     return known + NO_WARNINGS
 
 
-def key_of(source: Path, words: list[str], project: Project, tools: str) -> str:
-    """Return the hash of all that the verdict on a source depends on."""
+def read_with(source: Path, project: Project) -> set[Path]:
+    """Return the files of the project that are read with a source, itself among them."""
     seen, todo = set(), [source]
     while todo:
         path = todo.pop()
         if path not in seen:
             seen.add(path)
             todo += project.includes(path)
+    return seen
+
+
+def key_of(source: Path, words: list[str], project: Project, tools: str) -> str:
+    """Return the hash of all that the verdict on a source depends on."""
     digest = hashlib.sha256(f"{tools}{words}".encode())
-    for path in sorted(seen):
+    for path in sorted(read_with(source, project)):
         digest.update(f"{path}\n".encode() + (project.root / path).read_bytes())
     return digest.hexdigest()
 
@@ -59,6 +65,19 @@ def tidy(name: str, words: list[str]) -> list[str]:
     """Return clang-tidy's complaints, without its counts of what it does not show."""
     done = subprocess.run([TIDY, "--quiet", name, "--", *words], capture_output=True, text=True)
     return [done.stdout + done.stderr] if done.returncode else []
+
+
+def suspects(group: list[str], found: list[str], project: Project) -> list[str]:
+    """Return the sources of a group that complaints may be about, all where it does not compile."""
+    text = "\n".join(found)
+    named = {project.root / name for name in re.findall(r"^([^\s:]+):\d+:", text, re.M)}
+    if not named or "clang-diagnostic-error" in text:
+        return group
+    return [
+        name
+        for name in group
+        if any(project.root / path in named for path in read_with(project.file(name), project))
+    ]
 
 
 def verdicts_on(
@@ -107,11 +126,12 @@ def main() -> int:
     while todo:
         again = []
         for group, found in verdicts_on(todo, commands, project, units):
-            if not found:
-                for name in group:
+            unclear = suspects(group, found, project) if found else []
+            for name in group:
+                if name not in unclear:
                     marks[name].touch()
-            elif len(group) > 1:
-                again += [[name] for name in group]
+            if len(group) > 1:
+                again += [[name] for name in unclear]
             else:
                 complaints |= dict.fromkeys(found)
         todo = again
