@@ -36,8 +36,8 @@ void pin_vertex(const TriangleList& mesh, Index vertex, const Vec2& uv, std::vec
   FAIL() << "no face has vertex " << vertex;
 }
 
-Atlas unwrapped(const TriangleList& mesh, const std::vector<Pin>& pins,
-                const AtlasOptions& options = {}, int threads = 1) {
+Atlas pinned(const TriangleList& mesh, const std::vector<Pin>& pins,
+             const AtlasOptions& options = {}, int threads = 1) {
   return unwrap({.positions = mesh.positions, .faces = mesh.faces, .pins = pins}, options,
                 Work(threads));
 }
@@ -60,7 +60,7 @@ struct Refusal {
 
 Refusal refusal(const TriangleList& mesh, const std::vector<Pin>& pins) {
   try {
-    unwrapped(mesh, pins);
+    pinned(mesh, pins);
   } catch (const Error& error) {
     return {error.fault(), error.element(), error.what()};
   }
@@ -114,9 +114,9 @@ TEST(Pins, OneMovesTheFreeMap) {
   const TriangleList mesh = meshes::bumps(8, 8);
   std::vector<Pin> pins;
   pin_vertex(mesh, 40, {0.1, -1e3 / 3}, pins);
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
-  const Atlas free = unwrapped(mesh, {});
+  const Atlas free = pinned(mesh, {});
   const Vec2 shift = pins[0].uv - uv_of(free, pins[0]);
   for (std::size_t v = 0; v < free.uvs.size(); ++v) {
     EXPECT_LE((free.uvs[v] + shift - atlas.uvs[v]).norm(), 1e-10);
@@ -129,7 +129,7 @@ TEST(Pins, TwoTurnAndScaleTheFreeMap) {
   std::vector<Pin> pins;
   pin_vertex(mesh, 0, {1, 1}, pins);
   pin_vertex(mesh, 80, {1, 40}, pins);
-  const Atlas atlas = unwrapped(mesh, pins), free = unwrapped(mesh, {});
+  const Atlas atlas = pinned(mesh, pins), free = pinned(mesh, {});
   expect_met(atlas, pins);
   const double scale = 39 / (uv_of(free, pins[1]) - uv_of(free, pins[0])).norm();
   EXPECT_NEAR(atlas.charts[0].density, scale, 1e-9 * scale);
@@ -140,7 +140,7 @@ TEST(Pins, BendAGridToATrapezoid) {
   const Index n = 12;
   const TriangleList mesh = meshes::grid(n, n);
   const auto pins = four_corners(mesh, n, {{0, 0}, {12, 0}, {9, 10}, {4, 11}});
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
   EXPECT_LT(atlas.energy.symmetric_dirichlet, 2.3);
 }
@@ -151,14 +151,14 @@ TEST(Pins, HoldVerticesInside) {
   auto pins = four_corners(mesh, n, {{0, 0}, {16, 0}, {16, 16}, {0, 16}});
   pin_vertex(mesh, corner_of_grid(n, 8, 8), {11, 10}, pins);
   pin_vertex(mesh, corner_of_grid(n, 4, 4), {4, 6}, pins);
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
 }
 
 TEST(Pins, LayTheBoundaryOnACircle) {
   const TriangleList mesh = meshes::bumps(12, 12);
   const auto pins = on_circle(mesh, 7);
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
 }
 
@@ -169,7 +169,7 @@ TEST(Pins, LayTheBoundaryOnAPolygonThatIsNotConvex) {
     const Vec3& p = mesh.positions[v];
     pin_vertex(mesh, v, {p.x(), p.y() + 6 * (p.x() - 0.5) * (p.x() - 0.5)}, pins);
   }
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
 }
 
@@ -182,13 +182,13 @@ TEST(Pins, TurnRoundWhatIsBetweenThem) {
     pin_vertex(mesh, v, mesh.positions[v].head<2>(), pins);
   }
   pin_vertex(mesh, corner_of_grid(n, 5, 5), {0.875, 0.5}, pins);
-  expect_met(unwrapped(mesh, pins), pins);
+  expect_met(pinned(mesh, pins), pins);
 }
 
 TEST(Pins, OnBothSidesOfASeam) {
   // A tube is cut open; the two copies of a vertex on the cut are held apart.
   const TriangleList mesh = meshes::torus(8);
-  const Atlas free = unwrapped(mesh, {});
+  const Atlas free = pinned(mesh, {});
   std::vector<Pin> pins;
   for (Index f = 0; f < size_of(mesh.faces) && pins.size() < 2; ++f) {
     for (int k = 0; k < 3 && pins.size() < 2; ++k) {
@@ -205,7 +205,7 @@ TEST(Pins, OnBothSidesOfASeam) {
     }
   }
   ASSERT_EQ(pins.size(), 2u);
-  expect_met(unwrapped(mesh, pins), pins);
+  expect_met(pinned(mesh, pins), pins);
 }
 
 TEST(Pins, LetTheBoundaryTouchItself) {
@@ -230,7 +230,7 @@ TEST(Pins, LetTheBoundaryTouchItself) {
   }
   AtlasOptions options;
   options.admit.weld_distance.reset();
-  const Atlas atlas = unwrapped(mesh, pins, options);
+  const Atlas atlas = pinned(mesh, pins, options);
   expect_met(atlas, pins);
   EXPECT_GT(atlas.certificate.touching_places, 0);
 }
@@ -242,7 +242,7 @@ TEST(Pins, LetTwoVerticesOfTheBoundaryMeet) {
   pin_vertex(mesh, corner_of_grid(n, 0, 0), {0, 0}, pins);
   pin_vertex(mesh, corner_of_grid(n, n, 0), {1, 0}, pins);
   pin_vertex(mesh, corner_of_grid(n, 0, n), {0, 0}, pins);
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   EXPECT_EQ(uv_of(atlas, pins[0]), uv_of(atlas, pins[2]));
   EXPECT_TRUE(atlas.certificate.injective());
   EXPECT_EQ(atlas.certificate.touching_places, 1);
@@ -253,7 +253,7 @@ TEST(Pins, LeaveTheOtherChartsRoom) {
   for (std::size_t v = 49; v < mesh.positions.size(); ++v) mesh.positions[v].z() += 20;
   std::vector<Pin> pins;
   pin_vertex(mesh, 0, {1e3, -1e3}, pins);
-  const Atlas atlas = unwrapped(mesh, pins);
+  const Atlas atlas = pinned(mesh, pins);
   expect_met(atlas, pins);
   ASSERT_EQ(atlas.charts.size(), 2u);
   EXPECT_GT(atlas.charts[1].box.min().y(), atlas.charts[0].box.max().y());
@@ -266,7 +266,7 @@ TEST(Pins, ThatLayChartsOnEachOtherAreReported) {
   pin_vertex(mesh, 5, {0, 0}, pins);
   pin_vertex(mesh, 16 + 5, {0, 0}, pins);
   for (const bool float32 : {false, true}) {
-    const Atlas atlas = unwrapped(mesh, pins, {.float32 = float32});
+    const Atlas atlas = pinned(mesh, pins, {.float32 = float32});
     EXPECT_EQ(atlas.outcome, Outcome::kNotInjective);
     EXPECT_GT(atlas.certificate.overlaps.faces, 0);
     for (const ChartInfo& chart : atlas.charts) EXPECT_EQ(chart.outcome, Outcome::kOk);
@@ -277,7 +277,7 @@ TEST(Pins, HoldInSinglePrecision) {
   const Index n = 10;
   const TriangleList mesh = meshes::bumps(n, n);
   const auto pins = four_corners(mesh, n, {{0, 0}, {12.5, 0}, {9, 10.25}, {4, 11}});
-  const Atlas atlas = unwrapped(mesh, pins, {.float32 = true});
+  const Atlas atlas = pinned(mesh, pins, {.float32 = true});
   expect_met(atlas, pins);
   for (const Vec2& w : atlas.uvs) EXPECT_EQ(w.cast<float>().cast<double>(), w);
 }
@@ -288,7 +288,7 @@ TEST(Pins, SetTheCornersOfFacesWithoutArea) {
   std::vector<Pin> pins;
   pin_vertex(mesh, 0, {5, 5}, pins);
   pins.push_back({size_of(mesh.faces) - 1, 1, {77, 78}, 1, 3 * (size_of(mesh.faces) - 1) + 1});
-  expect_met(unwrapped(mesh, pins), pins);
+  expect_met(pinned(mesh, pins), pins);
 }
 
 TEST(Pins, HaveTheSameBitsOnAllThreads) {
@@ -296,7 +296,7 @@ TEST(Pins, HaveTheSameBitsOnAllThreads) {
   const TriangleList mesh = meshes::bumps(n, n);
   auto pins = four_corners(mesh, n, {{0, 0}, {40, 3}, {31, 45}, {-6, 36}});
   pin_vertex(mesh, corner_of_grid(n, 20, 20), {24, 17}, pins);
-  const Atlas one = unwrapped(mesh, pins, {}, 1), two = unwrapped(mesh, pins, {}, 2);
+  const Atlas one = pinned(mesh, pins, {}, 1), two = pinned(mesh, pins, {}, 2);
   expect_met(one, pins);
   EXPECT_EQ(one.uvs, two.uvs);
 }
@@ -305,10 +305,10 @@ TEST(Pins, ScaleWithTheSurfaceBitForBit) {
   const Index n = 10;
   TriangleList mesh = meshes::bumps(n, n);
   auto pins = four_corners(mesh, n, {{0, 0}, {12.5, 0}, {9, 10.25}, {4, 11}});
-  const Atlas unit = unwrapped(mesh, pins);
+  const Atlas unit = pinned(mesh, pins);
   for (Vec3& p : mesh.positions) p *= 0x1p20;
   for (Pin& pin : pins) pin.uv *= 0x1p20;
-  const Atlas large = unwrapped(mesh, pins);
+  const Atlas large = pinned(mesh, pins);
   for (std::size_t v = 0; v < unit.uvs.size(); ++v) {
     EXPECT_EQ(Vec2(0x1p20 * unit.uvs[v]), large.uvs[v]);
   }
@@ -324,7 +324,7 @@ TEST(Pins, OfOneUvVertexMustAgree) {
     }
   }
   pins.resize(2);
-  expect_met(unwrapped(mesh, pins), pins);
+  expect_met(pinned(mesh, pins), pins);
   pins[1].uv = {0, 0.5};
   expect_refused(mesh, pins, 1, "the same UV vertex");
 }
