@@ -8,7 +8,7 @@ from pathlib import Path
 
 from groups import groups_of, unit_of
 from includes import Project, check
-from lint import tidy
+from lint import suspects, tidy
 
 FILES = {
     "src/base/types.h": "#pragma once\nusing Index = int;\n"
@@ -49,16 +49,22 @@ DEFECT = "three.cpp:2:3: error: single-argument constructors must be marked expl
 
 
 def grouped(folder: Path) -> int:
-    """Return 1 unless files are grouped by their names, and what is wrong in a group is found."""
+    """Return 1 unless files are grouped by their names, and what is wrong is found in its file."""
     (folder / ".clang-tidy").symlink_to(Path(__file__).parents[2] / ".clang-tidy")
     for name, text in APART.items():
         (folder / name).write_text(text)
     groups = groups_of({str(folder / name): ["-std=c++20"] for name in APART})
     names = [[Path(name).name for name in group] for group in groups]
     found = "".join(tidy(unit_of(groups[0], folder), ["-std=c++20"]))
-    if names == GROUPS and found.count("error:") == 1 and DEFECT in found:
+    again = suspects(groups[0], [found], Project(folder))
+    if (
+        names == GROUPS
+        and found.count("error:") == 1
+        and DEFECT in found
+        and again == groups[0][1:]
+    ):
         return 0
-    print(f"groups.py: expected {GROUPS} and {DEFECT}, found {names} and {found}")
+    print(f"groups.py: expected {GROUPS} and {DEFECT}, found {names} and {found}, about {again}")
     return 1
 
 
