@@ -8,6 +8,7 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "descend/newton_loop.h"
 #include "descend/newton_step.h"
 #include "energy/density.h"
 #include "mesh/disk_mesh.h"

@@ -12,6 +12,7 @@
 
 #include "exact/certificate.h"
 #include "flatten/dirichlet.h"
+#include "mesh/disk_mesh.h"
 #include "prolong/prolongation.h"
 #include "support/disks.h"
 #include "support/meshes.h"
