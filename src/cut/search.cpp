@@ -126,8 +126,10 @@ Attempt LevelSearch::sketch() {
   search_.exchange(std::max(target_.energy, search_.energy()));
   search_.reopen();
   shorten_seams(target_.energy);
-  Attempt sketch{{search_.seams(), search_.anchors()}, search_.energy(), search_.cost()};
-  sketch.energy = sketch.model_energy;
+  Attempt sketch;
+  sketch.seams = {search_.seams(), search_.anchors()};
+  sketch.energy = sketch.model_energy = search_.energy();
+  sketch.cost = search_.cost();
   sketch.excess = (sketch.energy - 2) / (target_.energy - 2);
   return sketch;
 }

@@ -29,6 +29,7 @@ using meshes::TriangleList;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kAnyLength = 0;
+constexpr double kLeastCost = 0.02;
 
 Surface built(const TriangleList& mesh) {
   return build_surface(mesh.positions, mesh.faces, Work(1));
@@ -258,7 +259,7 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
       const Trial trial(mesh, seed % 2 == 0 ? 1.5 : 6, generator);
       const EdgeMarks seams = trial.opened();
       const std::size_t pieces = trial.charts(seams);
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength, kLeastCost,
                         Work(1));
       for (int i = 0; i < 12; ++i) {
         step(trial, search, generator);
@@ -274,7 +275,7 @@ TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
     SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      kAnyLength, Work(1));
+                      kAnyLength, kLeastCost, Work(1));
     const EdgeMarks before = search.seams();
     double excess = search.energy() - 2;
     for (int i = 0; i < 4; ++i) {
@@ -296,7 +297,7 @@ TEST(SeamSearch, AnExtensionReachedDoesNothing) {
   std::mt19937_64 generator(6);
   const Trial trial(disks::blob(3), 1, generator);
   SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                    kAnyLength, Work(1));
+                    kAnyLength, kLeastCost, Work(1));
   ASSERT_TRUE(search.extend(2.1));
   const EdgeMarks seams = search.seams();
   EXPECT_TRUE(search.extend(search.energy()));
@@ -308,7 +309,7 @@ TEST(SeamSearch, ShrinksUpToTheEnergyAskedForAndNotBeyond) {
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
     SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      kAnyLength, Work(1));
+                      kAnyLength, kLeastCost, Work(1));
     const double most = search.energy();
     search.extend(2 + 0.1 * (most - 2));
     const double least = search.energy(), cost = search.cost();
@@ -329,7 +330,7 @@ TEST(SeamSearch, JoinsPartsAnewWhereThatIsCheaper) {
   const EdgeMarks seams = trial.opened();
   std::vector<double> cost = trial.cost;
   for (Index h = 0; h < size_of(cost); ++h) cost[h] *= seams[h] ? 10 : 1;
-  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, Work(1));
+  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, kLeastCost, Work(1));
   const double before = search.cost();
   search.reconnect();
   EXPECT_LT(search.cost(), 0.5 * before);
@@ -349,7 +350,7 @@ TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
     if (a * b == 3) cheap[h] = 0.1;
   }
   for (const std::vector<double>& costs : {cost, cheap}) {
-    SeamSearch search(surface, surface.face_count(), costs, seams, kAnyLength, Work(1));
+    SeamSearch search(surface, surface.face_count(), costs, seams, kAnyLength, kLeastCost, Work(1));
     ASSERT_EQ(search.cost(), 2);
     search.reconnect();
     search.shrink(1000);
@@ -375,7 +376,7 @@ TEST(SeamSearch, LockedEdgesStayUncut) {
         ASSERT_FALSE(locked[h] && seams[h]);
         if (locked[h]) trial.cost[h] = kNever;
       }
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength, kLeastCost,
                         Work(1));
       search.extend(2 + 0.1 * (search.energy() - 2));
       search.reconnect();
