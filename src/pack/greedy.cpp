@@ -1,0 +1,99 @@
+#include "pack/greedy.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/interrupt.h"
+
+namespace beltrami {
+namespace {
+
+/// A place and what it is worth: less is better.
+struct Candidate {
+  int cost = std::numeric_limits<int>::max(), second = 0;
+  Spot spot;
+
+  bool found() const { return spot.page != kNone; }
+};
+
+/// The best place of one mask by its upper side; rows that cannot be better are not looked at.
+void look_lowest(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
+                 Candidate& best) {
+  const int last = page.cells() - mask.height;
+  for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
+    const int x = page.first_free(mask, y, 0, page.cells() - mask.width, steps);
+    if (x < 0) continue;
+    const int cost = y + mask.height, second = x + mask.width;
+    if (cost < best.cost || second < best.second) {
+      spot.x = x;
+      spot.y = y;
+      best = {cost, second, spot};
+    }
+    return;
+  }
+}
+
+/// Likewise by the greater of its upper and its right side.
+void look_corner(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
+                 Candidate& best) {
+  const int last = page.cells() - mask.height;
+  for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
+    const int furthest = std::min(page.cells(), best.cost) - mask.width;
+    if (furthest < 0) return;
+    const int x = page.first_free(mask, y, 0, furthest, steps);
+    if (x < 0) continue;
+    const int up = y + mask.height, right = x + mask.width;
+    const int cost = std::max(up, right), second = std::min(up, right);
+    if (cost < best.cost || second < best.second) {
+      spot.x = x;
+      spot.y = y;
+      best = {cost, second, spot};
+    }
+  }
+}
+
+Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index index, Rule rule,
+                     std::int64_t& steps) {
+  Candidate best;
+  for (int turn = 0; turn < static_cast<int>(masks.size()); ++turn) {
+    const Mask& mask = masks[turn];
+    if (mask.width > page.cells() || mask.height > page.cells()) continue;
+    if (mask.cells > page.free_cells()) continue;
+    const Spot spot{index, turn, 0, 0};
+    if (rule == Rule::kLowest) {
+      look_lowest(page, mask, spot, steps, best);
+    } else {
+      look_corner(page, mask, spot, steps, best);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
+                      Rule rule, std::vector<Page> pages, int max_pages, int cells) {
+  Layout layout;
+  layout.spots.resize(masks.size());
+  for (const Index chart : order) {
+    poll_interrupt();
+    Spot& spot = layout.spots[chart];
+    if (masks[chart].empty() || masks[chart][0].cells == 0) {
+      spot.page = 0;
+      continue;
+    }
+    for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
+      if (p == size_of(pages)) pages.emplace_back(cells);
+      spot = best_place(pages[p], masks[chart], p, rule, layout.steps).spot;
+      if (pages[p].empty() && spot.page == kNone) break;  // it is too large for any page
+    }
+    if (spot.page == kNone) {
+      layout.failed = chart;
+      return layout;
+    }
+    pages[spot.page].take(masks[chart][spot.turn], spot.x, spot.y);
+  }
+  return layout;
+}
+
+}  // namespace beltrami

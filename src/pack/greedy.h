@@ -1,0 +1,40 @@
+// One chart after the other to the best place that is free.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "pack/mask.h"
+#include "pack/page.h"
+
+namespace beltrami {
+
+/// What makes a place better than another.
+enum class Rule {
+  kLowest,  ///< its upper side is lower, then it is further left
+  kCorner,  ///< its further side, upper or right, is nearer to the corner
+};
+
+/// Where a mask lies: its lower left cell.
+struct Spot {
+  Index page = kNone;
+  int turn = 0;  ///< which of the chart's masks
+  int x = 0, y = 0;
+};
+
+struct Layout {
+  std::vector<Spot> spots;  ///< per chart
+  Index failed = kNone;     ///< the first chart without a place, where the layout ended
+  std::int64_t steps = 0;   ///< work done: words looked at
+};
+
+/// Places the charts of `order`, each on the first of the pages that has room for it: those given,
+/// which may have taken cells, and empty ones of as many cells up to `max_pages`.
+/// `masks` are per chart, one for each turn; a chart whose masks are empty gets page 0.
+Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
+                      Rule rule, std::vector<Page> pages, int max_pages, int cells);
+
+}  // namespace beltrami

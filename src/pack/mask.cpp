@@ -1,0 +1,230 @@
+#include "pack/mask.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace beltrami {
+namespace {
+
+using Word = std::uint64_t;
+constexpr int kBits = 64;
+
+/// Rows of bits.
+class Bits {
+ public:
+  Bits(int width, int height)
+      : width_(width),
+        height_(height),
+        words_((width + kBits - 1) / kBits),
+        bits_(static_cast<std::size_t>(words_) * height, 0) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Sets the cells first .. last of a row, as far as there are such.
+  void set(int row, double first, double last) {
+    if (row < 0 || row >= height_ || last < 0 || first >= width_ || last < first) return;
+    const int begin = static_cast<int>(std::max(first, 0.0));
+    const int end = static_cast<int>(std::min<double>(last, width_ - 1)) + 1;
+    Word* const words = bits_.data() + static_cast<std::size_t>(row) * words_;
+    for (int w = begin / kBits; w <= (end - 1) / kBits; ++w) {
+      const int low = std::max(begin - w * kBits, 0), high = std::min(end - w * kBits, kBits);
+      words[w] |= (high == kBits ? ~Word{0} : (Word{1} << high) - 1) & (~Word{0} << low);
+    }
+  }
+
+  /// The next cell of a row from `from` on that is set, or not; the width where there is none.
+  int next(int row, int from, bool value) const {
+    const Word* const words = bits_.data() + static_cast<std::size_t>(row) * words_;
+    for (int w = from / kBits; w < words_; ++w) {
+      Word word = value ? words[w] : ~words[w];
+      if (w == from / kBits) word &= ~Word{0} << from % kBits;
+      if (word != 0) return std::min(width_, w * kBits + std::countr_zero(word));
+    }
+    return width_;
+  }
+
+ private:
+  int width_, height_, words_;
+  std::vector<Word> bits_;
+};
+
+/// The x that a convex set covers within a band of y.
+struct Extent {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+void add_disk(const Vec2& centre, double radius, double bottom, double top, Extent& extent) {
+  const double rise = std::clamp(centre.y(), bottom, top) - centre.y();
+  const double rest = radius * radius - rise * rise;
+  if (rest < 0) return;
+  const double reach = std::sqrt(rest);
+  extent.add(centre.x() - reach);
+  extent.add(centre.x() + reach);
+}
+
+void add_segment(const Vec2& p, const Vec2& q, double bottom, double top, Extent& extent) {
+  const Vec2& low = p.y() <= q.y() ? p : q;
+  const Vec2& high = p.y() <= q.y() ? q : p;
+  if (low.y() > top || high.y() < bottom) return;
+  const double rise = high.y() - low.y();
+  const auto at = [&](double y) {
+    const double share = rise > 0 ? std::clamp((y - low.y()) / rise, 0.0, 1.0) : 0.0;
+    return low.x() + share * (high.x() - low.x());
+  };
+  extent.add(low.y() >= bottom ? low.x() : at(bottom));
+  extent.add(high.y() <= top ? high.x() : at(top));
+}
+
+/// Sets the cells that meet the points within `radius` of a segment.
+void draw_edge(const Vec2& p, const Vec2& q, double radius, Bits& bits) {
+  const Vec2 along = q - p;
+  const double length = along.norm();
+  const Vec2 side =
+      length > 0 ? Vec2(-along.y() * (radius / length), along.x() * (radius / length)) : Vec2(0, 0);
+  const double lowest = std::min(p.y(), q.y()) - radius, highest = std::max(p.y(), q.y()) + radius;
+  const int first = static_cast<int>(std::max(0.0, std::floor(lowest)));
+  const int last = static_cast<int>(std::min<double>(bits.height() - 1, std::floor(highest)));
+  for (int row = first; row <= last; ++row) {
+    Extent extent;
+    const double bottom = row, top = row + 1.0;
+    add_disk(p, radius, bottom, top, extent);
+    add_disk(q, radius, bottom, top, extent);
+    add_segment(p + side, q + side, bottom, top, extent);
+    add_segment(p - side, q - side, bottom, top, extent);
+    bits.set(row, std::floor(extent.low), std::floor(extent.high));
+  }
+}
+
+/// Sets the cells whose centres are inside.
+void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2>>& edges,
+          Bits& bits) {
+  struct Crossing {
+    int row;
+    double x;
+    int turn;
+  };
+  std::vector<Crossing> crossings;
+  for (const auto& [from, to] : edges) {
+    const Vec2 &p = points[from], &q = points[to];
+    const double low = std::min(p.y(), q.y()), high = std::max(p.y(), q.y());
+    // Rows whose centre is in [low, high).
+    const double first = std::max(0.0, std::ceil(low - 0.5));
+    const double last = std::min<double>(bits.height(), std::ceil(high - 0.5));
+    for (double row = first; row < last; ++row) {
+      const double share = (row + 0.5 - p.y()) / (q.y() - p.y());
+      crossings.push_back(
+          {static_cast<int>(row), p.x() + share * (q.x() - p.x()), q.y() > p.y() ? -1 : 1});
+    }
+  }
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.row != b.row ? a.row < b.row : a.x < b.x;
+  });
+  int winding = 0;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    const Crossing &here = crossings[i], &next = crossings[i + 1];
+    winding += here.turn;
+    if (here.row != next.row) {
+      winding = 0;
+    } else if (winding != 0) {
+      bits.set(here.row, std::ceil(here.x - 0.5), std::floor(next.x - 0.5));
+    }
+  }
+}
+
+/// The longest run first; then rows far from those before them, where the next obstacle may be.
+std::vector<int> probes_of(const Mask& mask) {
+  struct Probe {
+    std::uint32_t key;
+    int length, run;
+  };
+  const auto length = [&](int r) { return mask.runs[r].end - mask.runs[r].begin; };
+  std::vector<Probe> probes;
+  int longest = 0;
+  for (int r = 0; r < static_cast<int>(mask.runs.size()); ++r) {
+    if (length(r) > length(longest)) longest = r;
+    // The row's bits reversed: the sequence of van der Corput.
+    std::uint32_t key = 0;
+    for (int bit = 0; bit < 16; ++bit) key |= (mask.runs[r].row >> bit & 1) << (15 - bit);
+    probes.push_back({key, length(r), r});
+  }
+  if (!probes.empty()) probes[longest].length = 1 << 30;
+  std::sort(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
+    const bool first_a = a.length == 1 << 30, first_b = b.length == 1 << 30;
+    if (first_a != first_b) return first_a;
+    if (a.key != b.key) return a.key < b.key;
+    return a.length != b.length ? a.length > b.length : a.run < b.run;
+  });
+  std::vector<int> order;
+  for (const Probe& probe : probes) order.push_back(probe.run);
+  return order;
+}
+
+void read_runs(const Bits& bits, Mask& mask) {
+  for (int row = 0; row < bits.height(); ++row) {
+    for (int begin = bits.next(row, 0, true); begin < bits.width();) {
+      const int end = bits.next(row, begin, false);
+      mask.runs.push_back({row, begin, end});
+      mask.cells += end - begin;
+      if (end >= bits.width()) break;
+      begin = bits.next(row, end, true);
+    }
+  }
+}
+
+std::vector<Vec2> turned(const std::vector<Vec2>& points, const Vec2& turn, double density) {
+  const Placement placement{0, turn, Vec2::Zero()};
+  std::vector<Vec2> places;
+  places.reserve(points.size());
+  for (const Vec2& p : points) places.push_back(placement.place(p, density));
+  return places;
+}
+
+Mask draw(std::vector<Vec2> places, const Outline& outline, double radius, const Vec2& origin,
+          int width, int height) {
+  for (Vec2& p : places) p += origin;
+  Bits bits(width, height);
+  for (const auto& [from, to] : outline.edges) draw_edge(places[from], places[to], radius, bits);
+  fill(places, outline.edges, bits);
+  Mask mask;
+  mask.width = width;
+  mask.height = height;
+  mask.origin = origin;
+  read_runs(bits, mask);
+  return mask;
+}
+
+/// What sums and products of places may be off by, to the places: far above their rounding.
+constexpr double kRounding = 1e-12;
+
+}  // namespace
+
+Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius) {
+  std::vector<Vec2> places = turned(outline.points, turn, density);
+  Eigen::AlignedBox2d box;
+  for (const Vec2& p : places) box.extend(p);
+  if (box.isEmpty()) return {};
+  const double slack =
+      kRounding * (1 + box.min().cwiseAbs().maxCoeff() + box.max().cwiseAbs().maxCoeff());
+  const double reach = radius + slack;
+  const Vec2 origin = Vec2::Constant(reach + slack) - box.min();
+  const Vec2 extent = box.max() + origin + Vec2::Constant(reach);
+  Mask mask =
+      draw(std::move(places), outline, reach, origin, static_cast<int>(std::floor(extent.x())) + 1,
+           static_cast<int>(std::floor(extent.y())) + 1);
+  mask.probes = probes_of(mask);
+  return mask;
+}
+
+Mask mask_at(const Outline& outline, const Vec2& turn, double density, double radius,
+             const Vec2& origin, int cells) {
+  return draw(turned(outline.points, turn, density), outline, radius, origin, cells, cells);
+}
+
+}  // namespace beltrami

@@ -1,0 +1,33 @@
+// The cells of a grid that a chart takes with half the margin around it.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "pack/outline.h"
+
+namespace beltrami {
+
+/// Cells [begin, end) of a row.
+struct Run {
+  int row = 0, begin = 0, end = 0;
+};
+
+struct Mask {
+  int width = 0, height = 0;  ///< of the box of its cells
+  std::vector<Run> runs;      ///< by row, then by place
+  std::vector<int> probes;    ///< the runs in the order in which to test them
+  std::int64_t cells = 0;
+  Vec2 origin{0, 0};  ///< the place on the mask, in cells, of the chart's origin
+};
+
+/// All cells that are less than `radius` from what the outline covers once it is turned by `turn`
+/// and multiplied by `density` (cells per unit). The chart touches the mask's left and lower side.
+Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius);
+
+/// Likewise, with the chart's origin at `origin` (cells); of cells [0, cells)^2 alone. The mask's
+/// box is these, and its runs are where they are.
+Mask mask_at(const Outline& outline, const Vec2& turn, double density, double radius,
+             const Vec2& origin, int cells);
+
+}  // namespace beltrami

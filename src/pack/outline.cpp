@@ -1,0 +1,114 @@
+#include "pack/outline.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/interrupt.h"
+#include "base/portable_math.h"
+
+namespace beltrami {
+namespace {
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+using Directed = std::array<Index, 2>;
+
+/// The edges that are left once opposite ones have cancelled one another.
+std::vector<Directed> uncancelled(std::vector<Directed> edges) {
+  const auto key = [](const Directed& e) {
+    return std::array<Index, 3>{std::min(e[0], e[1]), std::max(e[0], e[1]), e[0] < e[1] ? 0 : 1};
+  };
+  sort_interruptibly(edges.begin(), edges.end(),
+                     [&](const Directed& a, const Directed& b) { return key(a) < key(b); });
+  std::vector<Directed> left;
+  for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+    Index balance = 0;
+    const Directed low{std::min(edges[first][0], edges[first][1]),
+                       std::max(edges[first][0], edges[first][1])};
+    while (last < edges.size() && std::min(edges[last][0], edges[last][1]) == low[0] &&
+           std::max(edges[last][0], edges[last][1]) == low[1]) {
+      balance += edges[last][0] < edges[last][1] ? 1 : -1;
+      ++last;
+    }
+    for (; balance > 0; --balance) left.push_back(low);
+    for (; balance < 0; ++balance) left.push_back({low[1], low[0]});
+  }
+  return left;
+}
+
+/// Andrew's monotone chain.
+std::vector<Vec2> hull_of(std::vector<Vec2> points) {
+  const auto less = [](const Vec2& a, const Vec2& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  };
+  sort_interruptibly(points.begin(), points.end(), less);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  const auto add = [&](const Vec2& p, std::size_t least) {
+    while (hull.size() > least &&
+           cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
+      hull.pop_back();
+    }
+    hull.push_back(p);
+  };
+  for (const Vec2& p : points) add(p, 1);
+  const std::size_t lower = hull.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.pop_back();
+  return hull;
+}
+
+}  // namespace
+
+Outline outline_of(const PackChart& chart) {
+  Outline outline;
+  std::vector<Directed> all;
+  all.reserve(3 * chart.faces.size());
+  for (const Triangle& f : chart.faces) {
+    const Vec2& a = chart.points[f[0]];
+    const double twice = cross(chart.points[f[1]] - a, chart.points[f[2]] - a);
+    outline.area += 0.5 * std::abs(twice);
+    for (int k = 0; k < 3; ++k) {
+      const Directed edge{f[k], f[next_corner(k)]};
+      if (edge[0] != edge[1]) all.push_back(twice < 0 ? Directed{edge[1], edge[0]} : edge);
+    }
+  }
+  outline.edges = uncancelled(std::move(all));
+  std::vector<Index> place(chart.points.size(), kNone);
+  for (Directed& edge : outline.edges) {
+    outline.length += (chart.points[edge[1]] - chart.points[edge[0]]).norm();
+    for (Index& end : edge) {
+      if (place[end] == kNone) {
+        place[end] = size_of(outline.points);
+        outline.points.push_back(chart.points[end]);
+      }
+      end = place[end];
+    }
+  }
+  outline.hull = hull_of(outline.points);
+  return outline;
+}
+
+Vec2 turn_to_least_box(const std::vector<Vec2>& hull) {
+  Vec2 best(1, 0);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size() && hull.size() > 1; ++i) {
+    const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
+    const double length = portable::hypot(edge.x(), edge.y());
+    if (!(length > 0)) continue;
+    const Vec2 along = edge / length;
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : hull) box.extend(Vec2(along.dot(p), cross(along, p)));
+    const Vec2 size = box.sizes();
+    if (size.prod() < least) {
+      least = size.prod();
+      best = size.x() >= size.y() ? Vec2(along.x(), -along.y()) : Vec2(along.y(), along.x());
+    }
+  }
+  return best;
+}
+
+}  // namespace beltrami

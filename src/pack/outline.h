@@ -1,0 +1,28 @@
+// What a chart covers, as its border.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/types.h"
+#include "pack/pack.h"
+
+namespace beltrami {
+
+/// The border of a chart with every face turned counter-clockwise, so that folds do not cancel:
+/// the winding number of its edges about a point is the number of faces over it.
+struct Outline {
+  std::vector<Vec2> points;                 ///< those of the edges
+  std::vector<std::array<Index, 2>> edges;  ///< directed, what is covered on their left
+  std::vector<Vec2> hull;                   ///< convex, counter-clockwise; empty without edges
+  double area = 0;                          ///< sum over the faces
+  double length = 0;                        ///< of the edges
+};
+
+/// Takes O(f log f). Precondition: finite points, indices in range.
+Outline outline_of(const PackChart& chart);
+
+/// The turn (cosine, sine) that lays the longer side of the hull's least box along x.
+Vec2 turn_to_least_box(const std::vector<Vec2>& hull);
+
+}  // namespace beltrami
