@@ -19,9 +19,11 @@ struct Candidate {
 /// The best place of one mask by its upper side; rows that cannot be better are not looked at.
 void look_lowest(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
                  Candidate& best) {
-  const int last = page.cells() - mask.height;
+  const int last = page.height() - mask.height;
   for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
-    const int x = page.first_free(mask, y, 0, page.cells() - mask.width, steps);
+    y = page.skip_full_rows(mask, y, last, page.width() - mask.width, steps);
+    if (y > last || y + mask.height > best.cost) return;
+    const int x = page.first_free(mask, y, page.width() - mask.width, steps);
     if (x < 0) continue;
     const int cost = y + mask.height, second = x + mask.width;
     if (cost < best.cost || second < best.second) {
@@ -36,11 +38,13 @@ void look_lowest(const Page& page, const Mask& mask, Spot spot, std::int64_t& st
 /// Likewise by the greater of its upper and its right side.
 void look_corner(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
                  Candidate& best) {
-  const int last = page.cells() - mask.height;
+  const int last = page.height() - mask.height;
   for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
-    const int furthest = std::min(page.cells(), best.cost) - mask.width;
+    const int furthest = std::min(page.width(), best.cost) - mask.width;
     if (furthest < 0) return;
-    const int x = page.first_free(mask, y, 0, furthest, steps);
+    y = page.skip_full_rows(mask, y, last, furthest, steps);
+    if (y > last || y + mask.height > best.cost) return;
+    const int x = page.first_free(mask, y, furthest, steps);
     if (x < 0) continue;
     const int up = y + mask.height, right = x + mask.width;
     const int cost = std::max(up, right), second = std::min(up, right);
@@ -57,7 +61,7 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
   Candidate best;
   for (int turn = 0; turn < static_cast<int>(masks.size()); ++turn) {
     const Mask& mask = masks[turn];
-    if (mask.width > page.cells() || mask.height > page.cells()) continue;
+    if (mask.width > page.width() || mask.height > page.height()) continue;
     if (mask.cells > page.free_cells()) continue;
     const Spot spot{index, turn, 0, 0};
     if (rule == Rule::kLowest) {
@@ -72,7 +76,7 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
 }  // namespace
 
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
-                      Rule rule, std::vector<Page> pages, int max_pages, int cells) {
+                      Rule rule, std::vector<Page> pages, const Page& empty, int max_pages) {
   Layout layout;
   layout.spots.resize(masks.size());
   for (const Index chart : order) {
@@ -83,7 +87,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<con
       continue;
     }
     for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
-      if (p == size_of(pages)) pages.emplace_back(cells);
+      if (p == size_of(pages)) pages.push_back(empty);
       spot = best_place(pages[p], masks[chart], p, rule, layout.steps).spot;
       if (pages[p].empty() && spot.page == kNone) break;  // it is too large for any page
     }
@@ -91,7 +95,10 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<con
       layout.failed = chart;
       return layout;
     }
-    pages[spot.page].take(masks[chart][spot.turn], spot.x, spot.y);
+    const Mask& mask = masks[chart][spot.turn];
+    pages[spot.page].take(mask, spot.x, spot.y);
+    layout.width = std::max(layout.width, spot.x + mask.width);
+    layout.height = std::max(layout.height, spot.y + mask.height);
   }
   return layout;
 }

@@ -26,15 +26,16 @@ struct Spot {
 };
 
 struct Layout {
-  std::vector<Spot> spots;  ///< per chart
-  Index failed = kNone;     ///< the first chart without a place, where the layout ended
-  std::int64_t steps = 0;   ///< work done: words looked at
+  std::vector<Spot> spots;    ///< per chart
+  Index failed = kNone;       ///< the first chart without a place, where the layout ended
+  int width = 0, height = 0;  ///< in cells, what is taken of the pages from the corner on
+  std::int64_t steps = 0;     ///< work done: words looked at
 };
 
 /// Places the charts of `order`, each on the first of the pages that has room for it: those given,
-/// which may have taken cells, and empty ones of as many cells up to `max_pages`.
-/// `masks` are per chart, one for each turn; a chart whose masks are empty gets page 0.
+/// which may have taken cells, and up to `max_pages` copies of `empty`. `masks` are per chart, one
+/// for each turn; a chart without any gets page 0.
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
-                      Rule rule, std::vector<Page> pages, int max_pages, int cells);
+                      Rule rule, std::vector<Page> pages, const Page& empty, int max_pages);
 
 }  // namespace beltrami

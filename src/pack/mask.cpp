@@ -166,6 +166,53 @@ std::vector<int> probes_of(const Mask& mask) {
   return order;
 }
 
+constexpr int kSquareSamples = 48;  // per side of a mask, in the search for its largest square
+
+/// Four squares that cover the largest square of cells, to within a sample, that the mask takes.
+std::vector<Square> squares_of(const Mask& mask) {
+  const int step = (std::max(mask.width, mask.height) + kSquareSamples - 1) / kSquareSamples;
+  const int columns = mask.width / step, rows = mask.height / step;
+  if (columns == 0 || rows == 0) return {};
+  // Per sample, of step^2 cells, the rows of it that are taken from side to side.
+  std::vector<int> full(static_cast<std::size_t>(columns) * rows, 0);
+  for (const Run& run : mask.runs) {
+    if (run.row / step >= rows) break;
+    int* const line = full.data() + static_cast<std::size_t>(run.row / step) * columns;
+    const int end = std::min(run.end / step, columns);
+    for (int x = (run.begin + step - 1) / step; x < end; ++x) ++line[x];
+  }
+  // The side of the largest square whose upper right sample this is.
+  std::vector<int> side(full.size(), 0);
+  int best = 0, best_x = 0, best_y = 0;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const std::size_t here = static_cast<std::size_t>(y) * columns + x;
+      if (full[here] < step) continue;
+      side[here] = 1;
+      if (x > 0 && y > 0) {
+        side[here] += std::min({side[here - 1], side[here - columns], side[here - columns - 1]});
+      }
+      if (side[here] > best) {
+        best = side[here];
+        best_x = x + 1 - best;
+        best_y = y + 1 - best;
+      }
+    }
+  }
+  if (best == 0) return {};
+  const int cells = best * step;
+  const int level =
+      std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(cells))) - 1, kSquareLevels);
+  const int x = best_x * step, y = best_y * step, rest = cells - (1 << level);
+  std::vector<Square> squares{{x, y, level}};
+  if (rest > 0) {
+    squares.push_back({x + rest, y + rest, level});
+    squares.push_back({x + rest, y, level});
+    squares.push_back({x, y + rest, level});
+  }
+  return squares;
+}
+
 void read_runs(const Bits& bits, Mask& mask) {
   for (int row = 0; row < bits.height(); ++row) {
     for (int begin = bits.next(row, 0, true); begin < bits.width();) {
@@ -219,6 +266,7 @@ Mask mask_of(const Outline& outline, const Vec2& turn, double density, double ra
       draw(std::move(places), outline, reach, origin, static_cast<int>(std::floor(extent.x())) + 1,
            static_cast<int>(std::floor(extent.y())) + 1);
   mask.probes = probes_of(mask);
+  mask.squares = squares_of(mask);
   return mask;
 }
 

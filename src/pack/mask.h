@@ -13,10 +13,19 @@ struct Run {
   int row = 0, begin = 0, end = 0;
 };
 
+/// Squares of up to 2^7 cells per side are looked for.
+inline constexpr int kSquareLevels = 7;
+
+/// A square of 2^level cells per side that the mask takes whole.
+struct Square {
+  int x = 0, y = 0, level = 0;
+};
+
 struct Mask {
-  int width = 0, height = 0;  ///< of the box of its cells
-  std::vector<Run> runs;      ///< by row, then by place
-  std::vector<int> probes;    ///< the runs in the order in which to test them
+  int width = 0, height = 0;    ///< of the box of its cells
+  std::vector<Run> runs;        ///< by row, then by place
+  std::vector<int> probes;      ///< the runs in the order in which to test them
+  std::vector<Square> squares;  ///< together about the largest square in it
   std::int64_t cells = 0;
   Vec2 origin{0, 0};  ///< the place on the mask, in cells, of the chart's origin
 };

@@ -7,77 +7,166 @@
 namespace beltrami {
 namespace {
 
+using Word = std::uint64_t;
+constexpr int kBits = 64;
 constexpr int kMostWords = 128;  // free places that are looked at together
 
 int log2_of(int x) {
-  return std::bit_width(static_cast<unsigned>(x)) - 1;
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(x))) - 1;
 }
+
+/// A row of bits as it looks from `shift` bits on. Shifts by 64 are none: the word above takes two.
+class Shifted {
+ public:
+  Shifted(const Word* row, int shift) : row_(row + shift / kBits), rest_(shift % kBits) {}
+  Word operator[](int w) const {
+    return row_[w] >> rest_ | row_[w + 1] << 1 << (kBits - 1 - rest_);
+  }
+
+ private:
+  const Word* row_;
+  int rest_;
+};
+
+/// Places of a row that are free still, and the words from the first to the last such.
+struct FreePlaces {
+  std::array<Word, kMostWords> words;
+  int first, last;
+
+  bool none() const { return first > last; }
+  void narrow() {
+    while (first <= last && words[first] == 0) ++first;
+    while (last >= first && words[last] == 0) --last;
+  }
+};
 
 }  // namespace
 
-Page::Page(int cells)
-    : cells_(cells),
-      words_((cells + kBits - 1) / kBits + 2),
-      levels_(log2_of(cells) + 1),
-      bits_(static_cast<std::size_t>(words_) * cells * levels_, 0) {
-  for (int y = 0; y < cells; ++y) {
-    Word* const words = row(0, y);
-    for (int x = cells; x < words_ * kBits; ++x) words[x / kBits] |= Word{1} << x % kBits;
-    raise_levels(y);
+Page::Page(int width, int height)
+    : width_(width),
+      height_(height),
+      words_((width + kBits - 1) / kBits + 2),
+      band_count_((height + kBand - 1) / kBand),
+      levels_(log2_of(width) + 1) {
+  for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
+    levels_[level].runs.assign(static_cast<std::size_t>(words_) * height, 0);
+    if (level > kSquareLevels) continue;
+    levels_[level].squares.assign(static_cast<std::size_t>(words_) * height, 0);
+    levels_[level].bands.assign(static_cast<std::size_t>(words_) * band_count_, 0);
   }
+  for (int y = 0; y < height; ++y) {
+    Word* const words = line(levels_[0].runs, y);
+    for (int x = width; x < words_ * kBits; ++x) words[x / kBits] |= Word{1} << x % kBits;
+    raise_runs(y);
+  }
+  raise_squares(0, height - 1);
 }
 
-void Page::raise_levels(int y) {
-  for (int level = 1; level < levels_; ++level) {
-    const Word* const below = row(level - 1, y);
-    Word* const words = row(level, y);
+void Page::raise_runs(int y) {
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    const Word* const below = line(levels_[level - 1].runs, y);
+    Word* const words = line(levels_[level].runs, y);
     const int shift = 1 << (level - 1), skip = shift / kBits, rest = shift % kBits;
     for (int w = 0; w < words_; ++w) {
       const auto at = [&](int i) { return i < words_ ? below[i] : ~Word{0}; };
       const Word low = at(w + skip), high = at(w + skip + 1);
-      words[w] = below[w] | (rest == 0 ? low : low >> rest | high << (kBits - rest));
+      words[w] = below[w] | low >> rest | high << 1 << (kBits - 1 - rest);
     }
   }
 }
 
-int Page::first_free(const Mask& mask, int y, int from, int to, std::int64_t& steps) const {
-  std::array<Word, kMostWords> free;
-  for (int start = from / kBits; start <= to / kBits; start += kMostWords) {
-    int first = start, last = std::min(to / kBits, start + kMostWords - 1);
-    std::fill(free.begin(), free.begin() + (last - first + 1), ~Word{0});
-    const auto at = [&](int w) -> Word& { return free[w - start]; };
-    if (first == from / kBits) at(first) &= ~Word{0} << from % kBits;
-    if (last == to / kBits) at(last) &= ~Word{0} >> (kBits - 1 - to % kBits);
+/// After the rows first .. last have changed: squares reach up, so that those below see it.
+void Page::raise_squares(int first, int last) {
+  const int levels = std::min(static_cast<int>(levels_.size()) - 1, kSquareLevels);
+  for (int level = 0; level <= levels; ++level) {
+    const int reach = 1 << level, half = reach / 2;
+    const int from = std::max(0, first - reach + 1);
+    for (int y = from; y <= last; ++y) {
+      Word* const words = line(levels_[level].squares, y);
+      if (y + reach > height_) {
+        std::fill_n(words, words_, ~Word{0});
+      } else if (level == 0) {
+        std::copy_n(line(levels_[0].runs, y), words_, words);
+      } else {
+        // The squares of half the side at the four corners.
+        const Word* const low = line(levels_[level - 1].squares, y);
+        const Word* const high = line(levels_[level - 1].squares, y + half);
+        const int skip = half / kBits, rest = half % kBits;
+        for (int w = 0; w < words_; ++w) {
+          const auto at = [&](int i) { return i < words_ ? low[i] | high[i] : ~Word{0}; };
+          words[w] = at(w) | at(w + skip) >> rest | at(w + skip + 1) << 1 << (kBits - 1 - rest);
+        }
+      }
+    }
+    for (int b = from / kBand; b <= last / kBand; ++b) {
+      Word* const words = line(levels_[level].bands, b);
+      std::fill_n(words, words_, ~Word{0});
+      for (int y = b * kBand; y < std::min((b + 1) * kBand, height_); ++y) {
+        const Word* const other = line(levels_[level].squares, y);
+        for (int w = 0; w < words_; ++w) words[w] &= other[w];
+      }
+    }
+  }
+}
+
+int Page::skip_full_rows(const Mask& mask, int y, int last, int to, std::int64_t& steps) const {
+  if (mask.squares.empty()) return y;
+  const Square& square = mask.squares.front();
+  const int end_word = to / kBits;
+  const Word end_mask = ~Word{0} >> (kBits - 1 - to % kBits);
+  while (y <= last && (y + square.y) % kBand == 0) {
+    const Shifted taken(line(levels_[square.level].bands, (y + square.y) / kBand), square.x);
+    for (int w = 0; w <= end_word; ++w) {
+      if ((~taken[w] & (w == end_word ? end_mask : ~Word{0})) != 0) {
+        steps += w + 1;
+        return y;
+      }
+    }
+    steps += end_word + 1;
+    y += kBand;
+  }
+  return y;
+}
+
+int Page::first_free(const Mask& mask, int y, int to, std::int64_t& steps) const {
+  FreePlaces free;
+  for (int start = 0; start <= to / kBits; start += kMostWords) {
+    free.first = 0;
+    free.last = std::min(to / kBits - start, kMostWords - 1);
+    std::fill_n(free.words.begin(), free.last + 1, ~Word{0});
+    if (start + free.last == to / kBits) free.words[free.last] >>= kBits - 1 - to % kBits;
+    for (const Square& square : mask.squares) {
+      const Shifted taken(line(levels_[square.level].squares, y + square.y) + start, square.x);
+      for (int w = free.first; w <= free.last; ++w) free.words[w] &= ~taken[w];
+      steps += free.last - free.first + 2;
+      free.narrow();
+      if (free.none()) break;
+    }
     for (const int probe : mask.probes) {
+      if (free.none()) break;
       const Run& run = mask.runs[probe];
       const int level = log2_of(run.end - run.begin);
-      const Word* const words = row(level, y + run.row);
-      const int one = run.begin, other = run.end - (1 << level);
-      const int skip = one / kBits, rest = one % kBits;
-      const int skip2 = other / kBits, rest2 = other % kBits;
-      steps += last - first + 2;
-      // A shift by 64 is none: the word above is shifted by one first.
-      for (int w = first; w <= last; ++w) {
-        const Word a = words[w + skip] >> rest | words[w + skip + 1] << 1 << (kBits - 1 - rest);
-        const Word b = words[w + skip2] >> rest2 | words[w + skip2 + 1] << 1 << (kBits - 1 - rest2);
-        at(w) &= ~(a | b);
-      }
-      while (first <= last && at(first) == 0) ++first;
-      while (last >= first && at(last) == 0) --last;
-      if (first > last) break;
+      const Word* const row = line(levels_[level].runs, y + run.row) + start;
+      const Shifted left(row, run.begin), right(row, run.end - (1 << level));
+      for (int w = free.first; w <= free.last; ++w) free.words[w] &= ~(left[w] | right[w]);
+      steps += 2 * (free.last - free.first + 2);
+      free.narrow();
     }
-    if (first <= last) return first * kBits + std::countr_zero(at(first));
+    if (!free.none()) {
+      return (start + free.first) * kBits + std::countr_zero(free.words[free.first]);
+    }
   }
   return -1;
 }
 
 void Page::take(const Mask& mask, int x, int y) {
+  if (mask.runs.empty()) return;
   int raised = -1;
   for (const Run& run : mask.runs) {
-    const int line = y + run.row;
-    if (raised >= 0 && raised != line) raise_levels(raised);
-    raised = line;
-    Word* const words = row(0, line);
+    const int at = y + run.row;
+    if (raised >= 0 && raised != at) raise_runs(raised);
+    raised = at;
+    Word* const words = line(levels_[0].runs, at);
     const int begin = x + run.begin, end = x + run.end;
     for (int w = begin / kBits; w <= (end - 1) / kBits; ++w) {
       const int low = std::max(begin - w * kBits, 0), high = std::min(end - w * kBits, kBits);
@@ -86,7 +175,8 @@ void Page::take(const Mask& mask, int x, int y) {
       words[w] |= bits;
     }
   }
-  if (raised >= 0) raise_levels(raised);
+  raise_runs(raised);
+  raise_squares(y + mask.runs.front().row, raised);
 }
 
 }  // namespace beltrami

@@ -1,0 +1,150 @@
+#include "pack/problem.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
+
+namespace beltrami {
+namespace {
+
+/// Rounding to single precision moves a place by up to 2^-25 of the page per coordinate.
+constexpr double kRoundingOfPage = 0x1p-22;
+
+/// Cells per side of a page: with more of them masks are tighter and all is slower. Tiny charts
+/// need more, as half a cell is much to them.
+constexpr int kCells = 1024, kCellsOfMany = 2048;
+constexpr Index kMany = 20000;
+
+/// From so many charts on quarter turns are enough: there is always one that fits well.
+constexpr Index kManyForTurns = 600;
+
+}  // namespace
+
+Problem::Problem(std::span<const PackChart> charts, const PackOptions& options, const Work& work)
+    : charts_(charts),
+      options_(options),
+      work_(work),
+      outlines_(charts.size()),
+      base_(charts.size(), Vec2(1, 0)) {
+  parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) {
+      outlines_[c] = outline_of(charts_[c]);
+      if (options_.turns > 4) base_[c] = turn_to_least_box(outlines_[c].hull);
+    }
+  });
+  turns_ = size() >= kManyForTurns ? std::min(options.turns, 4) : options.turns;
+  if (options.block > 1) {
+    cells_ = options.resolution / options.block;
+    cell_ = options.block;
+  } else {
+    cells_ = size() >= kMany ? kCellsOfMany : kCells;
+    cell_ = static_cast<double>(options.resolution) / cells_;
+  }
+}
+
+double Problem::radius() const {
+  return options_.margin / 2 + options_.resolution * kRoundingOfPage;
+}
+
+Vec2 Problem::turn(Index c, int k) const {
+  Vec2 step;
+  if (4 * k % turns_ == 0) {
+    const std::array<Vec2, 4> quarters{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
+    step = quarters[4 * k / turns_];
+  } else {
+    const double angle = 2 * std::numbers::pi * k / turns_;
+    step = {portable::cos(angle), portable::sin(angle)};
+  }
+  const Vec2 turn(base_[c].x() * step.x() - base_[c].y() * step.y(),
+                  base_[c].y() * step.x() + base_[c].x() * step.y());
+  return turn / portable::hypot(turn.x(), turn.y());
+}
+
+Masks Problem::masks(double texels_per_unit) const {
+  Masks masks(charts_.size());
+  parallel_for(work_, size(), 4, [&](std::int64_t begin, std::int64_t end) {
+    for (auto c = static_cast<Index>(begin); c < end; ++c) {
+      if (charts_[c].kept || outlines_[c].edges.empty()) continue;
+      const double density = texels_per_unit * charts_[c].scale / cell_;
+      for (int k = 0; k < turns_; ++k) {
+        masks[c].push_back(mask_of(outlines_[c], turn(c, k), density, radius() / cell_));
+      }
+    }
+  });
+  return masks;
+}
+
+std::vector<Index> Problem::order() const {
+  std::vector<Index> order;
+  std::vector<double> extent(charts_.size());
+  for (Index c = 0; c < size(); ++c) {
+    // Thin charts find a place less easily than round ones of their area.
+    extent[c] = area(c) + length(c) * length(c) / 16;
+    if (!charts_[c].kept) order.push_back(c);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return extent[a] > extent[b]; });
+  return order;
+}
+
+std::vector<Page> Problem::kept_pages(double texels_per_unit) const {
+  std::vector<Page> pages;
+  for (Index c = 0; c < size(); ++c) {
+    if (!charts_[c].kept) continue;
+    const Placement& kept = *charts_[c].kept;
+    if (kept.page < 0 || kept.page >= options_.max_pages) {
+      throw Error(Fault::kInvalidArgument,
+                  "chart " + std::to_string(c) + " keeps its place on page " +
+                      std::to_string(kept.page) +
+                      ", which is not among those that there may be: raise max_pages");
+    }
+    while (size_of(pages) <= kept.page) pages.emplace_back(cells_, cells_);
+    const double density = texels_per_unit * charts_[c].scale / cell_;
+    const Mask mask =
+        mask_at(outlines_[c], kept.turn, density, radius() / cell_, kept.offset / cell_, cells_);
+    pages[kept.page].take(mask, 0, 0);
+  }
+  return pages;
+}
+
+std::vector<Placement> Problem::placements(const Masks& masks, const Layout& layout) const {
+  std::vector<Placement> placements(charts_.size());
+  for (Index c = 0; c < size(); ++c) {
+    if (charts_[c].kept) {
+      placements[c] = *charts_[c].kept;
+      continue;
+    }
+    const Spot& spot = layout.spots[c];
+    placements[c].page = spot.page;
+    if (masks[c].empty()) continue;
+    placements[c].turn = turn(c, spot.turn);
+    placements[c].offset = cell_ * (Vec2(spot.x, spot.y) + masks[c][spot.turn].origin);
+  }
+  return placements;
+}
+
+Packing Problem::packing(std::vector<Placement> placements, double texels_per_unit) const {
+  Packing packing;
+  packing.texels_per_unit = texels_per_unit;
+  for (const Placement& placement : placements) {
+    packing.pages = std::max(packing.pages, placement.page + 1);
+  }
+  packing.page_utilisation.resize(packing.pages, 0.0);
+  const double side = texels_per_unit / options_.resolution;
+  for (Index c = 0; c < size(); ++c) {
+    packing.page_utilisation[placements[c].page] += area(c) * side * side;
+  }
+  for (const double share : packing.page_utilisation) {
+    packing.utilisation += share / packing.pages;
+  }
+  packing.placements = std::move(placements);
+  return packing;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,65 @@
+// Charts as a packer sees them: outlines, the grid of the pages, masks on it, and the way back.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "pack/greedy.h"
+#include "pack/mask.h"
+#include "pack/outline.h"
+#include "pack/pack.h"
+#include "pack/page.h"
+
+namespace beltrami {
+
+using Masks = std::vector<std::vector<Mask>>;  // per chart, per turn
+
+/// Keeps the references. Precondition: options in range.
+class Problem {
+ public:
+  Problem(std::span<const PackChart> charts, const PackOptions& options, const Work& work);
+
+  Index size() const { return static_cast<Index>(charts_.size()); }
+  const PackOptions& options() const { return options_; }
+  const Work& work() const { return work_; }
+  const PackChart& chart(Index c) const { return charts_[c]; }
+  const Outline& outline(Index c) const { return outlines_[c]; }
+  /// Areas and lengths at a density of one.
+  double area(Index c) const { return chart(c).scale * chart(c).scale * outlines_[c].area; }
+  double length(Index c) const { return chart(c).scale * outlines_[c].length; }
+
+  /// Cells per side of a page, and texels per side of a cell.
+  int cells() const { return cells_; }
+  double cell() const { return cell_; }
+  /// Half the margin, with what rounding takes, in texels.
+  double radius() const;
+
+  int turns() const { return turns_; }
+  Vec2 turn(Index c, int k) const;
+
+  /// Of the charts that are not kept.
+  Masks masks(double texels_per_unit) const;
+  /// Those charts, large ones first.
+  std::vector<Index> order() const;
+  /// Pages with the charts that are kept. Throws Error INVALID_ARGUMENT where max_pages has no page
+  /// of that number.
+  std::vector<Page> kept_pages(double texels_per_unit) const;
+
+  /// The placements of a layout.
+  std::vector<Placement> placements(const Masks& masks, const Layout& layout) const;
+  /// A packing with its figures.
+  Packing packing(std::vector<Placement> placements, double texels_per_unit) const;
+
+ private:
+  std::span<const PackChart> charts_;
+  const PackOptions& options_;
+  const Work& work_;
+  std::vector<Outline> outlines_;
+  std::vector<Vec2> base_;  // the turn from which a chart's others are counted
+  int cells_ = 0, turns_ = 1;
+  double cell_ = 1;
+};
+
+}  // namespace beltrami

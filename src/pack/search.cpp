@@ -1,0 +1,261 @@
+#include "pack/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+
+namespace beltrami {
+namespace {
+
+/// Words of masks and pages that the search for a better order may look at, at an effort of one:
+/// about a second.
+constexpr double kSteps = 2e8;
+
+/// Charts up to which orders are searched for.
+constexpr Index kMostToOrder = 600;
+
+/// Room beyond the page in which layouts are made that then are brought to its size.
+constexpr double kStrip = 1.4;
+
+/// The density at which the charts with their margins would fill a share of the pages.
+double density_for(const Problem& problem, double share) {
+  double area = 0, length = 0;
+  for (Index c = 0; c < problem.size(); ++c) {
+    area += problem.area(c);
+    length += problem.length(c);
+  }
+  // area d^2 + length r d + n pi r^2 = share pages side^2, in texels, with r about half the margin
+  // and half a cell.
+  const double radius = problem.radius() + problem.cell() / 2;
+  const double side = problem.options().resolution;
+  const double room = share * problem.options().max_pages * side * side;
+  const double rest =
+      std::max(0.02 * room, room - problem.size() * std::numbers::pi * radius * radius);
+  if (area > 0) {
+    const double half = length * radius / 2;
+    return (std::sqrt(half * half + area * rest) - half) / area;
+  }
+  return length > 0 ? side / length : 1;
+}
+
+[[noreturn]] void refuse_margins(const Problem& problem) {
+  throw Error(Fault::kInvalidArgument,
+              "the margins of " + std::to_string(problem.size()) +
+                  " charts alone take more than the pages have: raise the resolution or the number "
+                  "of pages, or lower the margin");
+}
+
+/// A generator of numbers (Steele, Lea and Flood 2014): the same everywhere.
+class Numbers {
+ public:
+  /// In [0, count).
+  std::size_t below(std::size_t count) {
+    state_ += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state_;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return static_cast<std::size_t>((z ^ z >> 31) % count);
+  }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+/// Layouts on one page: at one density in a room that is larger than the page, by which the next
+/// density is chosen.
+class OnePage {
+ public:
+  explicit OnePage(const Problem& problem)
+      : problem_(problem),
+        cells_(problem.cells()),
+        strip_(cells_, static_cast<int>(kStrip * cells_)),
+        square_(static_cast<int>(kStrip * cells_), static_cast<int>(kStrip * cells_)),
+        order_(problem.order()) {}
+
+  Packed run() {
+    start();
+    if (problem_.size() < kMostToOrder) improve();
+    return std::move(best_);
+  }
+
+ private:
+  /// Less is better: the cells per side that the page must have, then how high charts lie.
+  struct Cost {
+    int side = 0;
+    std::int64_t tops = 0;
+    auto operator<=>(const Cost&) const = default;
+  };
+
+  Layout lay(const std::vector<Index>& order, Rule rule) {
+    const Page& page = rule == Rule::kLowest ? strip_ : square_;
+    Layout layout = place_in_order(masks_, order, rule, {}, page, 1);
+    steps_ += layout.steps;
+    return layout;
+  }
+
+  Cost cost(const Layout& layout) const {
+    if (layout.failed != kNone) return {static_cast<int>(kStrip * cells_) + 1, 0};
+    Cost cost{std::max(layout.width, layout.height), 0};
+    for (std::size_t c = 0; c < masks_.size(); ++c) {
+      if (masks_[c].empty()) continue;
+      const Mask& mask = masks_[c][layout.spots[c].turn];
+      cost.tops += static_cast<std::int64_t>(layout.spots[c].y + mask.height) * mask.cells;
+    }
+    return cost;
+  }
+
+  void set_density(double density) {
+    density_ = density;
+    masks_ = problem_.masks(density);
+  }
+
+  void keep(const Layout& layout) {
+    if (density_ <= best_.texels_per_unit) return;
+    best_ = {problem_.placements(masks_, layout), density_};
+  }
+
+  /// The density at which a layout of a strip would be as high as the page: of many charts the
+  /// area tells.
+  double fitting(const Layout& layout) const {
+    return density_ * std::sqrt(cells_ / std::max<double>(layout.height, 1));
+  }
+
+  /// Finds a density at which the first order fits, and is nearly full.
+  void start() {
+    constexpr double kEnough = 0.985;  // of the side
+    constexpr int kMostTries = 12;
+    double low = 0, high = 0;
+    set_density(density_for(problem_, kFirstShare));
+    for (int tries = 0;; ++tries) {
+      const Layout layout = lay(order_, Rule::kLowest);
+      const bool whole = layout.failed == kNone;
+      const bool fits = whole && layout.height <= cells_;
+      if (fits) keep(layout);
+      (fits ? low : high) = density_;
+      if (fits && (layout.height >= kEnough * cells_ || tries >= kMostTries)) return;
+      if (low > 0 && high > 0 && high < 1.01 * low) return;
+      if (tries > 200) refuse_margins(problem_);
+      double next = whole ? 0.998 * fitting(layout) : kStepDown * density_;
+      if (low > 0 && high > 0 && (next <= low || next >= high)) next = 0.5 * (low + high);
+      set_density(next);
+    }
+  }
+
+  /// Tries orders near the best, at a density at which that does not fit yet.
+  void improve() {
+    const auto budget = static_cast<std::int64_t>(kSteps * problem_.options().effort);
+    Numbers numbers;
+    Rule rule = Rule::kLowest;
+    raise_density();
+    std::vector<Index> order = order_;
+    Cost current = cost(lay(order, rule));
+    {
+      const Layout other = lay(order, Rule::kCorner);
+      if (cost(other) < current) {
+        rule = Rule::kCorner;
+        current = cost(other);
+      }
+    }
+    while (steps_ < budget && order.size() > 1 && !problem_.work().out_of_time()) {
+      std::vector<Index> tried = order;
+      change(numbers, tried);
+      const Layout layout = lay(tried, rule);
+      const Cost found = cost(layout);
+      if (current < found) continue;
+      order = std::move(tried);
+      current = found;
+      if (found.side <= cells_) {
+        keep(layout);
+        raise_density();
+        current = cost(lay(order, rule));
+      }
+    }
+  }
+
+  void raise_density() {
+    constexpr double kRaise = 1.006;
+    set_density(kRaise * best_.texels_per_unit);
+  }
+
+  /// Takes a chart to another place, mostly an earlier one, or changes two.
+  void change(Numbers& numbers, std::vector<Index>& order) const {
+    const std::size_t from = numbers.below(order.size()), to = numbers.below(order.size());
+    if (numbers.below(2) == 0) {
+      std::swap(order[from], order[to]);
+    } else if (from > to) {
+      std::rotate(order.begin() + to, order.begin() + from, order.begin() + from + 1);
+    } else {
+      std::rotate(order.begin() + from, order.begin() + from + 1, order.begin() + to + 1);
+    }
+  }
+
+  static constexpr double kFirstShare = 0.75, kStepDown = 0.8;
+
+  const Problem& problem_;
+  int cells_;
+  Page strip_, square_;
+  std::vector<Index> order_;
+  double density_ = 0;
+  Masks masks_;
+  std::int64_t steps_ = 0;
+  Packed best_;
+};
+
+/// Several pages: each is full before the next is begun, so that only fits and does not tell.
+Packed pack_on_pages(const Problem& problem) {
+  constexpr double kEnough = 1.005;
+  const Page empty(problem.cells(), problem.cells());
+  const std::vector<Index> order = problem.order();
+  double density = density_for(problem, 0.75), low = 0, high = 0;
+  Packed best;
+  for (int step = 0; step < 200; ++step) {
+    const Masks masks = problem.masks(density);
+    const Layout layout =
+        place_in_order(masks, order, Rule::kLowest, {}, empty, problem.options().max_pages);
+    if (layout.failed == kNone) {
+      low = density;
+      best = {problem.placements(masks, layout), density};
+    } else {
+      high = density;
+    }
+    if (low > 0 && high > 0 && high < kEnough * low) break;
+    if (low == 0) {
+      density *= 0.9;
+    } else {
+      density = high == 0 ? 1.05 * density : 0.5 * (low + high);
+    }
+  }
+  if (low == 0) refuse_margins(problem);
+  return best;
+}
+
+}  // namespace
+
+Packed pack_at_largest(const Problem& problem) {
+  return problem.options().max_pages == 1 ? OnePage(problem).run() : pack_on_pages(problem);
+}
+
+Packed pack_at_given(const Problem& problem) {
+  const double density = problem.options().texels_per_unit;
+  const Masks masks = problem.masks(density);
+  const Page empty(problem.cells(), problem.cells());
+  const std::vector<Index> order = problem.order();
+  for (const Rule rule : {Rule::kLowest, Rule::kCorner}) {
+    const Layout layout = place_in_order(masks, order, rule, problem.kept_pages(density), empty,
+                                         problem.options().max_pages);
+    if (layout.failed == kNone) return {problem.placements(masks, layout), density};
+    if (rule == Rule::kCorner) {
+      throw Error(Fault::kInvalidArgument,
+                  "chart " + std::to_string(layout.failed) +
+                      " finds no room at these texels per unit: lower them, or raise the "
+                      "resolution or the number of pages");
+    }
+  }
+  return {};
+}
+
+}  // namespace beltrami

@@ -1,0 +1,21 @@
+// The density at which charts fill their pages, and the order in which they do.
+#pragma once
+
+#include "pack/problem.h"
+
+namespace beltrami {
+
+struct Packed {
+  std::vector<Placement> placements;
+  double texels_per_unit = 0;
+};
+
+/// The largest density that is found at which all charts fit into the pages that there may be.
+/// Throws Error INVALID_ARGUMENT where the margins alone take more than these. Precondition: no
+/// chart is kept.
+Packed pack_at_largest(const Problem& problem);
+
+/// At the density that the options give. Throws Error INVALID_ARGUMENT where that does not fit.
+Packed pack_at_given(const Problem& problem);
+
+}  // namespace beltrami
