@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "pack/grow.h"
 
 namespace beltrami {
 namespace {
@@ -236,7 +237,9 @@ Packed pack_on_pages(const Problem& problem) {
 }  // namespace
 
 Packed pack_at_largest(const Problem& problem) {
-  return problem.options().max_pages == 1 ? OnePage(problem).run() : pack_on_pages(problem);
+  Packed packed =
+      problem.options().max_pages == 1 ? OnePage(problem).run() : pack_on_pages(problem);
+  return problem.size() < kMostToOrder ? grow(problem, std::move(packed)) : packed;
 }
 
 Packed pack_at_given(const Problem& problem) {

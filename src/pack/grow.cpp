@@ -1,0 +1,342 @@
+#include "pack/grow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "base/portable_math.h"
+#include "pack/clearance.h"
+#include "pack/edge_grid.h"
+
+namespace beltrami {
+namespace {
+
+/// Points of borders that may be moved in steps, at an effort of one: about a second.
+constexpr double kPointSteps = 2e6;
+
+/// Margins below this many texels leave no room for the steps to err.
+constexpr double kLeastMargin = 1;
+
+/// Texels: borders are thinned by so much, distances held to so much; how far contacts are looked
+/// for beyond the margin, and how far a point may move in a step.
+constexpr double kThin = 0.02, kHeld = 0.01, kAhead = 0.75, kFurthest = 0.5;
+
+/// Where a chart is: the place of its middle, and how it is turned.
+struct Pose {
+  Vec2 middle{0, 0}, turn{1, 0};
+};
+
+/// A chart with its middle at the origin, at a density of one.
+struct Body {
+  Index chart = kNone, page = 0;
+  std::vector<Vec2> points;
+  std::vector<std::array<Index, 2>> edges;
+  double lightness = 0, slackness = 0;  // inverses of mass and moment of inertia
+};
+
+Vec2 rotated(const Vec2& turn, const Vec2& p) {
+  return {turn.x() * p.x() - turn.y() * p.y(), turn.y() * p.x() + turn.x() * p.y()};
+}
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// The border with the vertices left out that lie within `width` of the edge that replaces them.
+void thin(Body& body, double width) {
+  const Index count = size_of(body.points);
+  std::vector<Index> next(count, kNone), in(count, 0), out(count, 0);
+  for (const auto& [from, to] : body.edges) {
+    next[from] = to;
+    ++out[from];
+    ++in[to];
+  }
+  std::vector<std::array<Index, 2>> edges;
+  std::vector<bool> seen(count, false);
+  const auto is_plain = [&](Index p) { return in[p] == 1 && out[p] == 1; };
+  const auto walk = [&](Index from, Index first) {
+    // One edge after the other is added to the replaced ones, until one of their points is far.
+    std::vector<Index> passed;
+    Index start = from, here = first;
+    for (;;) {
+      const bool ends = !is_plain(here) || seen[here];
+      if (!ends) seen[here] = true;
+      const Index beyond = ends ? kNone : next[here];
+      passed.push_back(here);
+      bool far = ends || passed.size() > 64;
+      for (std::size_t i = 0; !far && i < passed.size(); ++i) {
+        const Vec2& p = body.points[passed[i]];
+        far = (nearest_on(body.points[start], body.points[beyond], p) - p).norm() > width;
+      }
+      if (far) {
+        edges.push_back({start, here});
+        start = here;
+        passed.clear();
+      }
+      if (ends) return;
+      here = beyond;
+    }
+  };
+  for (const auto& [from, to] : body.edges) {
+    if (!is_plain(from)) walk(from, to);
+  }
+  for (Index p = 0; p < count; ++p) {
+    if (!is_plain(p) || seen[p]) continue;
+    seen[p] = true;
+    walk(p, next[p]);
+  }
+  std::vector<Index> place(count, kNone);
+  std::vector<Vec2> points;
+  for (auto& edge : edges) {
+    for (Index& end : edge) {
+      if (place[end] == kNone) {
+        place[end] = size_of(points);
+        points.push_back(body.points[end]);
+      }
+      end = place[end];
+    }
+  }
+  body.points = std::move(points);
+  body.edges = std::move(edges);
+}
+
+/// Two charts that may touch, or one and the page: `normal` leads from the second to the first, by
+/// whose motion the gap opens.
+struct Contact {
+  Index first = kNone, second = kNone;
+  Vec2 arm_first{0, 0}, arm_second{0, 0};  // from the middles to the points that may touch
+  Vec2 normal{0, 0};
+  double gap = 0;   // beyond the margin: negative where it is broken
+  double mass = 0;  // as the push feels it
+  double push = 0;  // never negative
+};
+
+class Growth {
+ public:
+  Growth(const Problem& problem, const Packed& packed)
+      : side_(problem.options().resolution),
+        margin_(2 * problem.radius() + 2 * (kThin + kHeld)),
+        turns_(problem.options().turns > 4) {
+    for (Index c = 0; c < problem.size(); ++c) {
+      const Outline& outline = problem.outline(c);
+      if (outline.edges.empty()) continue;
+      const double density = packed.texels_per_unit * problem.chart(c).scale;
+      Body body{c, packed.placements[c].page, outline.points, outline.edges};
+      Eigen::AlignedBox2d box;
+      for (const Vec2& p : outline.hull) box.extend(p);
+      const Vec2 middle = box.center();
+      for (Vec2& p : body.points) p = problem.chart(c).scale * (p - middle);
+      thin(body, kThin / packed.texels_per_unit);
+      double inertia = 0;
+      for (const Vec2& p : body.points) inertia += p.squaredNorm();
+      inertia *= packed.texels_per_unit * packed.texels_per_unit / size_of(body.points);
+      const double mass = std::max(1.0, box.sizes().norm() * density);
+      body.lightness = 1 / mass;
+      body.slackness = turns_ ? 1 / (mass * std::max(inertia, 1.0)) : 0;
+      points_ += size_of(body.points);
+      poses_.push_back({packed.placements[c].place(middle, density), packed.placements[c].turn});
+      middles_.push_back(problem.chart(c).scale * middle);
+      bodies_.push_back(std::move(body));
+    }
+    density_ = packed.texels_per_unit;
+  }
+
+  void run(double effort) {
+    constexpr double kFirstRate = 0.004, kGreatestRate = 0.01, kLeastRate = 0.0004;
+    const double budget = effort * kPointSteps;
+    double rate = kFirstRate;
+    while (rate > kLeastRate && spent_ < budget) {
+      const std::vector<Pose> before = poses_;
+      if (settle(density_ * (1 + rate))) {
+        density_ *= 1 + rate;
+        rate = std::min(1.3 * rate, kGreatestRate);
+      } else {
+        poses_ = before;
+        rate /= 2;
+      }
+    }
+  }
+
+  Packed result(const Packed& packed) const {
+    Packed grown{packed.placements, density_};
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      Placement& placement = grown.placements[bodies_[b].chart];
+      placement.turn = poses_[b].turn;
+      placement.offset = poses_[b].middle - density_ * rotated(poses_[b].turn, middles_[b]);
+    }
+    return grown;
+  }
+
+ private:
+  /// Moves the charts until all margins hold at a density.
+  bool settle(double density) {
+    constexpr int kMostSteps = 30;
+    double worst_before = HUGE_VAL;
+    for (int step = 0; step < kMostSteps; ++step) {
+      find_contacts(density);
+      spent_ += static_cast<double>(points_);
+      double worst = 0;
+      for (const Contact& contact : contacts_) worst = std::max(worst, -contact.gap);
+      if (worst <= kHeld) return true;
+      // Where a third of the steps have not halved it, all is jammed.
+      if (step % 10 == 9) {
+        if (worst > 0.6 * worst_before) return false;
+        worst_before = worst;
+      }
+      push();
+    }
+    return false;
+  }
+
+  void find_contacts(double density) {
+    std::vector<PlacedOutline> placed(bodies_.size());
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      placed[b].page = bodies_[b].page;
+      placed[b].edges = bodies_[b].edges;
+      for (const Vec2& p : bodies_[b].points) {
+        placed[b].points.push_back(poses_[b].middle + density * rotated(poses_[b].turn, p));
+      }
+    }
+    contacts_.clear();
+    const EdgeGrid grid(placed, margin_ + kAhead);
+    PollSometimes poll;
+    for (Index b = 0; b < size_of(bodies_); ++b) {
+      for (const Vec2& p : placed[b].points) {
+        poll();
+        add_walls(b, p);
+        add_nearest(grid, placed, b, p);
+      }
+    }
+  }
+
+  /// Between a point and the edges of the page.
+  void add_walls(Index body, const Vec2& p) {
+    for (int axis = 0; axis < 2; ++axis) {
+      for (const double sign : {1.0, -1.0}) {
+        const double gap = (sign > 0 ? p[axis] : side_ - p[axis]) - margin_ / 2;
+        if (gap < kAhead) add(body, kNone, p, p, sign * Vec2::Unit(axis), gap);
+      }
+    }
+  }
+
+  /// Between a point and the nearest edge of each chart that is near.
+  void add_nearest(const EdgeGrid& grid, const std::vector<PlacedOutline>& placed, Index body,
+                   const Vec2& p) {
+    Index other = kNone;
+    double least = 0;
+    Vec2 nearest(0, 0);
+    const auto flush = [&] {
+      if (other == kNone) return;
+      const double distance = std::sqrt(least);
+      if (distance > 0 && distance < margin_ + kAhead) {
+        add(body, other, p, nearest, (p - nearest) / distance, distance - margin_);
+      }
+    };
+    for (const ChartEdge& near : grid.near(placed[body].page, p)) {  // chart by chart
+      if (near.chart == body) continue;
+      if (near.chart != other) {
+        flush();
+        other = near.chart;
+        least = HUGE_VAL;
+      }
+      const auto& [from, to] = placed[other].edges[near.edge];
+      const Vec2 place = nearest_on(placed[other].points[from], placed[other].points[to], p);
+      const double squared = (place - p).squaredNorm();
+      if (squared < least) {
+        least = squared;
+        nearest = place;
+      }
+    }
+    flush();
+  }
+
+  void add(Index first, Index second, const Vec2& p, const Vec2& q, const Vec2& normal,
+           double gap) {
+    Contact contact{first, second, p - poses_[first].middle, Vec2(0, 0), normal, gap};
+    const double turned = cross(contact.arm_first, normal);
+    double give = bodies_[first].lightness + bodies_[first].slackness * turned * turned;
+    if (second != kNone) {
+      contact.arm_second = q - poses_[second].middle;
+      const double other = cross(contact.arm_second, normal);
+      give += bodies_[second].lightness + bodies_[second].slackness * other * other;
+    }
+    contact.mass = 1 / give;
+    contacts_.push_back(contact);
+  }
+
+  /// The least motions that leave no gap negative, to first order.
+  void push() {
+    constexpr int kSweeps = 40;
+    std::vector<Eigen::Vector3d> moves(bodies_.size(), Eigen::Vector3d::Zero());
+    const auto move_by = [&](Index b, const Vec2& arm, const Vec2& normal, double push) {
+      moves[b].head<2>() += bodies_[b].lightness * push * normal;
+      moves[b].z() += bodies_[b].slackness * push * cross(arm, normal);
+    };
+    const auto opening = [&](Index b, const Vec2& arm, const Vec2& normal) {
+      return normal.dot(moves[b].head<2>()) + cross(arm, normal) * moves[b].z();
+    };
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      for (Contact& contact : contacts_) {
+        double gap = contact.gap + opening(contact.first, contact.arm_first, contact.normal);
+        if (contact.second != kNone) {
+          gap -= opening(contact.second, contact.arm_second, contact.normal);
+        }
+        const double push = std::max(0.0, contact.push - gap * contact.mass);
+        const double more = push - contact.push;
+        if (more == 0) continue;
+        contact.push = push;
+        move_by(contact.first, contact.arm_first, contact.normal, more);
+        if (contact.second != kNone) {
+          move_by(contact.second, contact.arm_second, contact.normal, -more);
+        }
+      }
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) apply(moves[b], b);
+  }
+
+  void apply(const Eigen::Vector3d& move, std::size_t b) {
+    double reach = 0;
+    for (const Vec2& p : bodies_[b].points) reach = std::max(reach, p.squaredNorm());
+    const double far = move.head<2>().norm() + std::abs(move.z()) * density_ * std::sqrt(reach);
+    const double share = far > kFurthest ? kFurthest / far : 1;
+    poses_[b].middle += share * move.head<2>();
+    const Vec2 turn = rotated(poses_[b].turn, Vec2(1, share * move.z()));
+    if (turns_) poses_[b].turn = turn / portable::hypot(turn.x(), turn.y());
+  }
+
+  double side_, margin_;
+  bool turns_;
+  double density_ = 0, spent_ = 0;
+  Index points_ = 0;
+  std::vector<Body> bodies_;
+  std::vector<Vec2> middles_;  // of the charts' own points, times their scale
+  std::vector<Pose> poses_;
+  std::vector<Contact> contacts_;
+};
+
+/// Whether all charts keep the margin, by the distances of their whole borders.
+bool holds(const Problem& problem, const Packed& packed) {
+  std::vector<PlacedOutline> charts;
+  for (Index c = 0; c < problem.size(); ++c) {
+    charts.push_back(placed(problem.outline(c), packed.placements[c],
+                            packed.texels_per_unit * problem.chart(c).scale));
+  }
+  const double margin = 2 * problem.radius();
+  const Clearance least = clearance(charts, problem.options().resolution, margin);
+  return least.charts >= margin && least.page >= margin / 2;
+}
+
+}  // namespace
+
+Packed grow(const Problem& problem, Packed packed) {
+  if (problem.options().margin < kLeastMargin || problem.options().block > 1) return packed;
+  Growth growth(problem, packed);
+  growth.run(problem.options().effort);
+  Packed grown = growth.result(packed);
+  return grown.texels_per_unit > packed.texels_per_unit && holds(problem, grown)
+             ? std::move(grown)
+             : std::move(packed);
+}
+
+}  // namespace beltrami

@@ -1,0 +1,18 @@
+// Charts that grow until none can move any more.
+#pragma once
+
+#include "pack/problem.h"
+#include "pack/search.h"
+
+namespace beltrami {
+
+/// Raises the density as far as charts that touch can push one another aside: cells of a grid keep
+/// them about a cell further apart than the margin asks, and this gives it back, and more. Each
+/// step grows all charts a little about their middles, collects where they are nearer than the
+/// margin, and finds the least motions, turns included where any are allowed, that end this to
+/// first order (projected Gauss-Seidel, as in rigid body dynamics; Lubachevsky and Stillinger 1990
+/// grow disks so). What comes back keeps the margin by the distances of its own numbers, and is at
+/// least as dense. Leaves alone what has margins below a texel, blocks or kept charts.
+Packed grow(const Problem& problem, Packed packed);
+
+}  // namespace beltrami
