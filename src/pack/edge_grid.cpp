@@ -80,11 +80,4 @@ std::span<const ChartEdge> EdgeGrid::near(Index page, const Vec2& place) const {
   return std::span(edges_).subspan(start_[k], start_[k + 1] - start_[k]);
 }
 
-Vec2 nearest_on(const Vec2& p, const Vec2& q, const Vec2& place) {
-  const Vec2 along = q - p;
-  const double squared = along.squaredNorm();
-  if (!(squared > 0)) return p;
-  return p + along * std::clamp((place - p).dot(along) / squared, 0.0, 1.0);
-}
-
 }  // namespace beltrami

@@ -34,7 +34,4 @@ class EdgeGrid {
   std::vector<ChartEdge> edges_;
 };
 
-/// The point of the segment p q that is nearest to a place.
-Vec2 nearest_on(const Vec2& p, const Vec2& q, const Vec2& place);
-
 }  // namespace beltrami

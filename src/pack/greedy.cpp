@@ -1,12 +1,35 @@
 #include "pack/greedy.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "base/interrupt.h"
 
 namespace beltrami {
 namespace {
+
+/// Of so many charts on, none looks at all rows.
+constexpr std::size_t kManyCharts = 400;
+
+/// What a row of a page or a mask costs beside the search, in steps.
+constexpr std::int64_t kStepsPerRow = 100;
+
+/// Charts are of about one size down to this share of the cells of the first.
+constexpr double kSameSize = 0.8;
+
+/// The rows below which recent charts of about this size have found no place.
+class Floor {
+ public:
+  int row() const { return count_ < kRecent ? 0 : *std::min_element(rows_.begin(), rows_.end()); }
+  void found(int row) { rows_[count_++ % kRecent] = row; }
+  void reset() { count_ = 0; }
+
+ private:
+  static constexpr std::size_t kRecent = 6;
+  std::array<int, kRecent> rows_{};
+  std::size_t count_ = 0;
+};
 
 /// A place and what it is worth: less is better.
 struct Candidate {
@@ -17,10 +40,10 @@ struct Candidate {
 };
 
 /// The best place of one mask by its upper side; rows that cannot be better are not looked at.
-void look_lowest(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
+void look_lowest(const Page& page, const Mask& mask, int from, Spot spot, std::int64_t& steps,
                  Candidate& best) {
   const int last = page.height() - mask.height;
-  for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
+  for (int y = from; y <= last && y + mask.height <= best.cost; ++y) {
     y = page.skip_full_rows(mask, y, last, page.width() - mask.width, steps);
     if (y > last || y + mask.height > best.cost) return;
     const int x = page.first_free(mask, y, page.width() - mask.width, steps);
@@ -36,10 +59,10 @@ void look_lowest(const Page& page, const Mask& mask, Spot spot, std::int64_t& st
 }
 
 /// Likewise by the greater of its upper and its right side.
-void look_corner(const Page& page, const Mask& mask, Spot spot, std::int64_t& steps,
+void look_corner(const Page& page, const Mask& mask, int from, Spot spot, std::int64_t& steps,
                  Candidate& best) {
   const int last = page.height() - mask.height;
-  for (int y = 0; y <= last && y + mask.height <= best.cost; ++y) {
+  for (int y = from; y <= last && y + mask.height <= best.cost; ++y) {
     const int furthest = std::min(page.width(), best.cost) - mask.width;
     if (furthest < 0) return;
     y = page.skip_full_rows(mask, y, last, furthest, steps);
@@ -57,7 +80,7 @@ void look_corner(const Page& page, const Mask& mask, Spot spot, std::int64_t& st
 }
 
 Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index index, Rule rule,
-                     std::int64_t& steps) {
+                     int from, std::int64_t& steps) {
   Candidate best;
   for (int turn = 0; turn < static_cast<int>(masks.size()); ++turn) {
     const Mask& mask = masks[turn];
@@ -65,9 +88,9 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
     if (mask.cells > page.free_cells()) continue;
     const Spot spot{index, turn, 0, 0};
     if (rule == Rule::kLowest) {
-      look_lowest(page, mask, spot, steps, best);
+      look_lowest(page, mask, from, spot, steps, best);
     } else {
-      look_corner(page, mask, spot, steps, best);
+      look_corner(page, mask, from, spot, steps, best);
     }
   }
   return best;
@@ -78,7 +101,11 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
                       Rule rule, std::vector<Page> pages, const Page& empty, int max_pages) {
   Layout layout;
+  layout.steps = empty.height() * kStepsPerRow;
   layout.spots.resize(masks.size());
+  const bool many = order.size() >= kManyCharts;
+  std::vector<Floor> floors(pages.size());
+  double size = 0;  // of the charts that the floors are about
   for (const Index chart : order) {
     poll_interrupt();
     Spot& spot = layout.spots[chart];
@@ -86,10 +113,21 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<con
       spot.page = 0;
       continue;
     }
+    const auto cells = static_cast<double>(masks[chart][0].cells);
+    if (cells < kSameSize * size || size == 0) {
+      size = cells;
+      for (Floor& floor : floors) floor.reset();
+    }
     for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
-      if (p == size_of(pages)) pages.push_back(empty);
-      spot = best_place(pages[p], masks[chart], p, rule, layout.steps).spot;
-      if (pages[p].empty() && spot.page == kNone) break;  // it is too large for any page
+      if (p == size_of(pages)) {
+        pages.push_back(empty);
+        floors.emplace_back();
+      }
+      const int from = many ? floors[p].row() : 0;
+      const bool was_empty = pages[p].empty();
+      spot = best_place(pages[p], masks[chart], p, rule, from, layout.steps).spot;
+      floors[p].found(spot.page == kNone ? pages[p].height() : spot.y);
+      if (was_empty && spot.page == kNone) break;  // it is too large for any page
     }
     if (spot.page == kNone) {
       layout.failed = chart;
@@ -97,6 +135,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<con
     }
     const Mask& mask = masks[chart][spot.turn];
     pages[spot.page].take(mask, spot.x, spot.y);
+    layout.steps += mask.height * kStepsPerRow;
     layout.width = std::max(layout.width, spot.x + mask.width);
     layout.height = std::max(layout.height, spot.y + mask.height);
   }

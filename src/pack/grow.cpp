@@ -30,8 +30,7 @@ struct Pose {
 /// A chart with its middle at the origin, at a density of one.
 struct Body {
   Index chart = kNone, page = 0;
-  std::vector<Vec2> points;
-  std::vector<std::array<Index, 2>> edges;
+  Outline outline;
   double lightness = 0, slackness = 0;  // inverses of mass and moment of inertia
 };
 
@@ -41,64 +40,6 @@ Vec2 rotated(const Vec2& turn, const Vec2& p) {
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
-}
-
-/// The border with the vertices left out that lie within `width` of the edge that replaces them.
-void thin(Body& body, double width) {
-  const Index count = size_of(body.points);
-  std::vector<Index> next(count, kNone), in(count, 0), out(count, 0);
-  for (const auto& [from, to] : body.edges) {
-    next[from] = to;
-    ++out[from];
-    ++in[to];
-  }
-  std::vector<std::array<Index, 2>> edges;
-  std::vector<bool> seen(count, false);
-  const auto is_plain = [&](Index p) { return in[p] == 1 && out[p] == 1; };
-  const auto walk = [&](Index from, Index first) {
-    // One edge after the other is added to the replaced ones, until one of their points is far.
-    std::vector<Index> passed;
-    Index start = from, here = first;
-    for (;;) {
-      const bool ends = !is_plain(here) || seen[here];
-      if (!ends) seen[here] = true;
-      const Index beyond = ends ? kNone : next[here];
-      passed.push_back(here);
-      bool far = ends || passed.size() > 64;
-      for (std::size_t i = 0; !far && i < passed.size(); ++i) {
-        const Vec2& p = body.points[passed[i]];
-        far = (nearest_on(body.points[start], body.points[beyond], p) - p).norm() > width;
-      }
-      if (far) {
-        edges.push_back({start, here});
-        start = here;
-        passed.clear();
-      }
-      if (ends) return;
-      here = beyond;
-    }
-  };
-  for (const auto& [from, to] : body.edges) {
-    if (!is_plain(from)) walk(from, to);
-  }
-  for (Index p = 0; p < count; ++p) {
-    if (!is_plain(p) || seen[p]) continue;
-    seen[p] = true;
-    walk(p, next[p]);
-  }
-  std::vector<Index> place(count, kNone);
-  std::vector<Vec2> points;
-  for (auto& edge : edges) {
-    for (Index& end : edge) {
-      if (place[end] == kNone) {
-        place[end] = size_of(points);
-        points.push_back(body.points[end]);
-      }
-      end = place[end];
-    }
-  }
-  body.points = std::move(points);
-  body.edges = std::move(edges);
 }
 
 /// Two charts that may touch, or one and the page: `normal` leads from the second to the first, by
@@ -122,19 +63,19 @@ class Growth {
       const Outline& outline = problem.outline(c);
       if (outline.edges.empty()) continue;
       const double density = packed.texels_per_unit * problem.chart(c).scale;
-      Body body{c, packed.placements[c].page, outline.points, outline.edges};
+      Body body{c, packed.placements[c].page, outline};
       Eigen::AlignedBox2d box;
       for (const Vec2& p : outline.hull) box.extend(p);
       const Vec2 middle = box.center();
-      for (Vec2& p : body.points) p = problem.chart(c).scale * (p - middle);
-      thin(body, kThin / packed.texels_per_unit);
+      for (Vec2& p : body.outline.points) p = problem.chart(c).scale * (p - middle);
+      thin(body.outline, kThin / packed.texels_per_unit);
       double inertia = 0;
-      for (const Vec2& p : body.points) inertia += p.squaredNorm();
-      inertia *= packed.texels_per_unit * packed.texels_per_unit / size_of(body.points);
+      for (const Vec2& p : body.outline.points) inertia += p.squaredNorm();
+      inertia *= packed.texels_per_unit * packed.texels_per_unit / size_of(body.outline.points);
       const double mass = std::max(1.0, box.sizes().norm() * density);
       body.lightness = 1 / mass;
       body.slackness = turns_ ? 1 / (mass * std::max(inertia, 1.0)) : 0;
-      points_ += size_of(body.points);
+      points_ += size_of(body.outline.points);
       poses_.push_back({packed.placements[c].place(middle, density), packed.placements[c].turn});
       middles_.push_back(problem.chart(c).scale * middle);
       bodies_.push_back(std::move(body));
@@ -193,8 +134,8 @@ class Growth {
     std::vector<PlacedOutline> placed(bodies_.size());
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       placed[b].page = bodies_[b].page;
-      placed[b].edges = bodies_[b].edges;
-      for (const Vec2& p : bodies_[b].points) {
+      placed[b].edges = bodies_[b].outline.edges;
+      for (const Vec2& p : bodies_[b].outline.points) {
         placed[b].points.push_back(poses_[b].middle + density * rotated(poses_[b].turn, p));
       }
     }
@@ -297,7 +238,7 @@ class Growth {
 
   void apply(const Eigen::Vector3d& move, std::size_t b) {
     double reach = 0;
-    for (const Vec2& p : bodies_[b].points) reach = std::max(reach, p.squaredNorm());
+    for (const Vec2& p : bodies_[b].outline.points) reach = std::max(reach, p.squaredNorm());
     const double far = move.head<2>().norm() + std::abs(move.z()) * density_ * std::sqrt(reach);
     const double share = far > kFurthest ? kFurthest / far : 1;
     poses_[b].middle += share * move.head<2>();

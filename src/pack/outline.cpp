@@ -92,6 +92,70 @@ Outline outline_of(const PackChart& chart) {
   return outline;
 }
 
+Vec2 nearest_on(const Vec2& p, const Vec2& q, const Vec2& place) {
+  const Vec2 along = q - p;
+  const double squared = along.squaredNorm();
+  if (!(squared > 0)) return p;
+  return p + along * std::clamp((place - p).dot(along) / squared, 0.0, 1.0);
+}
+
+void thin(Outline& outline, double width) {
+  const Index count = size_of(outline.points);
+  std::vector<Index> next(count, kNone), in(count, 0), out(count, 0);
+  for (const auto& [from, to] : outline.edges) {
+    next[from] = to;
+    ++out[from];
+    ++in[to];
+  }
+  std::vector<std::array<Index, 2>> edges;
+  std::vector<bool> seen(count, false);
+  const auto is_plain = [&](Index p) { return in[p] == 1 && out[p] == 1; };
+  const auto walk = [&](Index from, Index first) {
+    // One edge after the other is added to the replaced ones, until one of their points is far.
+    std::vector<Index> passed;
+    Index start = from, here = first;
+    for (;;) {
+      const bool ends = !is_plain(here) || seen[here];
+      if (!ends) seen[here] = true;
+      const Index beyond = ends ? kNone : next[here];
+      passed.push_back(here);
+      bool far = ends || passed.size() > 64;
+      for (std::size_t i = 0; !far && i < passed.size(); ++i) {
+        const Vec2& p = outline.points[passed[i]];
+        far = (nearest_on(outline.points[start], outline.points[beyond], p) - p).norm() > width;
+      }
+      if (far) {
+        edges.push_back({start, here});
+        start = here;
+        passed.clear();
+      }
+      if (ends) return;
+      here = beyond;
+    }
+  };
+  for (const auto& [from, to] : outline.edges) {
+    if (!is_plain(from)) walk(from, to);
+  }
+  for (Index p = 0; p < count; ++p) {
+    if (!is_plain(p) || seen[p]) continue;
+    seen[p] = true;
+    walk(p, next[p]);
+  }
+  std::vector<Index> place(count, kNone);
+  std::vector<Vec2> points;
+  for (auto& edge : edges) {
+    for (Index& end : edge) {
+      if (place[end] == kNone) {
+        place[end] = size_of(points);
+        points.push_back(outline.points[end]);
+      }
+      end = place[end];
+    }
+  }
+  outline.points = std::move(points);
+  outline.edges = std::move(edges);
+}
+
 Vec2 turn_to_least_box(const std::vector<Vec2>& hull) {
   Vec2 best(1, 0);
   double least = std::numeric_limits<double>::infinity();

@@ -22,6 +22,13 @@ struct Outline {
 /// Takes O(f log f). Precondition: finite points, indices in range.
 Outline outline_of(const PackChart& chart);
 
+/// Leaves vertices out that lie within `width` of the edge that replaces theirs, so that no point
+/// of the border is further from what is left of it. The hull stays what it is.
+void thin(Outline& outline, double width);
+
+/// The point of the segment p q that is nearest to a place.
+Vec2 nearest_on(const Vec2& p, const Vec2& q, const Vec2& place);
+
 /// The turn (cosine, sine) that lays the longer side of the hull's least box along x.
 Vec2 turn_to_least_box(const std::vector<Vec2>& hull);
 

@@ -54,20 +54,22 @@ Page::Page(int width, int height)
     levels_[level].squares.assign(static_cast<std::size_t>(words_) * height, 0);
     levels_[level].bands.assign(static_cast<std::size_t>(words_) * band_count_, 0);
   }
+  const Changed all{0, words_ * kBits - 1, 0, height - 1};
   for (int y = 0; y < height; ++y) {
     Word* const words = line(levels_[0].runs, y);
     for (int x = width; x < words_ * kBits; ++x) words[x / kBits] |= Word{1} << x % kBits;
-    raise_runs(y);
+    raise_runs(all, y);
   }
-  raise_squares(0, height - 1);
+  raise_squares(all);
 }
 
-void Page::raise_runs(int y) {
+void Page::raise_runs(const Changed& changed, int y) {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     const Word* const below = line(levels_[level - 1].runs, y);
     Word* const words = line(levels_[level].runs, y);
-    const int shift = 1 << (level - 1), skip = shift / kBits, rest = shift % kBits;
-    for (int w = 0; w < words_; ++w) {
+    const int half = 1 << (level - 1), skip = half / kBits, rest = half % kBits;
+    const int begin = std::max(changed.left - 2 * half + 1, 0) / kBits;
+    for (int w = begin; w <= changed.right / kBits; ++w) {
       const auto at = [&](int i) { return i < words_ ? below[i] : ~Word{0}; };
       const Word low = at(w + skip), high = at(w + skip + 1);
       words[w] = below[w] | low >> rest | high << 1 << (kBits - 1 - rest);
@@ -75,35 +77,38 @@ void Page::raise_runs(int y) {
   }
 }
 
-/// After the rows first .. last have changed: squares reach up, so that those below see it.
-void Page::raise_squares(int first, int last) {
+/// Squares and runs reach right and up: those to the left and below see what has changed.
+void Page::raise_squares(const Changed& changed) {
   const int levels = std::min(static_cast<int>(levels_.size()) - 1, kSquareLevels);
   for (int level = 0; level <= levels; ++level) {
     const int reach = 1 << level, half = reach / 2;
-    const int from = std::max(0, first - reach + 1);
-    for (int y = from; y <= last; ++y) {
+    const int from = std::max(0, changed.low - reach + 1);
+    const int begin = std::max(0, changed.left - reach + 1) / kBits,
+              end = changed.right / kBits + 1;
+    for (int y = from; y <= changed.high; ++y) {
       Word* const words = line(levels_[level].squares, y);
       if (y + reach > height_) {
-        std::fill_n(words, words_, ~Word{0});
+        std::fill(words + begin, words + end, ~Word{0});
       } else if (level == 0) {
-        std::copy_n(line(levels_[0].runs, y), words_, words);
+        const Word* const row = line(levels_[0].runs, y);
+        std::copy(row + begin, row + end, words + begin);
       } else {
         // The squares of half the side at the four corners.
         const Word* const low = line(levels_[level - 1].squares, y);
         const Word* const high = line(levels_[level - 1].squares, y + half);
         const int skip = half / kBits, rest = half % kBits;
-        for (int w = 0; w < words_; ++w) {
+        for (int w = begin; w < end; ++w) {
           const auto at = [&](int i) { return i < words_ ? low[i] | high[i] : ~Word{0}; };
           words[w] = at(w) | at(w + skip) >> rest | at(w + skip + 1) << 1 << (kBits - 1 - rest);
         }
       }
     }
-    for (int b = from / kBand; b <= last / kBand; ++b) {
+    for (int b = from / kBand; b <= changed.high / kBand; ++b) {
       Word* const words = line(levels_[level].bands, b);
-      std::fill_n(words, words_, ~Word{0});
+      std::fill(words + begin, words + end, ~Word{0});
       for (int y = b * kBand; y < std::min((b + 1) * kBand, height_); ++y) {
         const Word* const other = line(levels_[level].squares, y);
-        for (int w = 0; w < words_; ++w) words[w] &= other[w];
+        for (int w = begin; w < end; ++w) words[w] &= other[w];
       }
     }
   }
@@ -161,10 +166,12 @@ int Page::first_free(const Mask& mask, int y, int to, std::int64_t& steps) const
 
 void Page::take(const Mask& mask, int x, int y) {
   if (mask.runs.empty()) return;
-  int raised = -1;
+  const Changed changed{x, std::min(x + mask.width, width_) - 1, y + mask.runs.front().row,
+                        y + mask.runs.back().row};
+  int raised = changed.low;
   for (const Run& run : mask.runs) {
     const int at = y + run.row;
-    if (raised >= 0 && raised != at) raise_runs(raised);
+    if (raised != at) raise_runs(changed, raised);
     raised = at;
     Word* const words = line(levels_[0].runs, at);
     const int begin = x + run.begin, end = x + run.end;
@@ -175,8 +182,8 @@ void Page::take(const Mask& mask, int x, int y) {
       words[w] |= bits;
     }
   }
-  raise_runs(raised);
-  raise_squares(y + mask.runs.front().row, raised);
+  raise_runs(changed, raised);
+  raise_squares(changed);
 }
 
 }  // namespace beltrami

@@ -51,8 +51,12 @@ class Page {
   Word* line(std::vector<Word>& rows, int y) {
     return rows.data() + static_cast<std::size_t>(y) * words_;
   }
-  void raise_runs(int y);
-  void raise_squares(int first, int last);
+  /// The cells that have changed.
+  struct Changed {
+    int left = 0, right = 0, low = 0, high = 0;  // the last ones included
+  };
+  void raise_runs(const Changed& changed, int y);
+  void raise_squares(const Changed& changed);
 
   int width_, height_, words_, band_count_;
   std::int64_t taken_ = 0;

@@ -41,6 +41,8 @@ class Problem {
 
   /// Of the charts that are not kept.
   Masks masks(double texels_per_unit) const;
+  /// What these took, in words of bits that were looked at.
+  static std::int64_t steps_of(const Masks& masks);
   /// Those charts, large ones first.
   std::vector<Index> order() const;
   /// Pages with the charts that are kept. Throws Error INVALID_ARGUMENT where max_pages has no page
@@ -57,7 +59,8 @@ class Problem {
   const PackOptions& options_;
   const Work& work_;
   std::vector<Outline> outlines_;
-  std::vector<Vec2> base_;  // the turn from which a chart's others are counted
+  std::vector<Outline> thinned_;  // for masks: by a part of a cell
+  std::vector<Vec2> base_;        // the turn from which a chart's others are counted
   int cells_ = 0, turns_ = 1;
   double cell_ = 1;
 };

@@ -112,6 +112,7 @@ class OnePage {
   void set_density(double density) {
     density_ = density;
     masks_ = problem_.masks(density);
+    steps_ += Problem::steps_of(masks_);
   }
 
   void keep(const Layout& layout) {
@@ -161,12 +162,17 @@ class OnePage {
         current = cost(other);
       }
     }
-    while (steps_ < budget && order.size() > 1 && !problem_.work().out_of_time()) {
+    // Few charts have few orders.
+    const auto most_misses = static_cast<std::int64_t>(4 * order.size() * order.size());
+    std::int64_t misses = order.size() > 1 ? 0 : most_misses;
+    while (steps_ < budget && misses < most_misses && !problem_.work().out_of_time()) {
+      ++misses;
       std::vector<Index> tried = order;
       change(numbers, tried);
       const Layout layout = lay(tried, rule);
       const Cost found = cost(layout);
       if (current < found) continue;
+      if (found < current) misses = 0;
       order = std::move(tried);
       current = found;
       if (found.side <= cells_) {
