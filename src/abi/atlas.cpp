@@ -62,11 +62,15 @@ beltrami_atlas describe(const Unwrapped& result) {
   report.seams = result.seams.size() / 2;
   report.searched = result.searched ? 1 : 0;
   report.reached = result.reached ? 1 : 0;
+  report.pages = atlas.pages ? count(atlas.pages->count) : 0;
   return report;
 }
 
-beltrami_chart describe(const Unwrapped& result, const ChartInfo& chart) {
+beltrami_chart describe(const Unwrapped& result, std::size_t index) {
+  const Atlas& atlas = result.atlas;
+  const ChartInfo& chart = atlas.charts[index];
   beltrami_chart report{};
+  if (atlas.pages) report.page = count(atlas.pages->page_of_chart[index]);
   report.status = status_of(chart.outcome);
   report.error = chart.error ? status_of(*chart.error) : BELTRAMI_OK;
   report.triangles = count(chart.faces);
@@ -130,7 +134,7 @@ beltrami_status beltrami_get_chart(beltrami_context* context, uint64_t index, be
     beltrami::require_sized(out, "out");
     const auto& charts = result.atlas.charts;
     if (index >= charts.size()) beltrami::refuse_index("chart", index, charts.size());
-    beltrami::write_sized(out, beltrami::describe(result, charts[index]));
+    beltrami::write_sized(out, beltrami::describe(result, index));
   });
 }
 
@@ -156,6 +160,17 @@ beltrami_status beltrami_get_corner_uvs(beltrami_context* context, void* out, in
   return get(context, [&](const Unwrapped& result) {
     beltrami::write_uvs(out, type, stride, result.uv_vertex.size(),
                         [&](std::size_t i) { return result.uvs[result.uv_vertex[i]]; });
+  });
+}
+
+beltrami_status beltrami_get_corner_pages(beltrami_context* context, void* out, int32_t type,
+                                          uint64_t stride) {
+  return get(context, [&](const Unwrapped& result) {
+    std::vector<beltrami::Index> pages(result.uv_vertex.size(), 0);
+    for (std::size_t c = 0; c < pages.size() && result.atlas.pages; ++c) {
+      pages[c] = result.page[result.uv_vertex[c]];
+    }
+    beltrami::write_integers(pages, 1, out, type, stride);
   });
 }
 

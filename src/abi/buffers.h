@@ -32,6 +32,8 @@ BELTRAMI_FIRST_SIZE(beltrami_surface, cancel);
 BELTRAMI_FIRST_SIZE(beltrami_atlas, peak_memory_bytes);
 BELTRAMI_FIRST_SIZE(beltrami_chart, box);
 BELTRAMI_FIRST_SIZE(beltrami_atlas_certificate, reserved);
+BELTRAMI_FIRST_SIZE(beltrami_uv_mesh, cancel);
+BELTRAMI_FIRST_SIZE(beltrami_packing, cpu_seconds);
 #undef BELTRAMI_FIRST_SIZE
 
 /// The struct_size of the caller's struct; throws Error INVALID_ARGUMENT if it is null or too

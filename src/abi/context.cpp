@@ -139,8 +139,8 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
 
 beltrami_status beltrami_context::unwrap(const beltrami_surface* surface,
                                          beltrami_progress progress, void* user) {
-  beltrami::require_effect_on_atlas(options);
   const beltrami_surface header = beltrami::read_surface_header(surface);
+  beltrami::require_effect_on_atlas(options, header.pin_count > 0);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
   beltrami::HostProgress host(progress, user);
@@ -152,7 +152,46 @@ beltrami_status beltrami_context::unwrap(const beltrami_surface* surface,
     throw beltrami::Cancelled();
   }
   unwrapped = std::move(result);
+  if (unwrapped->atlas.pages) {
+    last_packer = Packer::kUnwrap;
+  } else if (last_packer == Packer::kUnwrap) {
+    last_packer = packed ? Packer::kPack : Packer::kNone;
+  }
   return beltrami::status_of(unwrapped->atlas.outcome);
+}
+
+beltrami_status beltrami_context::pack(const beltrami_uv_mesh* const* meshes,
+                                       std::uint64_t mesh_count, beltrami_progress progress,
+                                       void* user) {
+  const std::vector<beltrami_uv_mesh> headers = beltrami::read_uv_headers(meshes, mesh_count);
+  beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible({&cancelled, headers.front().cancel, {}});
+  beltrami::HostProgress host(progress, user);
+  const beltrami::Work work(beltrami::limits(options), host.watched());
+  beltrami::Packed result =
+      beltrami::pack_meshes(headers, beltrami::pack_options(options), options.float32, work);
+  if (mark.take_request() || host.cancelled()) {
+    throw beltrami::Cancelled();
+  }
+  packed = std::move(result);
+  last_packer = Packer::kPack;
+  return beltrami::status_of(packed->result.outcome);
+}
+
+const beltrami::Packed& beltrami_context::packing() const {
+  if (!packed) {
+    throw beltrami::Error(beltrami::Fault::kInvalidState,
+                          "there is no packing yet: call beltrami_pack");
+  }
+  return *packed;
+}
+
+beltrami::OnPages beltrami_context::on_pages() const {
+  if (last_packer == Packer::kPack) return beltrami::on_pages(*packed);
+  if (last_packer == Packer::kUnwrap) return beltrami::on_pages(*unwrapped);
+  throw beltrami::Error(beltrami::Fault::kInvalidState,
+                        "nothing is packed yet: call beltrami_pack, or beltrami_unwrap with the "
+                        "option pack at pages and without pins");
 }
 
 const beltrami::Unwrapped& beltrami_context::atlas() const {

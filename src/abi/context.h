@@ -9,6 +9,7 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/options.h"
+#include "abi/packed.h"
 #include "abi/unwrapped.h"
 #include "base/error.h"
 #include "base/types.h"
@@ -40,6 +41,8 @@ struct beltrami_context {
   std::optional<beltrami::LoadedMesh> mesh;
   std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
   std::optional<beltrami::Unwrapped> unwrapped;    ///< of the last surface
+  std::optional<beltrami::Packed> packed;          ///< of the last UV meshes
+  enum class Packer { kNone, kUnwrap, kPack } last_packer = Packer::kNone;
   beltrami::Failure failure;
   std::atomic<bool> cancelled{false};
   bool running = false;
@@ -56,9 +59,16 @@ struct beltrami_context {
   /// Cancelled; keeps old results then.
   beltrami_status unwrap(const beltrami_surface* surface, beltrami_progress progress, void* user);
 
+  /// Packs charts. Throws Error INVALID_ARGUMENT, NO_ROOM, OUT_OF_MEMORY or a mesh status, or
+  /// Cancelled; keeps old results then.
+  beltrami_status pack(const beltrami_uv_mesh* const* meshes, std::uint64_t mesh_count,
+                       beltrami_progress progress, void* user);
+
   /// The results. Throws Error INVALID_STATE where there are none.
   const beltrami::Flattening& results() const;
   const beltrami::Unwrapped& atlas() const;
+  const beltrami::Packed& packing() const;
+  beltrami::OnPages on_pages() const;  ///< of what was packed last
 };
 
 namespace beltrami {

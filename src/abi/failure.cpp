@@ -63,6 +63,8 @@ beltrami_status status_of(Fault fault) noexcept {
       return BELTRAMI_E_ZERO_AREA;
     case Fault::kPins:
       return BELTRAMI_E_PINS;
+    case Fault::kNoRoom:
+      return BELTRAMI_E_NO_ROOM;
     case Fault::kSolver:
       return BELTRAMI_E_SOLVER;
   }

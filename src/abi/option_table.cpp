@@ -19,6 +19,8 @@ constexpr const char* kSwitch[] = {"off", "on"};
 constexpr const char* kCuts[] = {"minimal", "islands", "auto", "given"};
 constexpr const char* kPresets[] = {"none", "lightmap", "texturing", "one-chart"};
 constexpr const char* kWelds[] = {"auto", "on", "off"};
+constexpr const char* kPacks[] = {"pages", "none"};
+constexpr const char* kTurns[] = {"any", "quarter", "none"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap"};
 
 template <auto Member>
@@ -47,6 +49,8 @@ void set(Options& options, double value) {
 void set_preset(Options& options, double value) {
   apply_preset(options, static_cast<std::int32_t>(value));
 }
+
+constexpr std::int32_t kEveryCall = BELTRAMI_CALL_RUN | BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK;
 
 /// No map has an energy of 2 but of what is flat by itself: a mean below this one is none that
 /// rounding lets anything else have.
@@ -121,13 +125,14 @@ const OptionEntry kOptions[] = {
         .maximum = 1024,
         .get = get<&Options::threads>,
         .set = set<&Options::threads>,
+        .calls = kEveryCall,
     },
     {
         .key = BELTRAMI_OPTION_UNIT_SQUARE,
         .type = BELTRAMI_TYPE_INT,
         .name = "unit-square",
-        .summary = "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's "
-                   "unit of length.",
+        .summary = "1 scales and shifts the UVs into the unit square, where those of pages are in "
+                   "any case; 0 keeps them in the mesh's unit of length.",
         .minimum = 0,
         .maximum = 1,
         .get = get<&Options::unit_square>,
@@ -204,6 +209,7 @@ const OptionEntry kOptions[] = {
         .maximum = 1,
         .get = get<&Options::float32>,
         .set = set<&Options::float32>,
+        .calls = kEveryCall,
     },
     {
         .key = BELTRAMI_OPTION_DELAUNAY,
@@ -418,6 +424,91 @@ const OptionEntry kOptions[] = {
         .get = get<&Options::weights, &SeamWeights::materials>,
         .set = set<&Options::weights, &SeamWeights::materials>,
         .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_PACK,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "pack",
+        .summary = "Where charts lie: pages (packed onto square pages of a texture, all at one "
+                   "scale, UVs in the unit square) or none (side by side in the unit of length of "
+                   "the mesh; so are charts with pins in any case).",
+        .minimum = 0,
+        .maximum = std::size(kPacks) - 1,
+        .choices = kPacks,
+        .get = get<&Options::pack>,
+        .set = set<&Options::pack>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_RESOLUTION,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "resolution",
+        .summary = "Texels to the side of a page.",
+        .minimum = 8,
+        .maximum = 32768,
+        .get = get<&Options::resolution>,
+        .set = set<&Options::resolution>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
+    },
+    {
+        .key = BELTRAMI_OPTION_MARGIN,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "margin",
+        .summary = "Texels between two charts at least, and half as many to the edges of a page.",
+        .minimum = 0,
+        .maximum = 1024,
+        .get = get<&Options::margin>,
+        .set = set<&Options::margin>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
+    },
+    {
+        .key = BELTRAMI_OPTION_TEXELS_PER_UNIT,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "texels-per-unit",
+        .summary = "Texels for a unit of length of the surface; 0 makes charts as large as they "
+                   "fit into max-pages.",
+        .minimum = 0,
+        .maximum = 1e30,
+        .get = get<&Options::texels_per_unit>,
+        .set = set<&Options::texels_per_unit>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
+    },
+    {
+        .key = BELTRAMI_OPTION_MAX_PAGES,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "max-pages",
+        .summary = "Pages to fill at most; 0 takes one, or with texels-per-unit as many as there "
+                   "have to be.",
+        .minimum = 0,
+        .maximum = 1000,
+        .get = get<&Options::max_pages>,
+        .set = set<&Options::max_pages>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
+    },
+    {
+        .key = BELTRAMI_OPTION_PACK_TURNS,
+        .type = BELTRAMI_TYPE_CHOICE,
+        .name = "pack-turns",
+        .summary = "How charts may be turned on their page: any (as it fits best), quarter (by 90 "
+                   "degrees) or none; they are never mirrored.",
+        .minimum = 0,
+        .maximum = std::size(kTurns) - 1,
+        .choices = kTurns,
+        .get = get<&Options::pack_turns>,
+        .set = set<&Options::pack_turns>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
+    },
+    {
+        .key = BELTRAMI_OPTION_PACK_BLOCK,
+        .type = BELTRAMI_TYPE_INT,
+        .name = "pack-block",
+        .summary = "Texels to the side of the blocks that no two charts share, as compressed "
+                   "textures want it: 4; 1 leaves it to the margin.",
+        .minimum = 1,
+        .maximum = 64,
+        .get = get<&Options::pack_block>,
+        .set = set<&Options::pack_block>,
+        .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
     },
 };
 

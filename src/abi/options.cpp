@@ -65,6 +65,25 @@ constexpr std::int32_t kOfTheSearch[] = {
     BELTRAMI_OPTION_MAX_CHARTS,   BELTRAMI_OPTION_SEAM_BUDGET,   BELTRAMI_OPTION_CONCAVE_SEAMS,
     BELTRAMI_OPTION_HIDDEN_SEAMS, BELTRAMI_OPTION_HARD_SEAMS,    BELTRAMI_OPTION_MATERIAL_SEAMS};
 
+constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
+                                     BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
+                                     BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK};
+
+/// Pages that are as many as it takes: as many as the option max-pages allows.
+constexpr int kManyPages = 1000;
+
+/// Rotations that the packer tries.
+int turns_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_TURNS_QUARTER:
+      return 4;
+    case BELTRAMI_TURNS_NONE:
+      return 1;
+    default:
+      return PackOptions{}.turns;
+  }
+}
+
 /// "flatten=bff": as the program's options, but for the dashes.
 std::string written(const OptionEntry& option, const Options& options) {
   const double value = option.get(options);
@@ -104,6 +123,19 @@ ChartOptions chart_options(const Options& options) {
           .float32 = options.float32};
 }
 
+PackOptions pack_options(const Options& options) {
+  PackOptions pack;
+  pack.resolution = options.resolution;
+  pack.margin = options.margin;
+  pack.texels_per_unit = options.texels_per_unit;
+  pack.turns = turns_of(options.pack_turns);
+  pack.block = options.pack_block;
+  pack.max_pages = options.max_pages > 0         ? options.max_pages
+                   : options.texels_per_unit > 0 ? kManyPages
+                                                 : 1;
+  return pack;
+}
+
 AtlasOptions atlas_options(const Options& options) {
   AtlasOptions atlas;
   atlas.admit.weld_distance = options.weld_distance;
@@ -113,6 +145,7 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.fill_limit = options.fill_holes;
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
+  if (options.pack == BELTRAMI_PACK_PAGES) atlas.pack = pack_options(options);
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
   atlas.float32 = std::exchange(atlas.chart.float32, false);
@@ -148,7 +181,7 @@ void require_effect(const Options& options) {
   }
 }
 
-void require_effect_on_atlas(const Options& options) {
+void require_effect_on_atlas(const Options& options, bool pins) {
   require_effect(options);
   refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, "an atlas", "or flatten disks");
   if (options.weld == BELTRAMI_WELD_OFF) {
@@ -159,6 +192,11 @@ void require_effect_on_atlas(const Options& options) {
     for (const std::int32_t key : kOfTheSearch) {
       refuse_if_set(options, key, with_cut, "or take cut=auto");
     }
+  }
+  if (options.pack == BELTRAMI_PACK_PAGES && !pins) return;
+  for (const std::int32_t key : kOfPages) {
+    refuse_if_set(options, key, pins ? "pins" : "pack=none",
+                  pins ? "or do without pins" : "or take pack=pages");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "chart/options.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 
@@ -39,10 +40,20 @@ struct Options {
   std::int32_t preset = BELTRAMI_PRESET_NONE;
   SeamTarget target = {};
   SeamWeights weights = {};
+  std::int32_t pack = BELTRAMI_PACK_PAGES;
+  int resolution = 1024;
+  double margin = 2;
+  double texels_per_unit = 0;
+  int max_pages = 0;
+  std::int32_t pack_turns = BELTRAMI_TURNS_ANY;
+  int pack_block = 1;
 };
 
 /// How a disk is to be flattened.
 ChartOptions chart_options(const Options& options);
+
+/// How charts are to be packed.
+PackOptions pack_options(const Options& options);
 
 /// How a surface is to be unwrapped.
 AtlasOptions atlas_options(const Options& options);
@@ -58,8 +69,9 @@ Limits limits(const Options& options);
 void require_effect(const Options& options);
 
 /// The same for what an atlas takes no notice of: delaunay, weld-distance where nothing is welded,
-/// and what a search for seams is told where none is made.
-void require_effect_on_atlas(const Options& options);
+/// what a search for seams is told where none is made, and what is said of pages where nothing is
+/// packed, as with `pins`.
+void require_effect_on_atlas(const Options& options, bool pins);
 
 /// Sets the preset, and the options of the search for seams as it has them.
 void apply_preset(Options& options, std::int32_t preset);

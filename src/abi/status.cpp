@@ -71,6 +71,9 @@ constexpr Status kStatuses[] = {
     BELTRAMI_STATUS(E_PINS,
                     "Pins ask for what no injective map was found to do: move or drop the corner "
                     "named, or cut a seam."),
+    BELTRAMI_STATUS(E_NO_ROOM,
+                    "The charts do not fit onto the pages: raise max-pages or resolution, or lower "
+                    "texels-per-unit or margin."),
     BELTRAMI_STATUS(E_SOLVER,
                     "A linear system could not be solved: remove degenerate faces, or try another "
                     "method."),

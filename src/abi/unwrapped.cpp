@@ -79,7 +79,12 @@ void split_vertices(const LoadedSurface& surface, const std::vector<Index>& uv_o
     while (found != kNone && result.origin[found] != vertex[c]) found = next[found];
     if (found == kNone) {
       found = size_of(result.uvs);
-      result.uvs.push_back(result.atlas.uvs[uv_of_corner[c]]);
+      Vec2 place = result.atlas.uvs[uv_of_corner[c]];
+      if (result.atlas.pages) {
+        result.page.push_back(result.atlas.page_of_uv[uv_of_corner[c]]);
+        place -= tile_of(result.page.back());  // exact: see pack_maps
+      }
+      result.uvs.push_back(place);
       result.origin.push_back(vertex[c]);
       next.push_back(std::exchange(first[uv_of_corner[c]], found));
     }

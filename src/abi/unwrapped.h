@@ -21,7 +21,8 @@ struct Unwrapped {
   std::vector<Index> chart_of_face;
 
   /// Vertices split along seams: one for each UV that an input vertex has.
-  std::vector<Vec2> uvs;
+  std::vector<Vec2> uvs;         ///< where they are packed, on their page
+  std::vector<Index> page;       ///< per UV vertex, where they are packed
   std::vector<Index> origin;     ///< per UV vertex the input vertex
   std::vector<Index> uv_vertex;  ///< per corner
   std::vector<Index> seams;      ///< two input vertices each, see seams_of

@@ -9,6 +9,7 @@
 #include "atlas/map_charts.h"
 #include "atlas/measure.h"
 #include "atlas/open.h"
+#include "atlas/pack_maps.h"
 #include "atlas/pin_conflicts.h"
 #include "atlas/pins.h"
 #include "atlas/place.h"
@@ -37,6 +38,8 @@ constexpr double kMissed = 1e-4;
 constexpr double kMoreThanMissed = 1.1;
 /// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
 constexpr double kLeastAim = 0.3;
+/// Texels per unit of a surface of unit area that stand for any fewer.
+constexpr double kLeastDensity = 1e-100;
 
 bool is_disk(const Admitted& admitted) {
   const std::vector<Component>& components = admitted.topology.components;
@@ -126,7 +129,12 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
     place[v] = size_of(atlas_.uvs);
     atlas_.uvs.push_back(uvs[v]);
     atlas_.input_vertex.push_back(admitted_.input_vertex[chart.input_vertex[v]]);
-    info.box.extend(uvs[v]);
+    Vec2 on_page = uvs[v];
+    if (atlas_.pages) {
+      atlas_.page_of_uv.push_back(atlas_.pages->page_of_chart[c]);
+      on_page -= tile_of(atlas_.page_of_uv.back());
+    }
+    info.box.extend(on_page);
   }
   for (Index f = 0; f < part.real_faces; ++f) {
     poll_();
@@ -153,12 +161,14 @@ void Collector::put_aside(const std::vector<PinAside>& pins) {
     const Triangle& face = faces_[f];
     const auto met =
         std::find_if(face.begin(), face.end(), [&](Index v) { return uv_of_[v] != kNone; });
-    const Vec2 place = atlas_.uvs[met != face.end() ? uv_of_[*met] : 0];
+    const Index beside = met != face.end() ? uv_of_[*met] : 0;
+    const Vec2 place = atlas_.uvs[beside];
     atlas_.excepted[f] = true;
     for (int k = 0; k < 3; ++k) {
       const auto pin = pinned.find({f, k});
       atlas_.faces[f][k] = size_of(atlas_.uvs);
       atlas_.uvs.push_back(pin != pinned.end() ? pin->second : place);
+      if (atlas_.pages) atlas_.page_of_uv.push_back(atlas_.page_of_uv[beside]);
       atlas_.input_vertex.push_back(admitted_.welded(face[k]));
     }
   }
@@ -245,7 +255,8 @@ void deliver(const Numbers& numbers, int exponent, Atlas& atlas) {
 /// The charts' outcomes, energies and counts, and the UVs of all corners.
 void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSurface& opened,
               const std::vector<PinAside>& pins_aside, const std::vector<MappedChart>& maps,
-              const std::vector<double>& scales, const Work& work, Atlas& atlas) {
+              const std::vector<double>& scales, double page_scale, const Work& work,
+              Atlas& atlas) {
   atlas.admitted = admitted.counts;
   atlas.filled_holes = opened.filled_holes;
   Collector collector(input.faces, admitted, atlas);
@@ -259,12 +270,37 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
   }
   collector.put_aside(pins_aside);
   collector.share();
-  atlas.energy = measure_charts(opened.charts, maps, atlas.charts, work);
+  atlas.energy = measure_charts(opened.charts, maps, page_scale, atlas.charts, work);
   atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
   atlas.seam_over_root_area = atlas.seam_length / std::sqrt(area);
-  atlas.utilisation = utilisation_of(atlas);
+  if (!atlas.pages) {
+    atlas.utilisation = utilisation_of(atlas);
+    return;
+  }
+  std::vector<Index> judged = atlas.chart_of_face;
+  for (std::size_t f = 0; f < judged.size(); ++f) {
+    if (atlas.excepted[f]) judged[f] = kNone;
+  }
+  measure_pages(atlas.faces, atlas.uvs, judged, *atlas.pages);
+  atlas.utilisation = atlas.pages->utilisation;
+}
+
+/// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
+/// their pages.
+double pack_onto_pages(const OpenedSurface& opened, int exponent, const AtlasOptions& options,
+                       std::vector<MappedChart>& maps, const Work& work, Atlas& atlas) {
+  PackOptions pack = *options.pack;
+  if (pack.texels_per_unit > 0) {
+    // 0 would leave the scale open.
+    const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
+    pack.texels_per_unit = std::clamp(scaled, kLeastDensity, 1 / kLeastDensity);
+  }
+  Pages& pages = atlas.pages.emplace(pack_maps(opened.charts, pack, options.float32, maps, work));
+  const double scale = pages.texels_per_unit / pages.resolution;
+  pages.texels_per_unit = std::ldexp(pages.texels_per_unit, exponent);
+  return scale > 0 ? scale : 1;
 }
 
 /// Throws Error PINS with the first pin that is proven not to go with those before it.
@@ -317,7 +353,7 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
     mapped.maps = map_charts(opened.charts, mapped.pins, options.chart, inner);
     require_met(mapped.maps, input.pins);
     std::vector<ChartInfo> charts(opened.charts.size());
-    mapped.energy = measure_charts(opened.charts, mapped.maps, charts, inner);
+    mapped.energy = measure_charts(opened.charts, mapped.maps, 1, charts, inner);
   });
   return mapped;
 }
@@ -410,9 +446,15 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
     const std::vector<double> scales =
         scale_by_density(input.densities, admitted, opened.charts, maps);
-    numbers.exponent =
-        place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
-    assemble(input, admitted, opened, mapped.pins.aside, maps, scales, inner, atlas);
+    double page_scale = 1;
+    if (options.pack && input.pins.empty()) {
+      page_scale = pack_onto_pages(opened, exponent, options, maps, inner, atlas);
+      numbers.exponent = 0;
+    } else {
+      numbers.exponent =
+          place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
+    }
+    assemble(input, admitted, opened, mapped.pins.aside, maps, scales, page_scale, inner, atlas);
   });
   stage("certify", kPlaced, 1,
         [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });

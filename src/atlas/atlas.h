@@ -9,6 +9,7 @@
 
 #include "admit/admit.h"
 #include "atlas/open.h"
+#include "atlas/pages.h"
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"
@@ -20,6 +21,7 @@
 #include "cut/seam_costs.h"
 #include "cut/search.h"
 #include "exact/atlas_certificate.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 
@@ -47,7 +49,10 @@ struct AtlasOptions {
                                           ///< is no disk
   SeamWeights weights = {};               ///< of that search
   ChartOptions chart = {};                ///< of every chart, but for what follows
-  bool unit_square = false;  ///< scale the atlas by a power of two into the unit square
+  /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
+  /// pins: they lie side by side in that unit.
+  std::optional<PackOptions> pack = {};
+  bool unit_square = false;  ///< scale what is not packed by a power of two into the unit square
   bool float32 = false;      ///< deliver single-precision numbers
 };
 
@@ -58,15 +63,15 @@ struct ChartInfo {
   double density = 1;    ///< lengths in the plane were scaled by it: the mean of its faces, or
                          ///< what its pins ask for
   bool pinned = false;
-  Eigen::AlignedBox2d box;  ///< of its UVs
+  Eigen::AlignedBox2d box;  ///< of its UVs, on its page
   Outcome outcome = Outcome::kOk;
   std::optional<Fault> error;               ///< why it has no map, but one point, where that is so
   double symmetric_dirichlet = 0, max = 0;  ///< as those of the atlas
 };
 
 /// Symmetric Dirichlet energy, at least 2, over the faces weighted by area, at one scale for all:
-/// the input's unit, or where densities are given the chart's. Faces that are flipped or have no
-/// area in the plane are left out; NaN where none is left.
+/// the input's unit, or where densities are given the chart's, whatever the scale of the pages.
+/// Faces that are flipped or have no area in the plane are left out; NaN where none is left.
 struct AtlasEnergy {
   double symmetric_dirichlet = 0;  ///< mean
   double p99 = 0;                  ///< exceeded on no more than 1% of the area
@@ -79,7 +84,9 @@ struct AtlasEnergy {
 /// Copies that share the UV vertices of another face are in its chart, and not judged.
 struct Atlas {
   Outcome outcome = Outcome::kOk;
-  std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit
+  std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit, or where the atlas
+                                     ///< is packed in the plane of the pages: see tile_of
+  std::vector<Index> page_of_uv;     ///< per UV vertex, where the atlas is packed
   std::vector<Index> input_vertex;   ///< per UV vertex: the least of those welded
   std::vector<Triangle> faces;       ///< per face of the input: UV vertices of its corners
   std::vector<Index> chart_of_face;  ///< per face of the input, or kNone
@@ -92,13 +99,16 @@ struct Atlas {
   AtlasEnergy energy;
   double seam_length = 0;  ///< in the input's unit, each seam once, and no border of the surface
   double seam_over_root_area = 0;
-  double utilisation = 0;               ///< area of the UVs over that of their bounding box
+  double utilisation = 0;               ///< area of the UVs over that of their bounding box, or of
+                                        ///< the pages
+  std::optional<Pages> pages;           ///< where it is packed
   AtlasCertificate certificate;         ///< of the numbers delivered
   AtlasCertificate single_certificate;  ///< of the single-precision numbers nearest to them
   std::vector<StageStatistics> stages;  ///< in the order in which they ran
 };
 
-/// Cuts the surface into disks, flattens each and lays them out in rows. A chart that rounding to
+/// Cuts the surface into disks, flattens each and packs them onto pages, or lays them out in rows.
+/// A chart that rounding to
 /// single precision would fold is delivered in such numbers at once, mended. The same bits at any
 /// number of threads; powers of two of the input's unit scale the UVs alone. A chart that fails is
 /// named in its info; the others are not touched. UV vertices with pins are delivered at their very

@@ -72,11 +72,11 @@ double percentile(std::vector<Weighted>& faces) {
 }  // namespace
 
 AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
-                           const std::vector<MappedChart>& maps, std::vector<ChartInfo>& charts,
-                           const Work& work) {
+                           const std::vector<MappedChart>& maps, double scale,
+                           std::vector<ChartInfo>& charts, const Work& work) {
   std::vector<std::vector<Weighted>> energies(parts.size());
   parallel_for(work, size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
-    energies[c] = face_energies(parts[c], maps[c].uvs, charts[c].density);
+    energies[c] = face_energies(parts[c], maps[c].uvs, charts[c].density * scale);
   });
   AtlasEnergy atlas;
   Sums all;

@@ -12,10 +12,11 @@
 namespace beltrami {
 
 /// Measures the real faces of maps, one per chart, and fills the energies and areas of `charts`, in
-/// the unit of the surface. Densities do not count as distortion.
+/// the unit of the surface. Densities do not count as distortion, nor does `scale`, by which all
+/// maps were scaled.
 AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
-                           const std::vector<MappedChart>& maps, std::vector<ChartInfo>& charts,
-                           const Work& work);
+                           const std::vector<MappedChart>& maps, double scale,
+                           std::vector<ChartInfo>& charts, const Work& work);
 
 /// Length of the edges of the surface at which charts end on two sides or more, half of it for each
 /// side; virtual faces have none. `vertex`: per vertex of the surface, equal for those that are one

@@ -29,8 +29,9 @@ enum class Fault {
   kGenus,              ///< has handles
   kZeroArea,           ///< the whole surface has no area, or overflows
 
-  kPins,   ///< corner: the first that cannot be met, with those before it
-  kSolver  ///< a linear system could not be solved
+  kPins,    ///< corner: the first that cannot be met, with those before it
+  kNoRoom,  ///< charts do not fit onto the pages
+  kSolver   ///< a linear system could not be solved
 };
 
 /// What an element's index counts. Corners: of a surface's faces, one after another.

@@ -1,0 +1,25 @@
+// The maps of an atlas -> pages of a texture, in the numbers that are delivered.
+#pragma once
+
+#include <vector>
+
+#include "atlas/map_charts.h"
+#include "atlas/open.h"
+#include "atlas/pages.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "pack/pack.h"
+
+namespace beltrami {
+
+/// Moves every map by a rigid motion of its own and scales all of them alike, onto pages (tile_of)
+/// in the numbers delivered. What rounding would fold is mended, and outcomes say where it cannot
+/// be; the margin asked for holds then, too. On further pages than the first one numbers are single
+/// where that stays injective: taken without the page's corner they round to themselves. Virtual
+/// faces may lie beneath other charts; maps that failed get one point on the first page. Options:
+/// texels per unit of the maps. Throws Error NO_ROOM where they do not fit.
+/// Precondition: no pins. Fills all of the result but utilisations.
+Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& options, bool float32,
+                std::vector<MappedChart>& maps, const Work& work);
+
+}  // namespace beltrami

@@ -1,0 +1,78 @@
+#include "atlas/pages.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace beltrami {
+namespace {
+
+/// Rounding to nearest moves a vertex by half a unit in the last place of single precision in each
+/// direction, of numbers up to the last page's; two charts and a diagonal are worth 4 of them.
+constexpr double kRounding = 4 * 0x1p-24;
+/// What mending moves further is rare: room for it is made where it is needed.
+constexpr int kMostTries = 4;
+constexpr double kMoreRoom = 2;
+
+double greatest_coordinate(const PackOptions& options) {
+  const Vec2 last = tile_of(std::max(options.max_pages, 1) - 1) + Vec2::Ones();
+  return options.max_pages > 1 ? std::max(last.maxCoeff(), double{kPagesInARow}) : 1;
+}
+
+/// What the packer refuses of options in their ranges is a lack of room.
+Packing packed(std::span<const PackChart> charts, const PackOptions& options, const Work& work) {
+  try {
+    return pack_charts(charts, options, work);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kInvalidArgument) throw;
+    throw Error(Fault::kNoRoom, error.what(), error.element());
+  }
+}
+
+}  // namespace
+
+Packing pack_and_deliver(std::span<const PackChart> charts, const PackOptions& options,
+                         const std::function<double(const Packing&, const Work&)>& deliver,
+                         const Work& work) {
+  double spare = kRounding * options.resolution * greatest_coordinate(options);
+  Packing packing;
+  for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    const double done = 1 - std::ldexp(1, -attempt);
+    const Work own = work.part(done, 1 - std::ldexp(1, -attempt - 1));
+    PackOptions with_room = options;
+    with_room.margin = options.margin + spare;
+    packing = packed(charts, with_room, own.part(0, 0.9));
+    const double margin = deliver(packing, own.part(0.9, 1));
+    if (margin >= options.margin) break;
+    spare += kMoreRoom * std::min(options.margin - margin, options.margin);
+  }
+  return packing;
+}
+
+Vec2 place_on_page(const Packing& packing, const PackChart& chart, const Placement& placement,
+                   int resolution, const Vec2& point) {
+  const double scale = packing.texels_per_unit * chart.scale;
+  const Vec2& turn = placement.turn;
+  const Vec2 turned(turn.x() * point.x() - turn.y() * point.y(),
+                    turn.y() * point.x() + turn.x() * point.y());
+  const Vec2 on_page = (placement.offset + scale * turned) / resolution;
+  return tile_of(placement.page) + on_page.cwiseMax(0.0).cwiseMin(1.0);
+}
+
+void measure_pages(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
+                   const std::vector<Index>& chart_of_face, Pages& pages) {
+  pages.page_utilisation.assign(static_cast<std::size_t>(pages.count), 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (chart_of_face[f] == kNone) continue;
+    const auto [a, b, c] = faces[f];
+    const Vec2 p = uvs[b] - uvs[a], q = uvs[c] - uvs[a];
+    pages.page_utilisation[pages.page_of_chart[chart_of_face[f]]] +=
+        0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
+  }
+  pages.utilisation = 0;
+  for (const double share : pages.page_utilisation) pages.utilisation += share;
+  if (pages.count > 0) pages.utilisation /= pages.count;
+}
+
+}  // namespace beltrami
