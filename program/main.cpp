@@ -46,6 +46,102 @@ constexpr const char* kSeams =
     "  beltrami unwrap bust.obj out.obj --write-seams cut.txt  and, once that is edited:\n"
     "  beltrami unwrap bust.obj out.obj --seams cut.txt --cut given";
 
+constexpr const char* kPages =
+    "Charts are packed onto square pages of a texture, as large as they fit and all at one scale;\n"
+    "--texels-per-unit sets the scale instead, and takes as many pages as it needs. In OUT page k "
+    "is\n"
+    "the tile of UDIM 1001 + k: u is greater by k mod 10, v by k div 10. Between charts are at "
+    "least\n"
+    "--margin texels, measured on the numbers that are written, and no chart is mirrored.";
+
+constexpr const char* kPack =
+    "The charts of the UVs that meshes have are packed anew: each is moved, turned and scaled, so\n"
+    "that equal areas of all surfaces get equally many texels (--keep-scales: so that charts keep\n"
+    "their sizes to each other). Charts that fold or overlap themselves stay so, and the summary\n"
+    "says it.\n\n"
+    "  beltrami pack bust.obj out.obj --resolution 2048 --margin 4\n"
+    "  beltrami pack a.obj b.ply --output a2.obj b2.ply        one atlas for two meshes\n"
+    "  beltrami pack old.obj new.obj --output old2.obj new2.obj --kept 1\n"
+    "                                    old.obj stays where it is, new.obj goes beside it\n"
+    "  beltrami pack town.obj out.obj --texels-per-unit 64 --masks masks/town";
+
+constexpr const char* kTransfer =
+    "OLD and NEW are one mesh with two layouts of UVs: the same faces in the same order. What\n"
+    "TEXTURE shows on OLD, OUT shows on NEW: each texel reads the old page between its texels, "
+    "and\n"
+    "gutters are filled from their neighbours. Pages of OLD behind the first are name.1001.png,\n"
+    "name.1002.png and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
+    "  beltrami unwrap painted.obj better.obj\n"
+    "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
+
+void add_masks(CLI::App& command, std::string& masks) {
+  command
+      .add_option("--masks", masks,
+                  "Write the texels of each page as FOLDER/NAME.1001.png and so on: white\n"
+                  "covered by charts, grey a gutter of the margin's width, black free")
+      ->group("Pages")
+      ->type_name("FOLDER/NAME");
+}
+
+CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
+  CLI::App* command = app.add_subcommand("pack", "Pack the charts of meshes with UVs onto pages");
+  command
+      ->add_option("IN", arguments.files,
+                   "Meshes with UVs to read: .obj, .ply, .gltf or .glb; without --output one,\n"
+                   "and behind it the mesh to write")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments.outputs,
+                   "Meshes to write, one for each IN: .obj or .ply; .gltf or .glb where IN is glTF")
+      ->type_name("OUT");
+  command
+      ->add_option("--kept", arguments.kept,
+                   "The charts of the first N meshes stay where they are, in [0,1]^2 and the\n"
+                   "tiles of UDIM; the others go beside them, at their density")
+      ->group("Pages")
+      ->type_name("N");
+  command
+      ->add_flag("--keep-scales", arguments.keep_scales,
+                 "Charts keep their sizes to each other, whatever their areas in space")
+      ->group("Pages");
+  add_masks(*command, arguments.masks);
+  command
+      ->add_option(
+          "--uv-set", arguments.uv_set,
+          "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
+      ->type_name("NUMBER");
+  options.add_to(*command);
+  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--picture", arguments.picture, "Write a picture of the pages")
+      ->type_name("FILE.png");
+  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->footer(std::string(kPack) + "\n\n" + kPages + "\n\n" + kExitCodes);
+  return command;
+}
+
+CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("transfer", "Bake a texture of a mesh for other UVs of it");
+  command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
+  command->add_option("NEW", arguments.new_mesh, "The same mesh with other UVs")->required();
+  command->add_option("TEXTURE", arguments.texture, "Texture to read: .png")->required();
+  command->add_option("OUT", arguments.output, "Texture to write: .png")->required();
+  command
+      ->add_option("--resolution", arguments.resolution,
+                   "Texels to the side of a page of OUT; 0 takes those of TEXTURE [0 to 32768]")
+      ->check(CLI::Range(0, 32768))
+      ->type_name("N");
+  command
+      ->add_option("--margin", arguments.margin, "Texels of gutters to fill [0 to 1024; default 2]")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->footer(std::string(kTransfer) +
+                  "\n\nExit codes: 0 done, 2 unusable arguments or files, 4 out of memory or an\n"
+                  "internal failure, 130 cancelled.");
+  return command;
+}
+
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
@@ -95,6 +191,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
                    "after another count from 0, UVs are in the unit of IN")
       ->group("Charts")
       ->type_name("FILE");
+  add_masks(*command, arguments.masks);
   options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,
                     "Write the triangles that were computed on, in the orientation in which their\n"
@@ -103,7 +200,8 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kKept + "\n\n" + kExitCodes);
+  command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kPages + "\n\n" + kKept +
+                  "\n\n" + kExitCodes);
   return command;
 }
 
@@ -143,17 +241,23 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Injective, low-distortion UVs: atlases of any mesh, and maps of disks", "beltrami");
+  CLI::App app("Injective, low-distortion UVs: atlases of any mesh, packed, and maps of disks",
+               "beltrami");
   app.set_version_flag("--version", beltrami_build_info());
   app.require_subcommand(1);
   app.footer(kExitCodes);
-  Options of_flatten(BELTRAMI_CALL_RUN), of_unwrap(BELTRAMI_CALL_UNWRAP);
+  Options of_flatten(BELTRAMI_CALL_RUN), of_unwrap(BELTRAMI_CALL_UNWRAP),
+      of_pack(BELTRAMI_CALL_PACK);
   FlattenArguments flatten;
   UnwrapArguments unwrap;
   CheckArguments check;
+  PackArguments pack;
+  TransferArguments transfer;
   const CLI::App* unwrap_app = add_unwrap(app, unwrap, of_unwrap);
   const CLI::App* flatten_app = add_flatten(app, flatten, of_flatten);
   add_check(app, check);
+  const CLI::App* pack_app = add_pack(app, pack, of_pack);
+  const CLI::App* transfer_app = add_transfer(app, transfer);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -163,6 +267,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }
+  if (pack_app->parsed()) return pack_command(pack, of_pack);
+  if (transfer_app->parsed()) return transfer_command(transfer);
   if (unwrap_app->parsed()) return unwrap_command(unwrap, of_unwrap);
   return flatten_app->parsed() ? flatten_command(flatten, of_flatten) : check_command(check);
 }

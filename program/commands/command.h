@@ -30,8 +30,27 @@ struct UnwrapArguments {
   std::string materials;        ///< what draws seams to where it differs, or ""
   std::string written_seams;    ///< path, or ""
   std::string report, picture;  ///< paths, or "" for none
+  std::string masks;            ///< folder and name of the masks of pages, or ""
   std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
   bool triangulate = false;     ///< write the triangles that were computed on
+  bool quiet = false;
+};
+
+struct PackArguments {
+  std::vector<std::string> files;    ///< inputs; without `outputs` an input and its output
+  std::vector<std::string> outputs;  ///< one for each input, or none
+  std::string report, picture;       ///< paths, or "" for none
+  std::string masks;                 ///< as for unwrap
+  std::uint64_t kept = 0;            ///< the charts of so many inputs stay where they are
+  bool keep_scales = false;          ///< charts keep their sizes to each other
+  std::uint32_t uv_set = 0;          ///< of glTF
+  bool quiet = false;
+};
+
+struct TransferArguments {
+  std::string old_mesh, new_mesh, texture, output;
+  int resolution = 0;  ///< of the output; 0: of the texture
+  int margin = 2;      ///< texels of gutters
   bool quiet = false;
 };
 
@@ -48,6 +67,8 @@ struct CheckArguments {
 int flatten_command(const FlattenArguments& arguments, Options& options);
 int unwrap_command(const UnwrapArguments& arguments, Options& options);
 int check_command(const CheckArguments& arguments);
+int pack_command(const PackArguments& arguments, Options& options);
+int transfer_command(const TransferArguments& arguments);
 
 using Context = std::unique_ptr<beltrami_context, void (*)(beltrami_context*)>;
 

@@ -121,7 +121,7 @@ std::string parse_option(const std::string& text, Option& option) {
   return "'" + text + "' is not one of " + joined_choices(option, ", ");
 }
 
-Options::Options(std::int32_t call) {
+Options::Options(std::int32_t call) : call_(call) {
   for (std::int32_t key = 0;; ++key) {
     Option option;
     option.info.struct_size = sizeof option.info;
@@ -144,7 +144,13 @@ Options::Options(std::int32_t call) {
 void Options::add_to(CLI::App& command) {
   for (Option& option : options_) {
     const std::string flag = std::string("--") + option.info.name;
-    const char* group = option.info.calls == BELTRAMI_CALL_UNWRAP ? "Charts" : "Flattening";
+    const std::int32_t calls = option.info.calls;
+    const bool of_pages = option.info.key == BELTRAMI_OPTION_PACK ||
+                          calls == (BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK);
+    const char* group = of_pages                        ? "Pages"
+                        : calls == BELTRAMI_CALL_UNWRAP ? "Charts"
+                        : call_ == BELTRAMI_CALL_PACK   ? "Run"
+                                                        : "Flattening";
     if (option.is_flag()) {
       command
           .add_flag_callback(

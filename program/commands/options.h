@@ -41,7 +41,8 @@ class Options {
   Options(const Options&) = delete;
   Options& operator=(const Options&) = delete;
 
-  /// In the help, what only unwrap takes stands under "Charts".
+  /// In the help, what only unwrap takes stands under "Charts", and what is said of pages under
+  /// "Pages".
   void add_to(CLI::App& command);
   /// Sets what was given, and the number of threads, in a new context, and takes over what the
   /// others have there: a preset sets several. Throws Failure with the library's words if it
@@ -57,6 +58,7 @@ class Options {
   double real(std::int32_t key) const;
 
  private:
+  std::int32_t call_;
   std::vector<Option> options_;
 };
 

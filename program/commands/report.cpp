@@ -169,6 +169,27 @@ Json target_json(const Report& report) {
   return {{"energy", number(report.target->energy)}, {"reached", report.atlas->reached != 0}};
 }
 
+Json packing_json(const Report& report) {
+  if (!report.packing) return nullptr;
+  const beltrami_packing& found = *report.packing;
+  return {{"pages", found.pages},
+          {"resolution", found.resolution},
+          {"texels_per_unit", number(found.texels_per_unit)},
+          {"utilisation", number(found.utilisation)},
+          {"page_utilisations", report.page_utilisations},
+          {"margin", number(found.margin)}};
+}
+
+Json charts_json(const Report& report) {
+  if (report.atlas) return report.atlas->charts;
+  return report.packing ? Json(report.packing->charts) : Json(nullptr);
+}
+
+Json utilisation_json(const Report& report) {
+  if (report.atlas) return number(report.atlas->utilisation);
+  return report.packing ? number(report.packing->utilisation) : Json(nullptr);
+}
+
 Json repair_json(const Report& report) {
   if (!report.result) return nullptr;
   const beltrami_result& run = *report.result;
@@ -248,6 +269,17 @@ void append_atlas(const Report& report, std::string& text) {
   if (target.charts > 0) append(text, ", charts up to %lld", static_cast<long long>(target.charts));
   if (target.seams > 0) append(text, ", seams up to %.4g root areas", target.seams);
   text += "\n";
+}
+
+void append_packing(const Report& report, std::string& text) {
+  const beltrami_packing& found = *report.packing;
+  if (!report.atlas) {
+    append(text, "charts     %llu\n", static_cast<unsigned long long>(found.charts));
+  }
+  append(text, "pages      %llu of %llu texels, %.1f%% used, margin %.3f texels, %.4g per unit\n",
+         static_cast<unsigned long long>(found.pages),
+         static_cast<unsigned long long>(found.resolution), 100 * found.utilisation, found.margin,
+         found.texels_per_unit);
 }
 
 /// What had to be done to the input, where that is anything.
@@ -332,14 +364,15 @@ std::string to_json(const Report& report) {
       {"input", input_json(report)},
       {"options", options_json(report)},
       {"admitted", admitted_json(report)},
-      {"charts", report.atlas ? Json(report.atlas->charts) : Json(nullptr)},
+      {"charts", charts_json(report)},
       {"failed_charts", failed_charts_json(report)},
       {"uv_vertices", report.atlas ? Json(report.atlas->uv_vertices) : Json(nullptr)},
       {"seam_over_root_area",
        report.atlas ? number(seam_over_root_area(*report.atlas)) : Json(nullptr)},
       {"seams", report.atlas ? Json(report.atlas->seams) : Json(nullptr)},
       {"target", target_json(report)},
-      {"utilisation", report.atlas ? number(report.atlas->utilisation) : Json(nullptr)},
+      {"utilisation", utilisation_json(report)},
+      {"packing", packing_json(report)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
       {"coarse_faces", optional(report.coarse_faces)},
@@ -383,6 +416,7 @@ std::string to_summary(const Report& report, const std::string& written) {
     append_admitted(*report.atlas, text);
     append_atlas(report, text);
   }
+  if (report.packing) append_packing(report, text);
   if (report.certificate) append_verdict(report, text);
   if (report.atlas_certificate) append_atlas_verdict(report, text);
   if (!report.failed_charts.empty()) {

@@ -67,6 +67,8 @@ struct Report {
   std::optional<beltrami_result> result;
   std::optional<beltrami_atlas> atlas;
   std::optional<Target> target;
+  std::optional<beltrami_packing> packing;
+  std::vector<double> page_utilisations;
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output

@@ -9,6 +9,8 @@
 
 #include "commands/command.h"
 #include "commands/options.h"
+#include "commands/outputs.h"
+#include "commands/pages.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
@@ -17,7 +19,6 @@
 #include "files/mesh_file.h"
 #include "files/paint.h"
 #include "files/pins.h"
-#include "files/point_numbers.h"
 #include "files/split_mesh.h"
 #include "files/surface_view.h"
 #include "picture/picture.h"
@@ -39,6 +40,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options.emplace_back("uv-set", std::to_string(arguments.uv_set));
   report.options.emplace_back("pins", arguments.pins);
   report.options.emplace_back("triangulate", arguments.triangulate);
+  report.options.emplace_back("masks", arguments.masks);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
 
@@ -68,14 +70,8 @@ class Unwrapping {
  private:
   /// Everything about files that can be told before the work.
   void require_files() const {
-    const MeshFormat format = format_of(arguments_.input);
-    if (!writes_gltf()) {
-      require_writable_format(arguments_.output);
-    } else if (format != MeshFormat::kGltf) {
-      throw Failure(arguments_.output +
-                    ": glTF is written from glTF alone, with all that a scene has: use the "
-                    "extension .obj or .ply");
-    } else if (arguments_.triangulate) {
+    require_output_format(arguments_.input, arguments_.output);
+    if (writes_gltf() && arguments_.triangulate) {
       throw Failure(arguments_.output +
                     ": the faces of glTF are triangles, in the winding that they have: leave out "
                     "--triangulate, or use the extension .obj or .ply");
@@ -91,6 +87,11 @@ class Unwrapping {
     if (!arguments_.quiet) require_apart_from_stdout(written);
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
+    }
+    if (arguments_.masks.empty()) return;
+    require_writable(path_of_page(arguments_.masks, 0));
+    if (options_.integer(BELTRAMI_OPTION_PACK) == BELTRAMI_PACK_NONE || !arguments_.pins.empty()) {
+      throw Failure("--masks: there are masks of pages alone: do without --pack none and --pins");
     }
   }
 
@@ -166,6 +167,7 @@ class Unwrapping {
           options_.real(BELTRAMI_OPTION_TARGET_ENERGY), options_.real(BELTRAMI_OPTION_TARGET_P99),
           options_.integer(BELTRAMI_OPTION_MAX_CHARTS), options_.real(BELTRAMI_OPTION_SEAM_BUDGET)};
     }
+    if (atlas.pages > 0) report_pages(context, report_);
     report_.triangles = atlas.triangles;
     report_.area = atlas.area;
     report_.unreferenced_vertices = atlas.unused_vertices;
@@ -202,15 +204,16 @@ class Unwrapping {
     const std::size_t corners = file_.polygons.corners().size();
     std::vector<double> uvs(2 * corners);
     require(beltrami_get_corner_uvs(context_.get(), uvs.data(), BELTRAMI_F64, 0));
-    PointNumbers<2> points;
-    file_.corner_uvs.of_corner.clear();
-    file_.corner_uvs.of_corner.reserve(corners);
-    for (std::size_t c = 0; c < corners; ++c) {
-      file_.corner_uvs.of_corner.push_back(points.number({uvs[2 * c], uvs[2 * c + 1]}));
+    if (report_.atlas->pages > 0) {
+      std::vector<std::uint64_t> pages(corners);
+      require(beltrami_get_corner_pages(context_.get(), pages.data(), BELTRAMI_U64, 0));
+      for (std::size_t c = 0; c < corners; ++c) {
+        const auto [u, v] = corner_of_page(pages[c]);
+        uvs[2 * c] += u;
+        uvs[2 * c + 1] += v;
+      }
     }
-    file_.corner_uvs.values = points.take_coordinates();
-    file_.uvs.clear();
-    file_.single_uvs = options_.integer(BELTRAMI_OPTION_FLOAT32) != 0;
+    set_corner_uvs(file_, uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
     triangles_.resize(3 * report_.atlas->triangles);
     require(beltrami_get_triangles(context_.get(), triangles_.data(), BELTRAMI_U32, 0));
     if (arguments_.triangulate) {
@@ -219,30 +222,16 @@ class Unwrapping {
         triangles_[c] = static_cast<std::uint32_t>(c);
       }
     }
-    report_.not_kept = not_kept(file_, arguments_.output);
     // Copies that share UVs overlap on purpose; what is stored is judged without such knowledge.
-    if (writes_gltf() && options_.integer(BELTRAMI_OPTION_SHARE_COPIES) == 0) judge_stored_uvs();
+    if (writes_gltf() && options_.integer(BELTRAMI_OPTION_SHARE_COPIES) == 0) judge_stored();
   }
 
-  /// glTF rounds u and 1 - v to single precision: the verdict is to be on those. A mirror and a
-  /// shift from them to -v are exact.
-  void judge_stored_uvs() {
-    const std::vector<double> uvs = file_.corner_uvs.values;
-    for (std::size_t i = 0; i < uvs.size(); i += 2) {
-      const auto [u, v] = stored_uv(uvs[i], uvs[i + 1]);
-      file_.corner_uvs.values[i] = double{u};
-      file_.corner_uvs.values[i + 1] = -double{v};
-    }
-    const SurfaceView view(file_);
-    const beltrami_surface surface = view.surface();
+  void judge_stored() {
     beltrami_atlas_certificate found{};
-    found.struct_size = sizeof found;
-    const beltrami_status status = beltrami_check_atlas(&surface, 0, &found, nullptr, 0);
-    require_ok(status, arguments_.input, "", found.error_element_kind, found.error_element);
+    const beltrami_status status = judge_stored_uvs(file_, arguments_.input, found);
     report_.status = beltrami_status_name(status);
     report_.atlas_certificate = found;
     report_.float32_injective = found.injective != 0;
-    file_.corner_uvs.values = uvs;
   }
 
   /// All files are complete on the disk before the first of them replaces anything. Returns the
@@ -251,8 +240,9 @@ class Unwrapping {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
-    write_mesh_files(outputs);
+    report_.not_kept = write_outputs(file_, arguments_.output, arguments_.uv_set, outputs);
     if (!arguments_.written_seams.empty()) write_seams(outputs);
+    if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     clock.finish();
 
     std::optional<AtomicFile> picture, report;
@@ -277,27 +267,6 @@ class Unwrapping {
     return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
   }
 
-  void write_mesh_files(std::deque<AtomicFile>& outputs) {
-    if (!writes_gltf()) {
-      AtomicFile& output = outputs.emplace_back(arguments_.output);
-      write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
-        throw_if_interrupted();
-        output.write(bytes);
-      });
-    } else {
-      const GltfOutput gltf = write_gltf(file_, arguments_.uv_set, arguments_.output);
-      report_.not_kept = gltf.not_kept;
-      for (const GltfOutput::File& file : gltf.files) {
-        AtomicFile& output = outputs.emplace_back(file.path);
-        for (const std::string& piece : file.pieces) {
-          throw_if_interrupted();
-          output.write(piece);
-        }
-      }
-    }
-    for (AtomicFile& output : outputs) output.close();
-  }
-
   /// As read_seams reads them.
   void write_seams(std::deque<AtomicFile>& outputs) {
     std::vector<std::uint64_t> ends(2 * report_.atlas->seams);
@@ -314,7 +283,13 @@ class Unwrapping {
   void write_picture(AtomicFile& file) {
     bar_.show(1, "picture");
     StageClock clock(report_, "picture");
-    const SplitMesh split(file_, triangles_);
+    MeshFile scaled = file_;
+    if (report_.packing) {  // energies are those of the surface's own scale
+      const beltrami_packing& packing = *report_.packing;
+      const double unit = static_cast<double>(packing.resolution) / packing.texels_per_unit;
+      for (double& x : scaled.corner_uvs.values) x *= unit;
+    }
+    const SplitMesh split(scaled, triangles_);
     file.write(encode_png(render_picture(split.view(), face_energies(split.view()))));
     file.close();
     clock.finish();

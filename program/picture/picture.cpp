@@ -311,7 +311,7 @@ Image render_picture(const TriangleView& mesh, const std::vector<double>& face_e
 }
 
 std::string encode_png(const Image& image) {
-  return png_bytes(image.width, image.height, image.rgb.data());
+  return png_bytes(image.width, image.height, 3, image.rgb.data());
 }
 
 }  // namespace beltrami::cli

@@ -1,4 +1,6 @@
 #include <cstdlib>
+#include <limits>
+#include <memory>
 #include <new>
 
 namespace {
@@ -24,6 +26,13 @@ void* reallocate(void* old, std::size_t size) {
 #pragma GCC diagnostic ignored "-Wsign-compare"
 #pragma GCC diagnostic ignored "-Wshadow"
 #endif
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STBI_MALLOC(size) allocate(size)
+#define STBI_REALLOC(old, size) reallocate(old, size)
+#define STBI_FREE(old) std::free(old)
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
@@ -31,6 +40,7 @@ void* reallocate(void* old, std::size_t size) {
 #define STBIW_REALLOC(old, size) reallocate(old, size)
 #define STBIW_FREE(old) std::free(old)
 #include <stb_easy_font.h>
+#include <stb_image.h>
 #include <stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -40,14 +50,26 @@ void* reallocate(void* old, std::size_t size) {
 
 namespace beltrami::cli {
 
-std::string png_bytes(int width, int height, const std::uint8_t* rgb) {
+std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
   std::string bytes;
   const auto append = [](void* target, void* data, int size) {
     static_cast<std::string*>(target)->append(static_cast<const char*>(data),
                                               static_cast<std::size_t>(size));
   };
-  stbi_write_png_to_func(append, &bytes, width, height, 3, rgb, 3 * width);
+  stbi_write_png_to_func(append, &bytes, width, height, components, pixels, components * width);
   return bytes;
+}
+
+std::optional<Pixels> read_png(std::string_view bytes) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
+  Pixels image;
+  std::uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                               static_cast<int>(bytes.size()), &image.width,
+                                               &image.height, &image.components, 0);
+  if (pixels == nullptr) return std::nullopt;
+  const std::unique_ptr<std::uint8_t, void (*)(void*)> owner(pixels, &std::free);
+  image.values.assign(pixels, pixels + image.row_size() * static_cast<std::size_t>(image.height));
+  return image;
 }
 
 std::vector<TextQuad> text_quads(const std::string& text) {

@@ -1,13 +1,29 @@
 // What we use of the stb headers: PNG and a small pixel font.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace beltrami::cli {
 
-std::string png_bytes(int width, int height, const std::uint8_t* rgb);
+/// Pixels of 1 to 4 components of a byte each, rows from the top.
+struct Pixels {
+  int width = 0, height = 0, components = 0;
+  std::vector<std::uint8_t> values;
+  std::size_t row_size() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(components);
+  }
+};
+
+/// The bytes of a PNG file of pixels with 1 to 4 components.
+std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels);
+
+/// What a PNG file shows, with 8 bits for each component; nothing where it is none.
+std::optional<Pixels> read_png(std::string_view bytes);
 
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {

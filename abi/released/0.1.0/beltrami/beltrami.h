@@ -1,5 +1,6 @@
 /* beltrami: injective, low-distortion flattening of triangle meshes: of disks (beltrami_run), and
- * of any surface as an atlas (beltrami_unwrap).
+ * of any surface as an atlas (beltrami_unwrap); and charts packed onto the pages of a texture
+ * (beltrami_pack).
  *
  * The C interface of the library, its only public header.
  *
@@ -92,6 +93,9 @@ enum {
   /* The pins of a surface cannot be met. Corner: the first that cannot, with those before it. */
   BELTRAMI_E_PINS = -32,
 
+  /* The charts do not fit onto the pages that the options allow. */
+  BELTRAMI_E_NO_ROOM = -33,
+
   /* A linear system could not be solved. */
   BELTRAMI_E_SOLVER = -40
 };
@@ -179,15 +183,41 @@ enum {
   BELTRAMI_OPTION_FILL_HOLES = 19,    /* float: longest boundary of a hole that costs no seam */
   BELTRAMI_OPTION_SHARE_COPIES = 20,  /* int: 1 gives copies of a face the UVs of the first */
   /* Of the search for seams, with the cut AUTO. */
-  BELTRAMI_OPTION_PRESET = 21,        /* choice: BELTRAMI_PRESET_; sets the options below */
-  BELTRAMI_OPTION_TARGET_ENERGY = 22, /* float: mean symmetric Dirichlet energy that is sought */
-  BELTRAMI_OPTION_TARGET_P99 = 23,    /* float: energy that 1% of the area may exceed; 0: any */
-  BELTRAMI_OPTION_MAX_CHARTS = 24,    /* int: charts that are enough; 0: any number */
-  BELTRAMI_OPTION_SEAM_BUDGET = 25,   /* float: seam length over the root of the area; 0: any */
-  BELTRAMI_OPTION_CONCAVE_SEAMS = 26, /* float: how far seams seek concave edges; 0: not */
-  BELTRAMI_OPTION_HIDDEN_SEAMS = 27,  /* float: how far seams hide from view; 0: not */
-  BELTRAMI_OPTION_HARD_SEAMS = 28,    /* float: factor of what a seam along a hard edge costs */
-  BELTRAMI_OPTION_MATERIAL_SEAMS = 29 /* float: the same where the materials of faces differ */
+  BELTRAMI_OPTION_PRESET = 21,         /* choice: BELTRAMI_PRESET_; sets the options below */
+  BELTRAMI_OPTION_TARGET_ENERGY = 22,  /* float: mean symmetric Dirichlet energy that is sought */
+  BELTRAMI_OPTION_TARGET_P99 = 23,     /* float: energy that 1% of the area may exceed; 0: any */
+  BELTRAMI_OPTION_MAX_CHARTS = 24,     /* int: charts that are enough; 0: any number */
+  BELTRAMI_OPTION_SEAM_BUDGET = 25,    /* float: seam length over the root of the area; 0: any */
+  BELTRAMI_OPTION_CONCAVE_SEAMS = 26,  /* float: how far seams seek concave edges; 0: not */
+  BELTRAMI_OPTION_HIDDEN_SEAMS = 27,   /* float: how far seams hide from view; 0: not */
+  BELTRAMI_OPTION_HARD_SEAMS = 28,     /* float: factor of what a seam along a hard edge costs */
+  BELTRAMI_OPTION_MATERIAL_SEAMS = 29, /* float: the same where the materials of faces differ */
+  /* Of pages, for beltrami_unwrap and, but for the first, beltrami_pack. */
+  BELTRAMI_OPTION_PACK = 30,            /* choice: BELTRAMI_PACK_ */
+  BELTRAMI_OPTION_RESOLUTION = 31,      /* int: texels to the side of a page */
+  BELTRAMI_OPTION_MARGIN = 32,          /* float: texels between charts, half to a page's edge */
+  BELTRAMI_OPTION_TEXELS_PER_UNIT = 33, /* float: density; 0: the greatest that fits */
+  BELTRAMI_OPTION_MAX_PAGES = 34,       /* int: 0: one, or with a density as many as it takes */
+  BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_TURNS_ */
+  BELTRAMI_OPTION_PACK_BLOCK = 36       /* int: charts share no block of so many texels a side */
+};
+
+/* Where the charts of an atlas lie. */
+enum {
+  BELTRAMI_PACK_FORCE_SIGNED_ = -1,
+  /* On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
+   * page are in [0,1]^2. A surface with pins is not packed. */
+  BELTRAMI_PACK_PAGES = 0,
+  /* Side by side, in the surface's own unit of length. */
+  BELTRAMI_PACK_NONE = 1
+};
+
+/* How charts may be turned on a page; they are never mirrored. */
+enum {
+  BELTRAMI_TURNS_FORCE_SIGNED_ = -1,
+  BELTRAMI_TURNS_ANY = 0,
+  BELTRAMI_TURNS_QUARTER = 1, /* by 90 degrees and multiples */
+  BELTRAMI_TURNS_NONE = 2
 };
 
 /* What is cut beside the seams that come with a surface. */
@@ -291,8 +321,9 @@ enum {
 /* What an option is for. */
 enum {
   BELTRAMI_CALL_FORCE_SIGNED_ = -1,
-  BELTRAMI_CALL_RUN = 1,   /* beltrami_run */
-  BELTRAMI_CALL_UNWRAP = 2 /* beltrami_unwrap */
+  BELTRAMI_CALL_RUN = 1,    /* beltrami_run */
+  BELTRAMI_CALL_UNWRAP = 2, /* beltrami_unwrap */
+  BELTRAMI_CALL_PACK = 4    /* beltrami_pack */
 };
 
 typedef struct beltrami_option_info {
@@ -584,14 +615,15 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
                                                   uint64_t* repeating);
 
 /* Cuts a surface into charts that are disks, flattens each with the options of beltrami_run (but
- * for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
- * surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
- * earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
- * NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which;
- * or charts with pins lie on each other: the certificate says where) or NOT_INJECTIVE_FLOAT32;
- * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, CANCELLED,
- * OUT_OF_MEMORY (also before any chart is flattened, if one of the largest is estimated to need
- * more than the option memory-limit), INVALID_STATE (during a run), INTERNAL.
+ * for delaunay), packs them onto pages (or with the option pack at NONE lays them out side by side
+ * at the surface's own scale), and judges the whole. The surface is read, not kept. The context's
+ * mesh and the results of beltrami_run stay; those of an earlier beltrami_unwrap are kept if it
+ * fails. Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE (a chart has no map, or one that
+ * is not injective: beltrami_get_chart says which; or charts with pins lie on each other: the
+ * certificate says where) or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY,
+ * INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, NO_ROOM, CANCELLED, OUT_OF_MEMORY (also before
+ * any chart is flattened, if one of the largest is estimated to need more than the option
+ * memory-limit), INVALID_STATE (during a run), INTERNAL.
  *
  * Charts with pins stay where the pins put them, and the others lie above their box. With one pin
  * the free map is moved there, with two it is turned and scaled as well; with more its energy is
@@ -601,8 +633,8 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
  * met the call fails with PINS and the corner of the first pin that cannot be met together with
  * those before it: what is proven before the flattening first (two UV vertices at one place, a face
  * turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
- * to reach them without folding a face. Pins go with neither the option unit-square nor densities:
- * INVALID_ARGUMENT. Pins of faces without area set their corners alone. */
+ * to reach them without folding a face. Pins go with neither densities nor the option unit-square,
+ * nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);
@@ -635,7 +667,8 @@ typedef struct beltrami_atlas {
   uint64_t left_out;          /* triangles that no energy counts: flipped, or without area */
   double area;                /* of the surface, in its unit squared */
   double seam_length;         /* on the surface, each seam once, no open border */
-  double utilisation;         /* area of the UVs over that of their bounding box */
+  double utilisation;         /* area of the UVs over that of the pages, or where it is not packed
+                               * of their bounding box */
   double symmetric_dirichlet; /* mean over the area, at one scale for all: >= 2 */
   double p99;                 /* exceeded on 1% of the area at most */
   double max;
@@ -646,6 +679,7 @@ typedef struct beltrami_atlas {
   int32_t searched;           /* 1 where seams were searched for: with the cut AUTO; else 0 */
   int32_t reached;            /* 1 where those meet what was asked for: energy (to 0.0001), p99,
                                * charts (or one for each component), seam length; else 0 */
+  uint64_t pages;             /* 0 where it is not packed: beltrami_get_packing has the rest */
 } beltrami_atlas;
 
 /* A chart: a connected piece of the surface. */
@@ -661,6 +695,7 @@ typedef struct beltrami_chart {
   double symmetric_dirichlet; /* as of the atlas */
   double max;
   double box[4]; /* of its UVs: least u, least v, greatest u, greatest v */
+  uint64_t page; /* counted from 0; 0 where the atlas is not packed */
 } beltrami_chart;
 
 /* The exact verdict on an atlas: every triangle positive, no two with a common inner point, in one
@@ -705,6 +740,12 @@ BELTRAMI_API beltrami_status beltrami_get_atlas_certificate(beltrami_context* co
  * packed). F32 is rounded to nearest. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_corner_uvs(beltrami_context* context, void* out,
                                                      int32_t type, uint64_t stride);
+
+/* Writes the page of each corner's UV: `type` U32 or U64; 0 where the atlas is not packed. It is
+ * that of the face's chart, but for corners of faces that lie in two charts or in none. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_corner_pages(beltrami_context* context, void* out,
+                                                       int32_t type, uint64_t stride);
 
 /* Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
  * buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
@@ -759,6 +800,108 @@ BELTRAMI_API beltrami_status beltrami_check_atlas(const beltrami_surface* surfac
                                                   int32_t allow_mirrored,
                                                   beltrami_atlas_certificate* out, uint64_t* pairs,
                                                   uint64_t capacity);
+
+/* ---- Packing: charts onto the pages of a texture ----------------------------------------- */
+
+/* Triangles in the plane, in the caller's memory: what beltrami_pack packs. Triangles that share a
+ * UV vertex are of one chart. Buffers said to be optional are left out by data NULL. */
+typedef struct beltrami_uv_mesh {
+  uint32_t struct_size;
+  uint32_t flags;             /* 0 */
+  uint64_t uv_count;          /* UV vertices, at most 2^31 - 1, those of all meshes together */
+  uint64_t face_count;        /* at most 700,000,000, likewise */
+  beltrami_buffer uvs;        /* uv_count items of 2: F32 or F64 */
+  beltrami_buffer uv_indices; /* face_count items of 3: U32 or U64, the UV vertices of corners */
+  uint64_t vertex_count;      /* of positions */
+  beltrami_buffer positions;  /* optional: vertex_count items of 3: F32 or F64. With them charts get
+                               * equally many texels for equal areas on the surface, else they keep
+                               * their sizes to each other. All meshes have them, or none */
+  beltrami_buffer indices;    /* with positions: face_count items of 3: U32 or U64, the vertices of
+                               * corners; left out where UV vertices are vertices */
+  beltrami_buffer kept_pages; /* optional: face_count items of 1: U32 or U64. All bits set: the
+                               * chart of the face is placed anew; else it stays where its UVs, in
+                               * [0,1]^2, are on this page. The same for all faces of a chart */
+  const int32_t* cancel;      /* of the first mesh: as in beltrami_mesh */
+} beltrami_uv_mesh;
+
+/* Packs the charts of `mesh_count` meshes onto common pages: each is moved and turned as the
+ * options of pages say, and scaled, never mirrored. With charts that stay and no texels-per-unit
+ * the others get the density that those have. The meshes are read, not kept, and so are the
+ * context's mesh and other results; those of an earlier beltrami_pack stay if it fails. Charts that
+ * are folded, flipped or lie on themselves are packed as they are. Returns OK, or with a result
+ * NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
+ * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted
+ * in the mesh that the sentence names), NO_ROOM, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a
+ * run), INTERNAL. */
+BELTRAMI_API beltrami_status beltrami_pack(beltrami_context* context,
+                                           const beltrami_uv_mesh* const* meshes,
+                                           uint64_t mesh_count, beltrami_progress progress,
+                                           void* user);
+
+/* What lies on the pages. */
+typedef struct beltrami_packing {
+  uint32_t struct_size;
+  beltrami_status status; /* of the call that packed it */
+  uint64_t charts;
+  uint64_t triangles;
+  uint64_t pages;
+  uint64_t resolution;    /* texels to the side of a page */
+  double texels_per_unit; /* of the surface, or without positions of the UVs that were packed */
+  double utilisation;     /* area of the UVs over that of the pages */
+  double margin;          /* texels: the least of the distances of two charts and of twice those to
+                           * the edges of pages, in the numbers that are delivered */
+  double seconds;         /* wall time of the call */
+  double cpu_seconds;     /* of the whole process during the call */
+} beltrami_packing;
+
+/* The functions below speak of what was packed last, by beltrami_pack or beltrami_unwrap. They fail
+ * with INVALID_STATE where nothing was, and with INVALID_ARGUMENT for NULL, an unset struct_size,
+ * an index out of range, or an odd type or stride. */
+
+/* Counts, density, margin and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_packing(beltrami_context* context, beltrami_packing* out);
+
+/* Writes the share of each page that charts cover: `type` F32 or F64. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_page_utilisations(beltrami_context* context, void* out,
+                                                            int32_t type, uint64_t stride);
+
+/* Writes the page of each chart, counted from 0: `type` U32 or U64. As tiles (UDIM) page k is
+ * 1001 + k: there u is greater by k mod 10, and v by k div 10, and no rounding to the type of the
+ * UVs folds what the certificate found whole. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_chart_pages(beltrami_context* context, void* out,
+                                                      int32_t type, uint64_t stride);
+
+/* The certificate of the UVs in F64, or with `type` BELTRAMI_F32 of those in F32, page by page.
+ * Faces count through the meshes, one after another. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_packing_certificate(beltrami_context* context,
+                                                              int32_t type,
+                                                              beltrami_atlas_certificate* out);
+
+/* What a byte of a mask says of its texel. */
+enum {
+  BELTRAMI_TEXEL_FORCE_SIGNED_ = -1,
+  BELTRAMI_TEXEL_FREE = 0,
+  BELTRAMI_TEXEL_GUTTER = 1, /* no further than the margin asked for from a covered one */
+  BELTRAMI_TEXEL_COVERED = 2 /* a face has a point in common with it */
+};
+
+/* Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
+ * down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,
+ * INVALID_ARGUMENT, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_get_page_mask(beltrami_context* context, uint64_t page,
+                                                    uint8_t* out, uint64_t stride);
+
+/* Of beltrami_pack alone: the new (u, v) of each UV vertex of mesh `mesh`, counted from 0, on the
+ * page of its chart, (0, 0) where no face uses it: `type` F32 or F64. F32 is rounded to nearest.
+ * Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_packed_uvs(beltrami_context* context, uint64_t mesh,
+                                                     void* out, int32_t type, uint64_t stride);
+
+/* Of beltrami_pack alone: the chart of each face of mesh `mesh`: `type` U32 or U64. Charts count
+ * through all meshes, by their first faces. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh,
+                                                        void* out, int32_t type, uint64_t stride);
 
 /* ---- Checks without a context ----------------------------------------------------------- */
 /* They judge the caller's own arrays, keep nothing and need no run; `mesh->cancel` ends them.

@@ -1,0 +1,64 @@
+#include "commands/pages.h"
+
+#include <filesystem>
+
+#include "picture/stb_in_one_place.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace {
+
+constexpr std::uint64_t kFirstTile = 1001;
+
+void require(beltrami_context* context, beltrami_status status) {
+  require_ok(status, "the pages", beltrami_error_message(context), BELTRAMI_ELEMENT_NONE,
+             BELTRAMI_NO_ELEMENT);
+}
+
+std::uint8_t grey_of(std::uint8_t texel) {
+  return texel == BELTRAMI_TEXEL_COVERED ? 255 : texel == BELTRAMI_TEXEL_GUTTER ? 128 : 0;
+}
+
+beltrami_packing packing_of(beltrami_context* context) {
+  beltrami_packing packing{};
+  packing.struct_size = sizeof packing;
+  require(context, beltrami_get_packing(context, &packing));
+  return packing;
+}
+
+}  // namespace
+
+std::string path_of_page(const std::string& path, std::uint64_t page) {
+  std::filesystem::path name(path);
+  if (name.extension() == ".png") name.replace_extension();
+  std::string with_tile = name.string();
+  with_tile += '.';
+  with_tile += std::to_string(kFirstTile + page);
+  with_tile += ".png";
+  return with_tile;
+}
+
+void report_pages(beltrami_context* context, Report& report) {
+  report.packing = packing_of(context);
+  report.page_utilisations.assign(report.packing->pages, 0);
+  require(context, beltrami_get_page_utilisations(context, report.page_utilisations.data(),
+                                                  BELTRAMI_F64, 0));
+}
+
+void write_masks(beltrami_context* context, const std::string& base,
+                 std::deque<AtomicFile>& outputs) {
+  const beltrami_packing packing = packing_of(context);
+  const auto side = static_cast<int>(packing.resolution);
+  std::vector<std::uint8_t> texels(packing.resolution * packing.resolution);
+  for (std::uint64_t page = 0; page < packing.pages; ++page) {
+    throw_if_interrupted();
+    require(context, beltrami_get_page_mask(context, page, texels.data(), 0));
+    for (std::uint8_t& texel : texels) texel = grey_of(texel);
+    AtomicFile& file = outputs.emplace_back(path_of_page(base, page));
+    file.write(png_bytes(side, side, 1, texels.data()));
+    file.close();
+  }
+}
+
+}  // namespace beltrami::cli

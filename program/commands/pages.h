@@ -1,0 +1,37 @@
+// What commands say and write of the pages that charts lie on.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands/command.h"
+#include "commands/report.h"
+#include "files/atomic_file.h"
+
+namespace beltrami::cli {
+
+/// Pages in a row of UDIM.
+inline constexpr std::uint64_t kPagesInARow = 10;
+
+/// The least u and v of a page in a file.
+inline std::pair<double, double> corner_of_page(std::uint64_t page) {
+  return {static_cast<double>(page % kPagesInARow), static_cast<double>(page / kPagesInARow)};
+}
+
+/// "folder/name.1001.png" for "folder/name.png" or "folder/name".
+std::string path_of_page(const std::string& path, std::uint64_t page);
+
+/// Puts what was packed last into the report.
+void report_pages(beltrami_context* context, Report& report);
+
+/// Writes a PNG for each page that was packed last: black is free, grey a gutter, white covered.
+/// `base` is a folder and a name: "masks/bust" writes masks/bust.1001.png.
+void write_masks(beltrami_context* context, const std::string& base,
+                 std::deque<AtomicFile>& outputs);
+
+}  // namespace beltrami::cli

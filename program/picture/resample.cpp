@@ -1,0 +1,95 @@
+#include "picture/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "picture/raster.h"
+
+namespace beltrami::cli {
+namespace {
+
+/// A component of a page at a place in [0, 1]^2, between the centres of texels; at the edges that
+/// of the outermost ones.
+double sample(const Pixels& page, double u, double v, int component) {
+  const double x = std::clamp(u * page.width - 0.5, 0.0, page.width - 1.0);
+  const double y = std::clamp((1 - v) * page.height - 0.5, 0.0, page.height - 1.0);
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const int right = std::min(left + 1, page.width - 1), bottom = std::min(top + 1, page.height - 1);
+  const auto at = [&](int column, int row) {
+    const std::size_t texel = static_cast<std::size_t>(row) * page.row_size() +
+                              static_cast<std::size_t>(column * page.components + component);
+    return static_cast<double>(page.values[texel]);
+  };
+  const double s = x - left, t = y - top;
+  return (1 - t) * ((1 - s) * at(left, top) + s * at(right, top)) +
+         t * ((1 - s) * at(left, bottom) + s * at(right, bottom));
+}
+
+/// A step of the gutters: texels beside those that are filled become the mean of these.
+void grow(Pixels& page, std::vector<bool>& filled) {
+  const int side = page.width;
+  const std::vector<bool> before = filled;
+  const auto index = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+           static_cast<std::size_t>(column);
+  };
+  const auto components = static_cast<std::size_t>(page.components);
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      if (before[index(column, row)]) continue;
+      int count = 0;
+      std::array<int, 4> sum = {0, 0, 0, 0};
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, side - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, side - 1); ++x) {
+          if (!before[index(x, y)]) continue;
+          ++count;
+          for (std::size_t k = 0; k < components; ++k) {
+            sum[k] += page.values[components * index(x, y) + k];
+          }
+        }
+      }
+      if (count == 0) continue;
+      filled[index(column, row)] = true;
+      for (std::size_t k = 0; k < components; ++k) {
+        page.values[components * index(column, row) + k] =
+            static_cast<std::uint8_t>((sum[k] + count / 2) / count);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Pixels bake(const std::vector<BakedTriangle>& triangles, const std::vector<Pixels>& pages, int side,
+            int margin) {
+  Pixels page;
+  page.width = page.height = side;
+  page.components = pages.front().components;
+  page.values.assign(page.row_size() * static_cast<std::size_t>(side), 0);
+  std::vector<bool> filled(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), false);
+  for (const BakedTriangle& triangle : triangles) {
+    std::array<Point, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = {triangle.to[k][0], side - triangle.to[k][1], 0};
+    }
+    const auto& from = triangle.from;
+    visit_triangle(
+        corners[0], corners[1], corners[2], side, side, [&](int column, int row, const Weights& w) {
+          const double u = w[0] * from[0][0] + w[1] * from[1][0] + w[2] * from[2][0];
+          const double v = w[0] * from[0][1] + w[1] * from[1][1] + w[2] * from[2][1];
+          const std::size_t texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+                                    static_cast<std::size_t>(column);
+          filled[texel] = true;
+          for (int k = 0; k < page.components; ++k) {
+            page.values[texel * static_cast<std::size_t>(page.components) +
+                        static_cast<std::size_t>(k)] =
+                static_cast<std::uint8_t>(sample(pages[triangle.from_page], u, v, k) + 0.5);
+          }
+        });
+  }
+  for (int step = 0; step < margin; ++step) grow(page, filled);
+  return page;
+}
+
+}  // namespace beltrami::cli
