@@ -35,6 +35,7 @@ CLASSES = {
     "beltrami_atlas": "AtlasReport",
     "beltrami_chart": "Chart",
     "beltrami_atlas_certificate": "AtlasCertificate",
+    "beltrami_packing": "PackingReport",
 }
 SUMMARIES = {
     "Certificate": "The exact verdict on a map; true where nothing bad was found.",
@@ -44,6 +45,7 @@ SUMMARIES = {
     "AtlasReport": "What was made of a surface: counts, energy and cost.",
     "Chart": "A chart of an atlas: a connected piece of the surface.",
     "AtlasCertificate": "The exact verdict on an atlas; true where it is injective.",
+    "PackingReport": "What lies on the pages of a texture: counts, density, margin and cost.",
 }
 METHODS = {
     "Certificate": '''
@@ -96,6 +98,12 @@ WORDS = {
             "whether those meet what was asked for: energy (to 0.0001), p99, charts (or one for "
             "each component), seam length"
         ),
+        "pages": "0 where the atlas is not packed: `Atlas.packing` has the rest",
+    },
+    "PackingReport": {
+        "charts": "pieces that were moved",
+        "triangles": "faces of all charts",
+        "pages": "square pages of a texture",
     },
     "Chart": {
         "triangles": "of the surface",
@@ -152,7 +160,7 @@ class _OptionInfo(ctypes.Structure):
 
 ABI = 1  # BELTRAMI_ABI
 INT, FLOAT, CHOICE = range(3)  # BELTRAMI_TYPE_
-RUN, UNWRAP = 1, 2  # BELTRAMI_CALL_
+RUN, UNWRAP, PACK = 1, 2, 4  # BELTRAMI_CALL_
 
 
 def read_options(library: Path) -> Iterator[Option]:
@@ -318,6 +326,7 @@ def tables(options: list[Option], header: Any) -> str:
         + "\n\n"
         + keywords("Options", "The options of a run", options, RUN)
         + keywords("UnwrapOptions", "The options of `unwrap`", options, UNWRAP)
+        + keywords("PackOptions", "The options of `pack`", options, PACK)
         + "\n\n".join(classes)
     )
 
@@ -364,7 +373,8 @@ def with_options(source: str, of_all_calls: list[Option]) -> str:
 
     A module has the options of one call: with ``# call: unwrap`` of that, else of a run.
     """
-    call = UNWRAP if "\n# call: unwrap\n" in source else RUN
+    marked = re.search(r"^# call: (\w+)$", source, re.MULTILINE)
+    call = {"unwrap": UNWRAP, "pack": PACK}[marked[1]] if marked else RUN
     options = [option for option in of_all_calls if option.calls & call]
     inside: dict[str, Callable[[Option], str]] = {
         "parameters": lambda option: option.annotated,

@@ -29,6 +29,7 @@ from ._errors import (
     InvalidStateError,
     MeshError,
     NonFiniteError,
+    NoRoomError,
     NotADiskError,
     NotInjectiveWarning,
     OutOfMemoryError,
@@ -39,6 +40,7 @@ from ._errors import (
 from ._flatten import Flattener, parameterize
 from ._jobs import BatchRecord
 from ._library import build_info
+from ._pack import Packing, UvMesh, pack
 from ._results import Parameterization
 from ._tables import (
     AtlasCertificate,
@@ -47,6 +49,8 @@ from ._tables import (
     Chart,
     Energy,
     Options,
+    PackingReport,
+    PackOptions,
     Report,
     Stage,
     UnwrapOptions,
@@ -73,11 +77,15 @@ __all__ = [
     "InvalidArgumentError",
     "InvalidStateError",
     "MeshError",
+    "NoRoomError",
     "NonFiniteError",
     "NotADiskError",
     "NotInjectiveWarning",
     "Options",
     "OutOfMemoryError",
+    "PackOptions",
+    "Packing",
+    "PackingReport",
     "Parameterization",
     "PinError",
     "Report",
@@ -87,6 +95,7 @@ __all__ = [
     "Triangulation",
     "UnsupportedError",
     "UnwrapOptions",
+    "UvMesh",
     "batch",
     "build_info",
     "check_atlas",
@@ -94,6 +103,7 @@ __all__ = [
     "check_injective",
     "check_triangles",
     "distortion",
+    "pack",
     "parameterize",
     "plot",
     "triangulate",

@@ -9,7 +9,22 @@ from typing import Any
 import numpy as np
 
 from ._arrays import Array
-from ._tables import AtlasCertificate, AtlasReport, Chart, Stage, UnwrapOptions
+from ._tables import (
+    AtlasCertificate,
+    AtlasReport,
+    Chart,
+    PackingReport,
+    Stage,
+    UnwrapOptions,
+)
+
+_PAGES_IN_A_ROW = 10  # of UDIM
+
+
+def tile_of(pages: Array, dtype: Any) -> Array:
+    """Return the lower left corner of the tile of each page, (n, 2)."""
+    corners: Array = np.stack([pages % _PAGES_IN_A_ROW, pages // _PAGES_IN_A_ROW], axis=1)
+    return corners.astype(dtype)
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +38,8 @@ class Atlas:
     Attributes
     ----------
     uvs : (k, 2) array of float32 or float64
-        One (u, v) per UV vertex, in the surface's unit of length (or in the unit square, with
-        `unit_square`).
+        One (u, v) per UV vertex, in the unit square of its page; with ``pack="none"``, and with
+        pins, in the surface's unit of length (or in the unit square, with `unit_square`).
     uv_faces : (m, 3) array of integers, or list of arrays
         The UV vertex of each corner, in the shape of the faces as given; for a list of polygons of
         several sizes a list of arrays.
@@ -57,6 +72,12 @@ class Atlas:
         The options that were used, by keyword.
     vertices : (n, 3) array of float32 or float64
         The vertices given, in place where they needed no conversion.
+    page_of_uv : (k,) array of int64
+        The page of each UV vertex; 0 where the atlas is not packed.
+    packing : PackingReport | None
+        Pages, density, utilisation and margin; None where the atlas is not packed.
+    page_utilisations : (p,) array of float64
+        The share of each page that charts cover.
     mesh : trimesh.Trimesh | None
         Where a ``trimesh.Trimesh`` was given: a copy with the UVs, split along the seams.
     """
@@ -75,6 +96,9 @@ class Atlas:
     stages: tuple[Stage, ...] = field(repr=False)
     options: UnwrapOptions = field(repr=False)
     vertices: Array = field(repr=False)
+    page_of_uv: Array = field(repr=False)
+    packing: PackingReport | None = field(repr=False)
+    page_utilisations: Array = field(repr=False)
     mesh: Any | None = field(default=None, repr=False)
 
     @property
@@ -104,8 +128,14 @@ class Atlas:
 
     @property
     def utilisation(self) -> float:
-        """The area of the UVs over that of their bounding box."""
+        """The area of the UVs over that of the pages, or else of their bounding box."""
         return self.report.utilisation
+
+    @property
+    def udim_uvs(self) -> Array:
+        """The UVs of UV vertices in the tiles of UDIM: page k is 1001 + k."""
+        tiled: Array = self.uvs + tile_of(self.page_of_uv, self.uvs.dtype)
+        return tiled
 
     @property
     def corner_uvs(self) -> Array:

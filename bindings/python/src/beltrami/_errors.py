@@ -102,6 +102,10 @@ class PinError(BeltramiError):
     """
 
 
+class NoRoomError(BeltramiError):
+    """The charts do not fit onto the pages that the options allow."""
+
+
 class NotInjectiveWarning(UserWarning):
     """A result is not injective: its certificate says where."""
 
@@ -127,5 +131,6 @@ ERRORS: dict[str, type[BeltramiError]] = {
     "BELTRAMI_E_GENUS": NotADiskError,
     "BELTRAMI_E_ZERO_AREA": MeshError,
     "BELTRAMI_E_PINS": PinError,
+    "BELTRAMI_E_NO_ROOM": NoRoomError,
     "BELTRAMI_E_SOLVER": SolverError,
 }

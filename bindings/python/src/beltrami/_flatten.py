@@ -52,8 +52,8 @@ class Flattener:
         Threads to use, the calling one included; the result does not depend on it. A number from 1
         to 1,024.
     unit_square : bool, default False
-        True scales and shifts the UVs into the unit square; False keeps them in the mesh's unit of
-        length.
+        True scales and shifts the UVs into the unit square, where those of pages are in any case;
+        False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
         How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
         and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
@@ -383,8 +383,8 @@ def parameterize(
         Threads to use, the calling one included; the result does not depend on it. A number from 1
         to 1,024.
     unit_square : bool, default False
-        True scales and shifts the UVs into the unit square; False keeps them in the mesh's unit of
-        length.
+        True scales and shifts the UVs into the unit square, where those of pages are in any case;
+        False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
         How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
         and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little

@@ -25,11 +25,22 @@ from ._tables import (
     Certificate,
     Chart,
     Energy,
+    PackingReport,
     Report,
     Stage,
 )
 
-Record = TypeVar("Record", AtlasCertificate, AtlasReport, Certificate, Chart, Energy, Report, Stage)
+Record = TypeVar(
+    "Record",
+    AtlasCertificate,
+    AtlasReport,
+    Certificate,
+    Chart,
+    Energy,
+    PackingReport,
+    Report,
+    Stage,
+)
 #: Told how far a run has come: a fraction in [0, 1] and a stage. Returns true to cancel.
 Hook = Callable[[float, str], bool]
 
@@ -47,7 +58,7 @@ _KINDS = {
     lib.BELTRAMI_ELEMENT_CORNER: "corner",
 }
 #: What takes an option.
-RUN, UNWRAP = lib.BELTRAMI_CALL_RUN, lib.BELTRAMI_CALL_UNWRAP
+RUN, UNWRAP, PACK = lib.BELTRAMI_CALL_RUN, lib.BELTRAMI_CALL_UNWRAP, lib.BELTRAMI_CALL_PACK
 
 
 def text(chars: Any) -> str:
@@ -247,7 +258,7 @@ _OPTIONS = _read_options()
 
 
 def options_of(call: int) -> dict[str, _Option]:
-    """Return the options of RUN or UNWRAP by keyword."""
+    """Return the options of RUN, UNWRAP or PACK by keyword."""
     return {name: option for name, option in _OPTIONS.items() if option.calls & call}
 
 

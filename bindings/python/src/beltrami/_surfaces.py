@@ -13,7 +13,7 @@ from ._errors import BeltramiError
 from ._library import Context, Hook, buffer, cancellable, fail, record, sized
 from ._native import ffi, lib
 from ._polygons import Polygons
-from ._tables import AtlasCertificate, AtlasReport, Chart, Stage
+from ._tables import AtlasCertificate, AtlasReport, Chart, PackingReport, Stage
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +139,36 @@ class AtlasContext(Context):
     def triangles(self, count: int) -> Array:
         """Return the corners of the triangles that were computed on, (count, 3)."""
         return self._filled(lib.beltrami_get_triangles, (count, 3), np.dtype(np.int64))
+
+    def corner_pages(self, count: int) -> Array:
+        """Return the page of each corner, (count,)."""
+        return self._filled(lib.beltrami_get_corner_pages, (count,), np.dtype(np.int64))
+
+    def packing(self) -> PackingReport:
+        """Return what lies on the pages that were packed last."""
+        return self._fetch(lib.beltrami_get_packing, "beltrami_packing", PackingReport)
+
+    def page_utilisations(self, count: int) -> Array:
+        """Return the share of each page that charts cover, (count,)."""
+        return self._filled(lib.beltrami_get_page_utilisations, (count,), np.dtype(np.float64))
+
+    def chart_pages(self, count: int) -> Array:
+        """Return the page of each chart, (count,)."""
+        return self._filled(lib.beltrami_get_chart_pages, (count,), np.dtype(np.int64))
+
+    def packing_certificate(self, dtype: np.dtype[Any]) -> AtlasCertificate:
+        """Return the verdict on what was packed last, in float32 or float64."""
+        out = sized("beltrami_atlas_certificate")
+        kind = lib.BELTRAMI_F32 if dtype == np.float32 else lib.BELTRAMI_F64
+        self._check(lib.beltrami_get_packing_certificate(self._context, kind, out))
+        return record(out, AtlasCertificate)
+
+    def page_mask(self, page: int, resolution: int) -> Array:
+        """Return a byte for each texel of a page, rows from the top."""
+        mask = np.empty((resolution, resolution), np.uint8)
+        pointer = ffi.cast("uint8_t*", mask.ctypes.data)
+        self._check(lib.beltrami_get_page_mask(self._context, page, pointer, mask.strides[0]))
+        return mask
 
     def _filled(self, function: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> Array:
         out = np.empty(shape, dtype)

@@ -15,6 +15,8 @@ InjectivityChoice = Literal["auto", "global", "local"]
 CutChoice = Literal["minimal", "islands", "auto", "given"]
 WeldChoice = Literal["auto", "on", "off"]
 PresetChoice = Literal["none", "lightmap", "texturing", "one-chart"]
+PackChoice = Literal["pages", "none"]
+PackTurnsChoice = Literal["any", "quarter", "none"]
 
 #: Options that None leaves to the option `preset`.
 OF_PRESETS = ("target_energy", "max_charts", "concave_seams", "hidden_seams", "hard_seams")
@@ -72,6 +74,26 @@ class UnwrapOptions(TypedDict, total=False):
     hidden_seams: float
     hard_seams: float
     material_seams: float
+    pack: PackChoice
+    resolution: int
+    margin: float
+    texels_per_unit: float
+    max_pages: int
+    pack_turns: PackTurnsChoice
+    pack_block: int
+
+
+class PackOptions(TypedDict, total=False):
+    """The options of `pack` by keyword, all of them optional."""
+
+    threads: int
+    float32: bool
+    resolution: int
+    margin: float
+    texels_per_unit: float
+    max_pages: int
+    pack_turns: PackTurnsChoice
+    pack_block: int
 
 
 @dataclass(frozen=True)
@@ -273,7 +295,7 @@ class AtlasReport:
     seam_length : float
         On the surface, each seam once, no open border.
     utilisation : float
-        Area of the UVs over that of their bounding box.
+        Area of the UVs over that of the pages, or where it is not packed of their bounding box.
     symmetric_dirichlet : float
         Mean energy over the area, at one scale for all: >= 2.
     p99 : float
@@ -293,6 +315,8 @@ class AtlasReport:
     reached : bool
         Whether those meet what was asked for: energy (to 0.0001), p99, charts (or one for each
         component), seam length.
+    pages : int
+        0 where the atlas is not packed: `Atlas.packing` has the rest.
     """
 
     vertices: int
@@ -327,6 +351,7 @@ class AtlasReport:
     seams: int
     searched: bool
     reached: bool
+    pages: int
 
 
 @dataclass(frozen=True)
@@ -354,6 +379,8 @@ class Chart:
         Greatest energy of a triangle.
     box : tuple[float, float, float, float]
         Of its UVs: least u, least v, greatest u, greatest v.
+    page : int
+        Counted from 0; 0 where the atlas is not packed.
     """
 
     status: str
@@ -365,6 +392,7 @@ class Chart:
     symmetric_dirichlet: float
     max: float
     box: tuple[float, float, float, float]
+    page: int
 
 
 @dataclass(frozen=True)
@@ -409,3 +437,41 @@ class AtlasCertificate:
     def __bool__(self) -> bool:
         """Whether the atlas is injective."""
         return self.injective
+
+
+@dataclass(frozen=True)
+class PackingReport:
+    """What lies on the pages of a texture: counts, density, margin and cost.
+
+    Attributes
+    ----------
+    charts : int
+        Pieces that were moved.
+    triangles : int
+        Faces of all charts.
+    pages : int
+        Square pages of a texture.
+    resolution : int
+        Texels to the side of a page.
+    texels_per_unit : float
+        Of the surface, or without positions of the UVs that were packed.
+    utilisation : float
+        Area of the UVs over that of the pages.
+    margin : float
+        Texels: the least of the distances of two charts and of twice those to the edges of pages,
+        in the numbers that are delivered.
+    seconds : float
+        Wall time of the call.
+    cpu_seconds : float
+        Of the whole process during the call.
+    """
+
+    charts: int
+    triangles: int
+    pages: int
+    resolution: int
+    texels_per_unit: float
+    utilisation: float
+    margin: float
+    seconds: float
+    cpu_seconds: float

@@ -15,6 +15,8 @@ from ._tables import (
     FlattenChoice,
     InjectivityChoice,
     MethodChoice,
+    PackChoice,
+    PackTurnsChoice,
     PresetChoice,
     WeldChoice,
 )
@@ -57,6 +59,13 @@ def unwrap_batch(
     hidden_seams: float | None = None,
     hard_seams: float | None = None,
     material_seams: float = 0.5,
+    pack: PackChoice = "pages",
+    resolution: int = 1024,
+    margin: float = 2.0,
+    texels_per_unit: float = 0.0,
+    max_pages: int = 0,
+    pack_turns: PackTurnsChoice = "any",
+    pack_block: int = 1,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -124,8 +133,8 @@ def unwrap_batch(
         Threads to use, the calling one included; the result does not depend on it. A number from 1
         to 1,024.
     unit_square : bool, default False
-        True scales and shifts the UVs into the unit square; False keeps them in the mesh's unit of
-        length.
+        True scales and shifts the UVs into the unit square, where those of pages are in any case;
+        False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
         How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
         and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
@@ -201,6 +210,27 @@ def unwrap_batch(
     material_seams : float, default 0.5
         What a seam costs, times its length, along an edge between faces of different materials,
         where these are given: below 1 such edges are sought. A number from 0.01 to 100.
+    pack : {"pages", "none"}, default "pages"
+        Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
+        unit square) or none (side by side in the unit of length of the mesh; so are charts with
+        pins in any case).
+    resolution : int, default 1024
+        Texels to the side of a page. A number from 8 to 32,768.
+    margin : float, default 2.0
+        Texels between two charts at least, and half as many to the edges of a page. A number from 0
+        to 1,024.
+    texels_per_unit : float, default 0.0
+        Texels for a unit of length of the surface; 0 makes charts as large as they fit into
+        max-pages. A number from 0 to 1e+30.
+    max_pages : int, default 0
+        Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be. A
+        number from 0 to 1,000.
+    pack_turns : {"any", "quarter", "none"}, default "any"
+        How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
+        none; they are never mirrored.
+    pack_block : int, default 1
+        Texels to the side of the blocks that no two charts share, as compressed textures want it:
+        4; 1 leaves it to the margin. A number from 1 to 64.
 
     Returns
     -------
@@ -251,6 +281,13 @@ def unwrap_batch(
         "hidden_seams": hidden_seams,
         "hard_seams": hard_seams,
         "material_seams": material_seams,
+        "pack": pack,
+        "resolution": resolution,
+        "margin": margin,
+        "texels_per_unit": texels_per_unit,
+        "max_pages": max_pages,
+        "pack_turns": pack_turns,
+        "pack_block": pack_block,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -1,0 +1,180 @@
+// beltrami pack and transfer, end to end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "files/mesh_file.h"
+#include "files/polygons.h"
+#include "picture/stb_in_one_place.h"
+#include "process/failure.h"
+#include "run_program.h"
+#include "temporary_directory.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Two squares in space whose UVs are of other sizes, the first in a material.
+const std::string kSquares =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 0 0\nv 7 0 0\nv 7 2 0\nv 5 2 0\n"
+    "vt 0 0\nvt 3 0\nvt 3 3\nvt 0 3\nvt 4 0\nvt 5 0\nvt 5 1\nvt 4 1\n"
+    "usemtl red\nf 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n";
+
+std::vector<std::array<double, 2>> corner_uvs(const std::string& path) {
+  const MeshFile file = read_mesh(path, Content::kUvs);
+  const bool per_vertex = file.corner_uvs.of_corner.empty();
+  const std::vector<double>& values = per_vertex ? file.uvs : file.corner_uvs.values;
+  std::vector<std::array<double, 2>> uvs;
+  for (const std::uint32_t i : per_vertex ? file.polygons.corners() : file.corner_uvs.of_corner) {
+    uvs.push_back({values[2 * std::size_t{i}], values[2 * std::size_t{i} + 1]});
+  }
+  return uvs;
+}
+
+/// Signed area of the quad that begins with this corner.
+double area(const std::vector<std::array<double, 2>>& uvs, std::size_t first) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto &a = uvs[first + k], &b = uvs[first + (k + 1) % 4];
+    sum += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  }
+  return sum;
+}
+
+TEST(Pack, EvensDensitiesOutAndKeepsWhatFacesHave) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), out = directory.path("out.obj");
+  const Outcome outcome = run({"pack", in, out, "--resolution", "128", "--report",
+                               directory.path("r.json"), "--picture", directory.path("p.png")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("injective  yes"), std::string::npos) << outcome.out;
+  EXPECT_NE(directory.read("out.obj").find("usemtl red"), std::string::npos);
+  EXPECT_EQ(run({"check", out}).exit_code, 0);
+  const auto uvs = corner_uvs(out);
+  EXPECT_NEAR(area(uvs, 4) / area(uvs, 0), 4, 1e-9);
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(json["command"], "pack");
+  EXPECT_EQ(json["charts"], 2);
+  EXPECT_EQ(json["packing"]["pages"], 1);
+  EXPECT_GE(json["packing"]["margin"], 2);
+  EXPECT_NEAR(json["packing"]["utilisation"], area(uvs, 0) + area(uvs, 4), 1e-9);
+  EXPECT_TRUE(read_png(directory.read("p.png")).has_value());
+}
+
+TEST(Pack, KeepsScalesWhereAsked) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), out = directory.path("out.ply");
+  ASSERT_EQ(run({"pack", in, out, "--keep-scales"}).exit_code, 0);
+  const auto uvs = corner_uvs(out);
+  EXPECT_NEAR(area(uvs, 0) / area(uvs, 4), 9, 1e-6);
+}
+
+TEST(Pack, PutsSeveralMeshesOnPagesAndLeavesThoseThatStay) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), a = directory.path("a.obj"),
+                    b = directory.path("b.obj"), c = directory.path("c.obj");
+  ASSERT_EQ(run({"pack", in, a, "--texels-per-unit", "400"}).exit_code, 0);
+  ASSERT_EQ(run({"pack", a, in, "--output", b, c, "--kept", "1", "--max-pages", "9", "--report",
+                 directory.path("r.json")})
+                .exit_code,
+            0);
+  EXPECT_EQ(corner_uvs(a), corner_uvs(b));
+  const Json json = Json::parse(directory.read("r.json"));
+  EXPECT_NEAR(json["packing"]["texels_per_unit"], 400, 1e-6);
+  EXPECT_GT(json["packing"]["pages"], 1);
+  const auto uvs = corner_uvs(c);
+  const auto last = std::max_element(uvs.begin(), uvs.end(),
+                                     [](const auto& p, const auto& q) { return p[0] < q[0]; });
+  EXPECT_GT((*last)[0], 1) << "on a page behind the first";
+}
+
+TEST(Pack, RefusesWhatItCannotDo) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), out = directory.path("out.obj");
+  EXPECT_EQ(run({"pack", in}).exit_code, kExitUnusable);
+  EXPECT_EQ(run({"pack", in, in, in, "--output", out}).exit_code, kExitUnusable);
+  const std::string bare = directory.file("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome no_uvs = run({"pack", bare, out});
+  EXPECT_EQ(no_uvs.exit_code, kExitUnusable);
+  EXPECT_EQ(no_uvs.err_lines(), 1) << no_uvs.err;
+  const Outcome dense = run({"pack", in, out, "--texels-per-unit", "9000"});
+  EXPECT_EQ(dense.exit_code, kExitUnusable);
+  EXPECT_EQ(dense.err_lines(), 1) << dense.err;
+}
+
+TEST(Pack, WritesMasksOfEveryPage) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), out = directory.path("out.obj");
+  ASSERT_EQ(run({"unwrap", in, out, "--resolution", "64", "--texels-per-unit", "30", "--max-pages",
+                 "2", "--masks", directory.path("mask")})
+                .exit_code,
+            0);
+  const auto uvs = corner_uvs(out);
+  const std::optional<Pixels> mask = read_png(directory.read("mask.1001.png"));
+  ASSERT_TRUE(mask);
+  EXPECT_EQ(mask->width, 64);
+  EXPECT_EQ(mask->height, 64);
+  EXPECT_EQ(mask->components, 1);
+  EXPECT_TRUE(read_png(directory.read("mask.1002.png")).has_value());
+  EXPECT_GT(std::count(mask->values.begin(), mask->values.end(), 255), 0);
+  EXPECT_GT(std::count(mask->values.begin(), mask->values.end(), 128), 0);
+  EXPECT_GT(std::count(mask->values.begin(), mask->values.end(), 0), 0);
+  EXPECT_EQ(run({"unwrap", in, out, "--pack", "none", "--masks", directory.path("m")}).exit_code,
+            kExitUnusable);
+}
+
+// A ramp over the first square, and another one over the second: what a corner shows stays.
+TEST(Transfer, CarriesATextureToOtherUvs) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquares), a = directory.path("a.obj"),
+                    b = directory.path("b.obj");
+  constexpr int kSide = 256;
+  ASSERT_EQ(run({"pack", in, a, "--resolution", "256"}).exit_code, 0);
+  ASSERT_EQ(run({"pack", in, b, "--resolution", "256", "--keep-scales", "--margin", "8"}).exit_code,
+            0);
+  std::vector<std::uint8_t> ramp;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      for (const int value : {column, row, 77}) ramp.push_back(static_cast<std::uint8_t>(value));
+    }
+  }
+  const std::string texture = directory.file("old.png", png_bytes(kSide, kSide, 3, ramp.data()));
+  const Outcome outcome = run({"transfer", a, b, texture, directory.path("new.png")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::optional<Pixels> image = read_png(directory.read("new.png"));
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, kSide);
+  EXPECT_EQ(image->components, 3);
+  const auto from = corner_uvs(a), to = corner_uvs(b);
+  for (const std::size_t quad : {0, 4}) {
+    std::array<double, 2> source{}, target{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t d = 0; d < 2; ++d) {
+        source[d] += from[quad + k][d] / 4;
+        target[d] += to[quad + k][d] / 4;
+      }
+    }
+    const auto column = static_cast<std::size_t>(target[0] * kSide);
+    const auto row = static_cast<std::size_t>((1 - target[1]) * kSide);
+    const std::uint8_t* texel = &image->values[3 * (row * kSide + column)];
+    EXPECT_NEAR(texel[0], source[0] * kSide - 0.5, 6);
+    EXPECT_NEAR(texel[1], (1 - source[1]) * kSide - 0.5, 6);
+    EXPECT_EQ(texel[2], 77);
+  }
+  EXPECT_EQ(run({"transfer", a, a, texture, directory.path("same.png")}).exit_code, 0);
+  const std::string other = directory.file(
+      "other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  EXPECT_EQ(run({"transfer", a, other, texture, directory.path("x.png")}).exit_code, kExitUnusable);
+  EXPECT_EQ(run({"transfer", a, b, in, directory.path("x.png")}).exit_code, kExitUnusable);
+}
+
+}  // namespace
+}  // namespace beltrami::cli
