@@ -75,9 +75,9 @@ constexpr int kManyPages = 1000;
 /// Rotations that the packer tries.
 int turns_of(std::int32_t value) {
   switch (value) {
-    case BELTRAMI_TURNS_QUARTER:
+    case BELTRAMI_PACK_TURNS_QUARTER:
       return 4;
-    case BELTRAMI_TURNS_NONE:
+    case BELTRAMI_PACK_TURNS_NONE:
       return 1;
     default:
       return PackOptions{}.turns;

@@ -45,7 +45,7 @@ struct Options {
   double margin = 2;
   double texels_per_unit = 0;
   int max_pages = 0;
-  std::int32_t pack_turns = BELTRAMI_TURNS_ANY;
+  std::int32_t pack_turns = BELTRAMI_PACK_TURNS_ANY;
   int pack_block = 1;
 };
 

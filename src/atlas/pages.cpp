@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
 
 #include "base/error.h"
 
@@ -20,8 +22,26 @@ double greatest_coordinate(const PackOptions& options) {
   return options.max_pages > 1 ? std::max(last.maxCoeff(), double{kPagesInARow}) : 1;
 }
 
+/// Throws Error NO_ROOM where a chart is longer than the diagonal of a page: told without drawing
+/// what may be of any size.
+void require_shorter_than_page(std::span<const PackChart> charts, const PackOptions& options) {
+  const double longest = std::numbers::sqrt2 * options.resolution;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    if (charts[c].kept) continue;
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : charts[c].points) box.extend(p);
+    const double extent =
+        box.isEmpty() ? 0 : options.texels_per_unit * charts[c].scale * box.sizes().maxCoeff();
+    if (extent <= longest) continue;
+    throw Error(Fault::kNoRoom, "chart " + std::to_string(c) +
+                                    " is larger than a page at these texels per unit: lower "
+                                    "texels-per-unit, or raise resolution");
+  }
+}
+
 /// What the packer refuses of options in their ranges is a lack of room.
 Packing packed(std::span<const PackChart> charts, const PackOptions& options, const Work& work) {
+  if (options.texels_per_unit > 0) require_shorter_than_page(charts, options);
   try {
     return pack_charts(charts, options, work);
   } catch (const Error& error) {

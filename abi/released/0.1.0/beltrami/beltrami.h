@@ -198,7 +198,7 @@ enum {
   BELTRAMI_OPTION_MARGIN = 32,          /* float: texels between charts, half to a page's edge */
   BELTRAMI_OPTION_TEXELS_PER_UNIT = 33, /* float: density; 0: the greatest that fits */
   BELTRAMI_OPTION_MAX_PAGES = 34,       /* int: 0: one, or with a density as many as it takes */
-  BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_TURNS_ */
+  BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_PACK_TURNS_ */
   BELTRAMI_OPTION_PACK_BLOCK = 36       /* int: charts share no block of so many texels a side */
 };
 
@@ -214,10 +214,10 @@ enum {
 
 /* How charts may be turned on a page; they are never mirrored. */
 enum {
-  BELTRAMI_TURNS_FORCE_SIGNED_ = -1,
-  BELTRAMI_TURNS_ANY = 0,
-  BELTRAMI_TURNS_QUARTER = 1, /* by 90 degrees and multiples */
-  BELTRAMI_TURNS_NONE = 2
+  BELTRAMI_PACK_TURNS_FORCE_SIGNED_ = -1,
+  BELTRAMI_PACK_TURNS_ANY = 0,
+  BELTRAMI_PACK_TURNS_QUARTER = 1, /* by 90 degrees and multiples */
+  BELTRAMI_PACK_TURNS_NONE = 2
 };
 
 /* What is cut beside the seams that come with a surface. */
