@@ -133,6 +133,14 @@ PackOptions pack_options(const Options& options) {
   pack.max_pages = options.max_pages > 0         ? options.max_pages
                    : options.texels_per_unit > 0 ? kManyPages
                                                  : 1;
+  const bool is_wide = 4 * pack.margin > pack.resolution;
+  if (is_wide || 8 * pack.block > pack.resolution) {
+    throw Error(Fault::kInvalidArgument,
+                is_wide ? "the option margin is more than a quarter of the resolution: lower it, "
+                          "or raise resolution"
+                        : "the option pack-block is more than an eighth of the resolution: lower "
+                          "it, or raise resolution");
+  }
   return pack;
 }
 

@@ -63,7 +63,7 @@ def test_packs_meshes_onto_common_pages() -> None:
     assert packing.report.charts == 7
     assert packing.report.margin >= 2
     first, second = (
-        areas(uvs, faces) for uvs, faces in zip(packing.uvs, packing.uv_faces, strict=True)
+        areas(uvs, faces) for uvs, faces in zip(packing.uvs, packing.uv_faces)
     )
     assert (first > 0).all()
     assert second == pytest.approx(4 * first[0])

@@ -126,7 +126,7 @@ class Packing:
     def udim_uvs(self) -> tuple[Array, ...]:
         """The UVs of each mesh in the tiles of UDIM: page k is 1001 + k."""
         tiled = []
-        for uvs, charts, faces in zip(self.uvs, self.chart_of_face, self.uv_faces, strict=True):
+        for uvs, charts, faces in zip(self.uvs, self.chart_of_face, self.uv_faces):
             pages = np.zeros(len(uvs), np.int64)
             pages[faces] = self.page_of_chart[charts][:, None]
             tiled.append(uvs + tile_of(pages, uvs.dtype))

@@ -10,6 +10,7 @@ use crate::atlas_report::{AtlasCertificate, AtlasSummary, Chart};
 use crate::context::Context;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{Uv, UvsMut};
+use crate::packing::Packing;
 use crate::parameterization::{Stage, Status};
 use crate::verdict::count;
 use crate::view::Index;
@@ -90,8 +91,9 @@ impl<'a> Atlas<'a> {
         Err(Error::from_status(kind.status(), certificate.bad_element()))
     }
 
-    /// One (u, v) for every UV vertex: in the surface's unit of length, or with the option
-    /// `unit_square` in the unit square. Single precision is rounded to nearest.
+    /// One (u, v) for every UV vertex: in the unit square of its page; with
+    /// [`Pack::None`](crate::Pack::None), and with pins, in the surface's unit of length, or with the
+    /// option `unit_square` in the unit square. Single precision is rounded to nearest.
     pub fn uvs<T: Uv>(&self) -> Vec<T> {
         let mut uvs = vec![T::default(); count(self.raw().uv_vertices)];
         self.fill(T::room(&mut uvs), sys::beltrami_get_uv_vertices);
@@ -132,6 +134,17 @@ impl<'a> Atlas<'a> {
     /// The UV vertex of every corner, face after face: an index buffer, in `u32` or `u64`.
     pub fn corner_uv_vertices<T: Index>(&self) -> Vec<T> {
         self.numbers(count(self.raw().corners), sys::beltrami_get_corner_uv_vertices)
+    }
+
+    /// The page of every corner's UV, face after face, in `u32` or `u64`; 0 where the atlas is not
+    /// packed. As tiles of UDIM page k is 1001 + k: u is greater by k % 10 there, v by k / 10.
+    pub fn corner_pages<T: Index>(&self) -> Vec<T> {
+        self.numbers(count(self.raw().corners), sys::beltrami_get_corner_pages)
+    }
+
+    /// What lies on the pages; `None` where the atlas is not packed.
+    pub fn packing(&self) -> Option<Packing<'a>> {
+        (self.raw().pages > 0).then(|| Packing::new(self.context))
     }
 
     /// The vertex of the input that every UV vertex is a copy of, in `u32` or `u64`.

@@ -124,7 +124,8 @@ pub struct AtlasSummary {
     pub seams: usize,
     /// Length of the seams on the surface, each counted once, without open borders.
     pub seam_length: f64,
-    /// Area of the UVs over that of their bounding box.
+    /// Area of the UVs over that of the pages; of an atlas that is not packed over that of their
+    /// bounding box.
     pub utilisation: f64,
     /// Mean symmetric Dirichlet energy over the area, at one scale for all: at least 2.
     pub symmetric_dirichlet: f64,
@@ -138,6 +139,8 @@ pub struct AtlasSummary {
     pub cpu_seconds: f64,
     /// The most memory that the whole process has had so far.
     pub peak_memory_bytes: u64,
+    /// Pages; 0 where the atlas is not packed.
+    pub pages: usize,
 }
 
 impl AtlasSummary {
@@ -173,6 +176,7 @@ impl AtlasSummary {
             seconds: raw.seconds,
             cpu_seconds: raw.cpu_seconds,
             peak_memory_bytes: raw.peak_memory_bytes,
+            pages: count(raw.pages),
         }
     }
 }
@@ -199,6 +203,8 @@ pub struct Chart {
     pub max: f64,
     /// Box of its UVs: the least (u, v) and the greatest.
     pub uv_box: [[f64; 2]; 2],
+    /// The page that it lies on, counted from 0; 0 where the atlas is not packed.
+    pub page: usize,
 }
 
 impl Chart {
@@ -214,6 +220,7 @@ impl Chart {
             symmetric_dirichlet: raw.symmetric_dirichlet,
             max: raw.max,
             uv_box: [[u0, v0], [u1, v1]],
+            page: count(raw.page),
         }
     }
 }

@@ -115,6 +115,8 @@ error_kinds! {
     ZeroArea = BELTRAMI_E_ZERO_AREA,
     /// Corners cannot be held where they were pinned: no injective map does that.
     Pins = BELTRAMI_E_PINS,
+    /// The charts do not fit onto the pages that the options allow.
+    NoRoom = BELTRAMI_E_NO_ROOM,
     /// A linear system could not be solved.
     Solver = BELTRAMI_E_SOLVER,
     /// There is a map, but it is not injective: only what asks for injectivity fails so, see

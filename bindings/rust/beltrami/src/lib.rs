@@ -15,6 +15,8 @@ mod mesh;
 #[cfg(feature = "ndarray")]
 mod ndarray;
 mod options;
+mod packer;
+mod packing;
 mod parameterization;
 mod surface;
 mod unwrapper;
@@ -36,9 +38,11 @@ pub use flattener::Flattener;
 pub use library::{build_info, has, version};
 pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
 pub use options::{
-    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, Preset,
-    UnwrapOptions, Weld, OPTIONS,
+    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, Pack,
+    PackOptions, PackTurns, Preset, UnwrapOptions, Weld, OPTIONS,
 };
+pub use packer::{Packer, UvMesh};
+pub use packing::{Packing, PageSummary, Texel};
 pub use parameterization::{Parameterization, Stage, Status, Summary};
 pub use surface::{Edges, Integers, Reals, Surface};
 pub use unwrapper::Unwrapper;

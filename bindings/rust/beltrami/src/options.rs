@@ -9,7 +9,9 @@ use std::time::Duration;
 use beltrami_sys as sys;
 
 use crate::error::Error;
-pub use table::{Cut, Delaunay, Energy, Flatten, Injectivity, Method, Preset, Weld, OPTIONS};
+pub use table::{
+    Cut, Delaunay, Energy, Flatten, Injectivity, Method, Pack, PackTurns, Preset, Weld, OPTIONS,
+};
 
 /// What an option takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,6 +49,8 @@ pub struct OptionInfo {
     pub flattens: bool,
     /// Whether it is one of [`UnwrapOptions`], for an [`Unwrapper`](crate::Unwrapper).
     pub unwraps: bool,
+    /// Whether it is one of [`PackOptions`], for a [`Packer`](crate::Packer).
+    pub packs: bool,
 }
 
 /// A value as the library takes it.
@@ -147,7 +151,7 @@ macro_rules! setters {
     };
 }
 
-/// Defines `OPTIONS` and the methods of `Options` and `UnwrapOptions` that set one.
+/// Defines `OPTIONS` and the methods of the builders that set one.
 macro_rules! options {
     ($( $(#[doc = $doc:literal])*
         $option:ident($type:ty) of $builders:tt = $key:literal $name:literal $summary:literal
@@ -155,7 +159,8 @@ macro_rules! options {
             calls $calls:literal;
     )*) => {
         /// All options, in the order of the library's table: what a user interface or a command
-        /// line is made from, with [`Options::set`] and [`UnwrapOptions::set`].
+        /// line is made from, with [`Options::set`], [`UnwrapOptions::set`] and
+        /// [`PackOptions::set`].
         pub const OPTIONS: &[crate::OptionInfo] = &[$(
             crate::OptionInfo {
                 name: $name,
@@ -167,6 +172,7 @@ macro_rules! options {
                 choices: $choices,
                 flattens: $calls & beltrami_sys::BELTRAMI_CALL_RUN != 0,
                 unwraps: $calls & beltrami_sys::BELTRAMI_CALL_UNWRAP != 0,
+                packs: $calls & beltrami_sys::BELTRAMI_CALL_PACK != 0,
             },
         )*];
 
@@ -254,6 +260,20 @@ builder! {
     /// # Ok::<(), beltrami::Error>(())
     /// ```
     UnwrapOptions, unwraps
+}
+
+builder! {
+    /// The options of packing. What is not set is as the library has it.
+    ///
+    /// ```
+    /// # use beltrami::{PackOptions, PackTurns, Packer};
+    /// let options = PackOptions::new().resolution(2048).pack_turns(PackTurns::Quarter);
+    /// assert_eq!(options, PackOptions::new().set("resolution", "2048")?
+    ///     .set("pack-turns", "quarter")?);
+    /// # Packer::with_options(&options)?;
+    /// # Ok::<(), beltrami::Error>(())
+    /// ```
+    PackOptions, packs
 }
 
 /// Values of options by key; `None` for the default.

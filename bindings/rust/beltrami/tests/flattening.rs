@@ -332,7 +332,8 @@ fn every_status_of_the_header_has_a_kind_of_its_own_name() {
 }
 
 /// All kinds that stand for a failure in the library.
-const KINDS: [ErrorKind; 21] = [
+const KINDS: [ErrorKind; 22] = [
+    ErrorKind::NoRoom,
     ErrorKind::Pins,
     ErrorKind::InvalidArgument,
     ErrorKind::OutOfMemory,

@@ -11,7 +11,8 @@ use std::time::Duration;
 
 use beltrami::{
     Cut, Delaunay, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionInfo,
-    OptionKind, Options, Preset, UnwrapOptions, Unwrapper, Weld, OPTIONS,
+    OptionKind, Options, Pack, PackOptions, PackTurns, Packer, Preset, UnwrapOptions, Unwrapper,
+    Weld, OPTIONS,
 };
 use beltrami_sys as sys;
 
@@ -86,6 +87,7 @@ fn every_option_of_the_library_is_here_with_its_range_default_and_choices() {
         assert_eq!(theirs.choices, ours.choices, "{}", ours.name);
         assert_eq!(theirs.calls & sys::BELTRAMI_CALL_RUN != 0, ours.flattens, "{}", ours.name);
         assert_eq!(theirs.calls & sys::BELTRAMI_CALL_UNWRAP != 0, ours.unwraps, "{}", ours.name);
+        assert_eq!(theirs.calls & sys::BELTRAMI_CALL_PACK != 0, ours.packs, "{}", ours.name);
     }
 }
 
@@ -99,8 +101,13 @@ fn use_option(option: &OptionInfo, value: &str) -> Result<(), ErrorKind> {
         let options = UnwrapOptions::new().set(option.name, value).unwrap();
         Unwrapper::with_options(&options).map(drop).map_err(|error| error.kind)
     });
-    assert!(flattens.is_none() || unwraps.is_none() || flattens == unwraps, "{}", option.name);
-    flattens.or(unwraps).unwrap()
+    let packs = option.packs.then(|| {
+        let options = PackOptions::new().set(option.name, value).unwrap();
+        Packer::with_options(&options).map(drop).map_err(|error| error.kind)
+    });
+    let all: Vec<_> = [flattens, unwraps, packs].into_iter().flatten().collect();
+    assert!(all.iter().all(|one| *one == all[0]), "{}", option.name);
+    all[0]
 }
 
 #[test]
@@ -111,6 +118,8 @@ fn options_that_are_not_taken_are_unknown() {
         let flattens = Options::new().set(option.name, &value).is_ok();
         let unwraps = UnwrapOptions::new().set(option.name, &value).is_ok();
         assert_eq!((flattens, unwraps), (option.flattens, option.unwraps), "{}", option.name);
+        let packs = PackOptions::new().set(option.name, &value).is_ok();
+        assert_eq!(packs, option.packs, "{}", option.name);
     }
     let error = Options::new().set("weld", "off").unwrap_err();
     assert_eq!(error.to_string(), "there is no option weld: see beltrami::OPTIONS");
@@ -184,6 +193,13 @@ fn typed_and_named_options_are_the_same() {
     }
     for &weld in Weld::ALL {
         assert_eq!(UnwrapOptions::new().weld(weld), unwrap("weld", weld.name()));
+    }
+    for &pack in Pack::ALL {
+        assert_eq!(UnwrapOptions::new().pack(pack), unwrap("pack", pack.name()));
+    }
+    for &turns in PackTurns::ALL {
+        let named = PackOptions::new().set("pack-turns", turns.name()).unwrap();
+        assert_eq!(PackOptions::new().pack_turns(turns), named);
     }
     assert_eq!(UnwrapOptions::new().method(Method::Cm), unwrap("method", "cm"));
     assert_eq!(UnwrapOptions::new().share_copies(true), unwrap("share-copies", "true"));
@@ -280,7 +296,11 @@ fn summary_in_rust(option: &Entry) -> String {
 
 /// The types that have a method for it.
 fn builders(option: &Entry) -> Vec<&'static str> {
-    let calls = [(sys::BELTRAMI_CALL_RUN, "Options"), (sys::BELTRAMI_CALL_UNWRAP, "UnwrapOptions")];
+    let calls = [
+        (sys::BELTRAMI_CALL_RUN, "Options"),
+        (sys::BELTRAMI_CALL_UNWRAP, "UnwrapOptions"),
+        (sys::BELTRAMI_CALL_PACK, "PackOptions"),
+    ];
     let taken = calls.into_iter().filter(|(call, _)| option.calls & call != 0);
     taken.map(|(_, builder)| builder).collect()
 }
@@ -334,7 +354,7 @@ fn render(table: &[Entry], comments: &HashMap<String, String>) -> String {
     let mut source = String::from(
         "// The options of the library, written by tests/option_table.rs from its table and header.\n\n\
          use std::time::Duration;\n\n\
-         use super::{choice, options, Options, UnwrapOptions};\n\n",
+         use super::{choice, options, Options, PackOptions, UnwrapOptions};\n\n",
     );
     for option in table.iter().filter(|option| option.kind == OptionKind::Choice) {
         source += &render_choice(option, comments);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{choice, options, Options, UnwrapOptions};
+use super::{choice, options, Options, PackOptions, UnwrapOptions};
 
 choice! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
@@ -132,6 +132,28 @@ choice! {
         Texturing = "texturing",
         /// One chart for each component, at the energy that it can have: max-charts 1.
         OneChart = "one-chart",
+    }
+}
+
+choice! {
+    /// Where. See [`UnwrapOptions::pack`].
+    Pack {
+        /// Pages.
+        Pages = "pages",
+        /// None.
+        None = "none",
+    }
+}
+
+choice! {
+    /// Turns. See [`UnwrapOptions::pack_turns`].
+    PackTurns {
+        /// Any.
+        Any = "any",
+        /// Quarter.
+        Quarter = "quarter",
+        /// None.
+        None = "none",
     }
 }
 
