@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "admit/orient.h"
 #include "atlas/margin.h"
 #include "base/disjoint_sets.h"
 #include "base/error.h"
@@ -202,6 +203,22 @@ std::vector<Vec2> rounded_on_page(const UvChart& chart, Index page, const std::v
   return signs(single) == signs(result) ? single : result;
 }
 
+/// Turns faces over that run against most of their chart: a winding that changes is no fold.
+void orient_faces(UvMesh& mesh, const Work& work) {
+  std::vector<Triangle> judged;
+  std::vector<Index> number;
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    const auto [a, b, c] = mesh.faces[f];
+    if (a == b || b == c || c == a || (!mesh.excepted.empty() && mesh.excepted[f])) continue;
+    judged.push_back(mesh.faces[f]);
+    number.push_back(f);
+  }
+  if (judged.empty()) return;
+  Gluing gluing = glue(size_of(mesh.uvs), judged, std::vector<Index>(judged.size(), 0), {}, work);
+  orient(judged, gluing.twin, {}, work);
+  for (std::size_t i = 0; i < judged.size(); ++i) mesh.faces[number[i]] = judged[i];
+}
+
 void judge(const UvMesh& mesh, bool float32, const Work& work, PackedUvs& packed) {
   AtlasRules rules;
   rules.excepted = mesh.excepted;
@@ -223,8 +240,9 @@ void judge(const UvMesh& mesh, bool float32, const Work& work, PackedUvs& packed
 
 }  // namespace
 
-PackedUvs pack_uvs(const UvMesh& mesh, const PackOptions& options, bool float32, const Work& work) {
+PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const Work& work) {
   PackedUvs packed;
+  orient_faces(mesh, work.aside());
   packed.chart_of_face = charts_of_faces(mesh);
   std::vector<UvChart> charts = charts_of(mesh, packed.chart_of_face);
   PackOptions with_density = options;

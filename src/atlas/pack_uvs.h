@@ -38,10 +38,11 @@ struct PackedUvs {
 
 /// Moves every chart by a rigid motion, none mirrored, and scales it as `areas` and `options` say.
 /// Charts that are flipped, folded or lie on themselves stay so, as the certificate tells; what
-/// rounding alone would fold of a disk is mended. With `float32` in single-precision numbers. With
-/// charts that stay and no texels per unit, the others get the density of those. Throws Error
-/// INVALID_ARGUMENT, with the face, where faces of a chart are to stay on different pages or beyond
-/// [0, 1]^2, and NO_ROOM where charts do not fit. Precondition: finite, indices in range.
-PackedUvs pack_uvs(const UvMesh& mesh, const PackOptions& options, bool float32, const Work& work);
+/// rounding alone would fold of a disk is mended. Faces that run against most of their chart are
+/// taken the other way round. With `float32` in single-precision numbers. With charts that stay and
+/// no texels per unit, the others get the density of those. Throws Error INVALID_ARGUMENT, with the
+/// face, where faces of a chart are to stay on different pages or beyond [0, 1]^2, and NO_ROOM
+/// where charts do not fit. Precondition: finite, indices in range.
+PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const Work& work);
 
 }  // namespace beltrami
