@@ -23,7 +23,8 @@ void for_each_run(const std::array<Vec2, 3>& corners, Index side, const Body& bo
     return static_cast<Index>(std::clamp(std::floor(x), 0.0, static_cast<double>(side - 1)));
   };
   const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
-  for (Index row = texel(low); row <= texel(high); ++row) {
+  const Index last_row = std::max(texel(low), texel(std::nextafter(high, low)));
+  for (Index row = texel(low); row <= last_row; ++row) {
     double left = std::numeric_limits<double>::infinity(), right = -left;
     for (int k = 0; k < 3; ++k) {
       const Vec2 &a = corners[k], &b = corners[next_corner(k)];
