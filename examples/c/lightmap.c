@@ -86,14 +86,17 @@ int main(void) {
   beltrami_context* context = NULL;
   beltrami_surface surface;
   beltrami_atlas atlas = {0};
+  beltrami_packing page = {0};
   beltrami_atlas_certificate shipped = {0};
 
   make_level();
   surface = describe_level();
   if (beltrami_create(&context) != BELTRAMI_OK) return EXIT_FAILURE;
-  /* Numbers that single precision holds, in the unit square; edges of crates are seams. */
+  /* A page of 256 texels, 4 between charts, in numbers that single precision holds; edges of crates
+   * are seams. */
   require(beltrami_set_int(context, BELTRAMI_OPTION_FLOAT32, 1), context, "float32");
-  require(beltrami_set_int(context, BELTRAMI_OPTION_UNIT_SQUARE, 1), context, "unit-square");
+  require(beltrami_set_int(context, BELTRAMI_OPTION_RESOLUTION, 256), context, "resolution");
+  require(beltrami_set_float(context, BELTRAMI_OPTION_MARGIN, 4), context, "margin");
   require(beltrami_set_int(context, BELTRAMI_OPTION_PRESET, BELTRAMI_PRESET_LIGHTMAP), context,
           "preset");
   require(beltrami_set_float(context, BELTRAMI_OPTION_HARD_ANGLE, 60), context, "hard-angle");
@@ -101,8 +104,12 @@ int main(void) {
 
   atlas.struct_size = sizeof atlas;
   require(beltrami_get_atlas(context, &atlas), context, "beltrami_get_atlas");
-  printf("%d faces in %d charts, energy %.4f (2 is an isometry), %.0f%% of the square in use\n",
-         (int)atlas.faces, (int)atlas.charts, atlas.symmetric_dirichlet, 100 * atlas.utilisation);
+  page.struct_size = sizeof page;
+  require(beltrami_get_packing(context, &page), context, "beltrami_get_packing");
+  printf("%d faces in %d charts, energy %.4f (2 is an isometry)\n", (int)atlas.faces,
+         (int)atlas.charts, atlas.symmetric_dirichlet);
+  printf("%.0f%% of the page in use, %.2f texels between charts, %.1f texels per unit\n",
+         100 * page.utilisation, page.margin, page.texels_per_unit);
   printf("%d vertices become %d:\n", (int)atlas.vertices, (int)atlas.uv_vertices);
   print_buffers(context, atlas.uv_vertices);
 

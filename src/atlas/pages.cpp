@@ -61,7 +61,8 @@ Packing pack_and_deliver(std::span<const PackChart> charts, const PackOptions& o
     const double done = 1 - std::ldexp(1, -attempt);
     const Work own = work.part(done, 1 - std::ldexp(1, -attempt - 1));
     PackOptions with_room = options;
-    with_room.margin = options.margin + spare;
+    with_room.margin =
+        std::max(options.margin, std::min(options.margin + spare, 0.25 * options.resolution));
     packing = packed(charts, with_room, own.part(0, 0.9));
     const double margin = deliver(packing, own.part(0.9, 1));
     if (margin >= options.margin) break;

@@ -185,7 +185,9 @@ TEST(Pack, QuarterTurnsAloneWhereTheyAreAskedFor) {
     expect_sound(charts, options, packing);
     for (const Placement& placement : packing.placements) {
       EXPECT_EQ(placement.turn.cwiseAbs().minCoeff(), 0);
-      if (turns == 1) EXPECT_EQ(placement.turn, Vec2(1, 0));
+      if (turns == 1) {
+        EXPECT_EQ(placement.turn, Vec2(1, 0));
+      }
     }
   }
 }

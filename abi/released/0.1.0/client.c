@@ -289,6 +289,54 @@ static void unwrap(beltrami_context* context) {
   REQUIRE(pairs[0] == BELTRAMI_NO_ELEMENT && pairs[2] == 7);
 }
 
+static void pack(beltrami_context* context) {
+  GUARDED(beltrami_packing) packing;
+  GUARDED(beltrami_atlas_certificate) certificate;
+  beltrami_uv_mesh mesh;
+  const beltrami_uv_mesh* meshes[1];
+  uint8_t mask[64 * 64 + 1];
+  double shares[2] = {0, -7};
+  int calls = 0;
+  numbers[3 * FACES] = 7;
+  REQUIRE(beltrami_get_corner_pages(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[0] == 0 && numbers[3 * FACES] == 7);
+  memset(&mesh, 0, sizeof mesh);
+  mesh.struct_size = sizeof mesh;
+  mesh.uv_count = VERTICES;
+  mesh.face_count = FACES;
+  mesh.uvs.data = uv_vertices;
+  mesh.uvs.type = BELTRAMI_F64;
+  mesh.uv_indices.data = uv_faces;
+  mesh.uv_indices.type = BELTRAMI_U32;
+  meshes[0] = &mesh;
+  REQUIRE(beltrami_set_int(context, BELTRAMI_OPTION_RESOLUTION, 64) == BELTRAMI_OK);
+  REQUIRE(beltrami_pack(context, meshes, 1, count_calls, &calls) == BELTRAMI_OK);
+  ARM(packing);
+  REQUIRE(beltrami_get_packing(context, &packing.value) == BELTRAMI_OK);
+  ALIVE(packing);
+  REQUIRE(packing.value.charts == 1 && packing.value.pages == 1);
+  REQUIRE(packing.value.resolution == 64 && packing.value.margin >= 2);
+  REQUIRE(beltrami_get_page_utilisations(context, shares, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(shares[0] == packing.value.utilisation && shares[1] == -7);
+  ARM(certificate);
+  REQUIRE(beltrami_get_packing_certificate(context, BELTRAMI_F64, &certificate.value) ==
+          BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1);
+  uv_vertices[VERTICES][0] = -7;
+  REQUIRE(beltrami_get_packed_uvs(context, 0, uv_vertices, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(uv_vertices[VERTICES][0] == -7 && uv_vertices[0][0] >= 0 && uv_vertices[0][0] <= 1);
+  numbers[FACES] = 7;
+  REQUIRE(beltrami_get_packed_charts(context, 0, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[0] == 0 && numbers[FACES] == 7);
+  numbers[1] = 7;
+  REQUIRE(beltrami_get_chart_pages(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[0] == 0 && numbers[1] == 7);
+  mask[64 * 64] = 7;
+  REQUIRE(beltrami_get_page_mask(context, 0, mask, 0) == BELTRAMI_OK);
+  REQUIRE(mask[64 * 64] == 7 && mask[64 * 32 + 32] <= BELTRAMI_TEXEL_COVERED);
+}
+
 int main(void) {
   beltrami_context* context = NULL;
   ask_the_library();
@@ -300,6 +348,7 @@ int main(void) {
   flatten(context);
   read_results(context);
   unwrap(context);
+  pack(context);
   beltrami_destroy(context);
   check_without_a_context();
   return EXIT_SUCCESS;

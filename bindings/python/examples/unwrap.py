@@ -16,7 +16,7 @@ atlas = beltrami.unwrap(vertices, faces)
 print(f"{len(atlas.charts)} charts, energy {atlas.energy:.4f}, injective: {atlas.injective}")
 
 # %% Charts with sharp edges between them keep all lengths.
-atlas = beltrami.unwrap(vertices, faces, hard_angle=60, unit_square=True)
+atlas = beltrami.unwrap(vertices, faces, hard_angle=60, resolution=512, margin=4)
 print(f"{len(atlas.charts)} charts, energy {atlas.energy:.4f}, injective: {atlas.injective}")
 
 # %% What a vertex buffer needs: vertices split along the seams, and nowhere else.

@@ -50,7 +50,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let summary = atlas.summary();
     println!("{} charts of {} faces", summary.charts, summary.faces);
     println!("symmetric Dirichlet energy {:.4} (2 is an isometry)", summary.symmetric_dirichlet);
-    println!("{:.0} % of the box are covered", 100.0 * summary.utilisation);
+    println!("{:.0} % of the page are covered", 100.0 * summary.utilisation);
 
     write_obj(output, &positions, sizes, &mesh.indices, &atlas.uvs(), &atlas.corner_uv_vertices())?;
     // What is shipped is single precision, so that is what must be injective.
