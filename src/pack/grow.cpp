@@ -15,6 +15,9 @@ namespace {
 /// Points of borders that may be moved in steps, at an effort of one: about a second.
 constexpr double kPointSteps = 2e6;
 
+/// What a step costs beside, in points.
+constexpr double kPointsOfStep = 200;
+
 /// Margins below this many texels leave no room for the steps to err.
 constexpr double kLeastMargin = 1;
 
@@ -116,7 +119,7 @@ class Growth {
     double worst_before = HUGE_VAL;
     for (int step = 0; step < kMostSteps; ++step) {
       find_contacts(density);
-      spent_ += static_cast<double>(points_);
+      spent_ += static_cast<double>(points_) + kPointsOfStep;
       double worst = 0;
       for (const Contact& contact : contacts_) worst = std::max(worst, -contact.gap);
       if (worst <= kHeld) return true;

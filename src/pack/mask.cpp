@@ -252,7 +252,7 @@ constexpr double kRounding = 1e-12;
 
 }  // namespace
 
-Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius) {
+Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius, int most) {
   std::vector<Vec2> places = turned(outline.points, turn, density);
   Eigen::AlignedBox2d box;
   for (const Vec2& p : places) box.extend(p);
@@ -262,6 +262,12 @@ Mask mask_of(const Outline& outline, const Vec2& turn, double density, double ra
   const double reach = radius + slack;
   const Vec2 origin = Vec2::Constant(reach + slack) - box.min();
   const Vec2 extent = box.max() + origin + Vec2::Constant(reach);
+  if (!(extent.maxCoeff() < most)) {
+    Mask large;
+    large.width = large.height = most + 1;
+    large.cells = static_cast<std::int64_t>(most) * most;
+    return large;
+  }
   Mask mask =
       draw(std::move(places), outline, reach, origin, static_cast<int>(std::floor(extent.x())) + 1,
            static_cast<int>(std::floor(extent.y())) + 1);

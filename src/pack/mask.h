@@ -32,7 +32,8 @@ struct Mask {
 
 /// All cells that are less than `radius` from what the outline covers once it is turned by `turn`
 /// and multiplied by `density` (cells per unit). The chart touches the mask's left and lower side.
-Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius);
+/// Of one with more than `most` cells per side there is the size alone, that or a greater one.
+Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius, int most);
 
 /// Likewise, with the chart's origin at `origin` (cells); of cells [0, cells)^2 alone. The mask's
 /// box is these, and its runs are where they are.

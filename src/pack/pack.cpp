@@ -56,7 +56,13 @@ Packing pack_charts(std::span<const PackChart> charts, const PackOptions& option
   check(charts, options);
   if (charts.empty()) return {};
   const Problem problem(charts, options, work);
-  Packed packed = options.texels_per_unit > 0 ? pack_at_given(problem) : pack_at_largest(problem);
+  Index longest = 0;
+  for (Index c = 1; c < problem.size(); ++c) {
+    if (problem.length(c) > problem.length(longest)) longest = c;
+  }
+  // Points alone fit at any density.
+  const double given = problem.length(longest) > 0 ? options.texels_per_unit : 1;
+  Packed packed = given > 0 ? pack_at_density(problem, given) : pack_at_largest(problem);
   return problem.packing(std::move(packed.placements), packed.texels_per_unit);
 }
 

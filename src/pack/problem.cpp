@@ -24,6 +24,9 @@ constexpr Index kMany = 20000;
 /// From so many charts on quarter turns are enough: there is always one that fits well.
 constexpr Index kManyForTurns = 600;
 
+/// Masks are drawn up to so many times the side of a page.
+constexpr int kMostOfPage = 2;
+
 /// Of a cell: by how much borders may be off in masks, which makes up for it.
 constexpr double kThin = 1.0 / 16;
 
@@ -92,7 +95,8 @@ Masks Problem::masks(double texels_per_unit) const {
       if (charts_[c].kept || outlines_[c].edges.empty()) continue;
       const double density = texels_per_unit * charts_[c].scale / cell_;
       for (int k = 0; k < turns_; ++k) {
-        masks[c].push_back(mask_of(thinned_[c], turn(c, k), density, radius() / cell_ + kThin));
+        masks[c].push_back(mask_of(thinned_[c], turn(c, k), density, radius() / cell_ + kThin,
+                                   kMostOfPage * cells_));
       }
     }
   });

@@ -22,6 +22,9 @@ constexpr Index kMostToOrder = 600;
 /// Room beyond the page in which layouts are made that then are brought to its size.
 constexpr double kStrip = 1.4;
 
+/// Densities that are tried, each lower than the one before, until margins are all that counts.
+constexpr int kMostStepsDown = 60;
+
 /// The density at which the charts with their margins would fill a share of the pages.
 double density_for(const Problem& problem, double share) {
   double area = 0, length = 0;
@@ -40,8 +43,11 @@ double density_for(const Problem& problem, double share) {
     const double half = length * radius / 2;
     return (std::sqrt(half * half + area * rest) - half) / area;
   }
-  return length > 0 ? side / length : 1;
+  return side / length;
 }
+
+/// Disks of half the margin fill no more of a plane than this.
+constexpr double kDensestDisks = 0.9069;
 
 [[noreturn]] void refuse_margins(const Problem& problem) {
   throw Error(Fault::kInvalidArgument,
@@ -140,7 +146,7 @@ class OnePage {
       (fits ? low : high) = density_;
       if (fits && (layout.height >= kEnough * cells_ || tries >= kMostTries)) return;
       if (low > 0 && high > 0 && high < 1.01 * low) return;
-      if (tries > 200) refuse_margins(problem_);
+      if (tries > kMostStepsDown) refuse_margins(problem_);
       double next = whole ? 0.998 * fitting(layout) : kStepDown * density_;
       if (low > 0 && high > 0 && (next <= low || next >= high)) next = 0.5 * (low + high);
       set_density(next);
@@ -219,7 +225,7 @@ Packed pack_on_pages(const Problem& problem) {
   const std::vector<Index> order = problem.order();
   double density = density_for(problem, 0.75), low = 0, high = 0;
   Packed best;
-  for (int step = 0; step < 200; ++step) {
+  for (int step = 0; step < kMostStepsDown; ++step) {
     const Masks masks = problem.masks(density);
     const Layout layout =
         place_in_order(masks, order, Rule::kLowest, {}, empty, problem.options().max_pages);
@@ -231,7 +237,7 @@ Packed pack_on_pages(const Problem& problem) {
     }
     if (low > 0 && high > 0 && high < kEnough * low) break;
     if (low == 0) {
-      density *= 0.9;
+      density *= 0.85;
     } else {
       density = high == 0 ? 1.05 * density : 0.5 * (low + high);
     }
@@ -243,13 +249,15 @@ Packed pack_on_pages(const Problem& problem) {
 }  // namespace
 
 Packed pack_at_largest(const Problem& problem) {
+  const double side = problem.options().resolution + 2 * problem.radius();
+  const double disks = problem.size() * std::numbers::pi * problem.radius() * problem.radius();
+  if (disks > kDensestDisks * problem.options().max_pages * side * side) refuse_margins(problem);
   Packed packed =
       problem.options().max_pages == 1 ? OnePage(problem).run() : pack_on_pages(problem);
   return problem.size() < kMostToOrder ? grow(problem, std::move(packed)) : packed;
 }
 
-Packed pack_at_given(const Problem& problem) {
-  const double density = problem.options().texels_per_unit;
+Packed pack_at_density(const Problem& problem, double density) {
   const Masks masks = problem.masks(density);
   const Page empty(problem.cells(), problem.cells());
   const std::vector<Index> order = problem.order();

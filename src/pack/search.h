@@ -12,10 +12,10 @@ struct Packed {
 
 /// The largest density that is found at which all charts fit into the pages that there may be.
 /// Throws Error INVALID_ARGUMENT where the margins alone take more than these. Precondition: no
-/// chart is kept.
+/// chart is kept, and one has a length.
 Packed pack_at_largest(const Problem& problem);
 
-/// At the density that the options give. Throws Error INVALID_ARGUMENT where that does not fit.
-Packed pack_at_given(const Problem& problem);
+/// At a density. Throws Error INVALID_ARGUMENT where that does not fit.
+Packed pack_at_density(const Problem& problem, double density);
 
 }  // namespace beltrami
