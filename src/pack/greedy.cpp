@@ -80,9 +80,10 @@ void look_corner(const Page& page, const Mask& mask, int from, Spot spot, std::i
 }
 
 Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index index, Rule rule,
-                     int from, std::int64_t& steps) {
+                     int from, int forced, std::int64_t& steps) {
   Candidate best;
   for (int turn = 0; turn < static_cast<int>(masks.size()); ++turn) {
+    if (forced != kNone && turn != forced) continue;
     const Mask& mask = masks[turn];
     if (mask.width > page.width() || mask.height > page.height()) continue;
     if (mask.cells > page.free_cells()) continue;
@@ -98,15 +99,15 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
 
 }  // namespace
 
-Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
-                      Rule rule, std::vector<Page> pages, const Page& empty, int max_pages) {
+Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
+                      std::vector<Page> pages, const Page& empty, int max_pages) {
   Layout layout;
   layout.steps = empty.height() * kStepsPerRow;
   layout.spots.resize(masks.size());
-  const bool many = order.size() >= kManyCharts;
+  const bool many = plan.order.size() >= kManyCharts;
   std::vector<Floor> floors(pages.size());
   double size = 0;  // of the charts that the floors are about
-  for (const Index chart : order) {
+  for (const Index chart : plan.order) {
     poll_interrupt();
     Spot& spot = layout.spots[chart];
     if (masks[chart].empty() || masks[chart][0].cells == 0) {
@@ -123,9 +124,10 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<con
         pages.push_back(empty);
         floors.emplace_back();
       }
+      const int forced = plan.turns.empty() ? kNone : plan.turns[chart];
       const int from = many ? floors[p].row() : 0;
       const bool was_empty = pages[p].empty();
-      spot = best_place(pages[p], masks[chart], p, rule, from, layout.steps).spot;
+      spot = best_place(pages[p], masks[chart], p, rule, from, forced, layout.steps).spot;
       floors[p].found(spot.page == kNone ? pages[p].height() : spot.y);
       if (was_empty && spot.page == kNone) break;  // it is too large for any page
     }

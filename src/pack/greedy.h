@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -32,10 +31,16 @@ struct Layout {
   std::int64_t steps = 0;     ///< work done: words looked at
 };
 
-/// Places the charts of `order`, each on the first of the pages that has room for it: those given,
-/// which may have taken cells, and up to `max_pages` copies of `empty`. `masks` are per chart, one
-/// for each turn; a chart without any gets page 0.
-Layout place_in_order(const std::vector<std::vector<Mask>>& masks, std::span<const Index> order,
-                      Rule rule, std::vector<Page> pages, const Page& empty, int max_pages);
+/// Which charts come first, and how some are to be turned.
+struct Plan {
+  std::vector<Index> order;
+  std::vector<int> turns;  ///< per chart the mask that is taken, or kNone: the best; empty: all so
+};
+
+/// Places the charts of a plan in its order, each on the first of the pages that has room for it:
+/// those given, which may have taken cells, and up to `max_pages` copies of `empty`. `masks` are
+/// per chart, one for each turn; a chart without any gets page 0.
+Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
+                      std::vector<Page> pages, const Page& empty, int max_pages);
 
 }  // namespace beltrami

@@ -17,9 +17,13 @@ namespace {
 constexpr double kRoundingOfPage = 0x1p-22;
 
 /// Cells per side of a page: with more of them masks are tighter and all is slower. Tiny charts
-/// need more, as half a cell is much to them.
-constexpr int kCells = 1024, kCellsOfMany = 2048;
-constexpr Index kMany = 20000;
+/// need more, as half a cell is much to them; with few there is time for more orders on fewer.
+constexpr int kCellsOfFew = 512, kCells = 1024, kCellsOfMany = 2048;
+constexpr Index kFew = 20, kMany = 20000;
+
+/// Up to so many charts each turn counts.
+constexpr Index kFewForTurns = 6;
+constexpr int kFinerTurns = 4;
 
 /// From so many charts on quarter turns are enough: there is always one that fits well.
 constexpr Index kManyForTurns = 600;
@@ -51,12 +55,14 @@ Problem::Problem(std::span<const PackChart> charts, const PackOptions& options, 
       if (options_.turns > 4) base_[c] = turn_to_least_box(outlines_[c].hull);
     }
   });
-  turns_ = size() >= kManyForTurns ? std::min(options.turns, 4) : options.turns;
+  turns_ = options.turns;
+  if (size() >= kManyForTurns) turns_ = std::min(turns_, 4);
+  if (options.turns > 4 && size() <= kFewForTurns) turns_ *= kFinerTurns;
   if (options.block > 1) {
     cells_ = options.resolution / options.block;
     cell_ = options.block;
   } else {
-    cells_ = size() >= kMany ? kCellsOfMany : kCells;
+    cells_ = size() < kFew ? kCellsOfFew : size() >= kMany ? kCellsOfMany : kCells;
     cell_ = static_cast<double>(options.resolution) / cells_;
   }
   double sum = 0;

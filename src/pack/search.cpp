@@ -81,7 +81,7 @@ class OnePage {
         cells_(problem.cells()),
         strip_(cells_, static_cast<int>(kStrip * cells_)),
         square_(static_cast<int>(kStrip * cells_), static_cast<int>(kStrip * cells_)),
-        order_(problem.order()) {}
+        first_{problem.order(), std::vector<int>(problem.size(), kNone)} {}
 
   Packed run() {
     start();
@@ -97,9 +97,9 @@ class OnePage {
     auto operator<=>(const Cost&) const = default;
   };
 
-  Layout lay(const std::vector<Index>& order, Rule rule) {
+  Layout lay(const Plan& plan, Rule rule) {
     const Page& page = rule == Rule::kLowest ? strip_ : square_;
-    Layout layout = place_in_order(masks_, order, rule, {}, page, 1);
+    Layout layout = place_in_order(masks_, plan, rule, {}, page, 1);
     steps_ += layout.steps;
     return layout;
   }
@@ -139,7 +139,7 @@ class OnePage {
     double low = 0, high = 0;
     set_density(density_for(problem_, kFirstShare));
     for (int tries = 0;; ++tries) {
-      const Layout layout = lay(order_, Rule::kLowest);
+      const Layout layout = lay(first_, Rule::kLowest);
       const bool whole = layout.failed == kNone;
       const bool fits = whole && layout.height <= cells_;
       if (fits) keep(layout);
@@ -159,59 +159,70 @@ class OnePage {
     Numbers numbers;
     Rule rule = Rule::kLowest;
     raise_density();
-    std::vector<Index> order = order_;
-    Cost current = cost(lay(order, rule));
-    {
-      const Layout other = lay(order, Rule::kCorner);
-      if (cost(other) < current) {
-        rule = Rule::kCorner;
-        current = cost(other);
-      }
+    Plan plan = first_;
+    Cost current = cost(lay(plan, rule));
+    if (const Cost other = cost(lay(plan, Rule::kCorner)); other < current) {
+      rule = Rule::kCorner;
+      current = other;
     }
-    // Few charts have few orders.
-    const auto most_misses = static_cast<std::int64_t>(4 * order.size() * order.size());
-    std::int64_t misses = order.size() > 1 ? 0 : most_misses;
-    while (steps_ < budget && misses < most_misses && !problem_.work().out_of_time()) {
-      ++misses;
-      std::vector<Index> tried = order;
-      change(numbers, tried);
-      const Layout layout = lay(tried, rule);
+    // Few charts have few plans.
+    const auto count = static_cast<std::int64_t>(plan.order.size());
+    const std::int64_t most_misses = kPlansOfFew + 4 * count * count;
+    for (std::int64_t misses = 0; misses < most_misses; ++misses) {
+      if (steps_ >= budget || count < 2 || problem_.work().out_of_time()) return;
+      Plan tried = plan;
+      const Rule rule_tried = change(numbers, tried) ? rule : other_of(rule);
+      const Layout layout = lay(tried, rule_tried);
       const Cost found = cost(layout);
       if (current < found) continue;
       if (found < current) misses = 0;
-      order = std::move(tried);
+      plan = std::move(tried);
+      rule = rule_tried;
       current = found;
       if (found.side <= cells_) {
         keep(layout);
         raise_density();
-        current = cost(lay(order, rule));
+        current = cost(lay(plan, rule));
       }
     }
   }
+
+  static Rule other_of(Rule rule) { return rule == Rule::kLowest ? Rule::kCorner : Rule::kLowest; }
 
   void raise_density() {
     constexpr double kRaise = 1.006;
     set_density(kRaise * best_.texels_per_unit);
   }
 
-  /// Takes a chart to another place, mostly an earlier one, or changes two.
-  void change(Numbers& numbers, std::vector<Index>& order) const {
+  /// Takes a chart to another place of the order, changes two, or says how one is turned. Returns
+  /// false where the rule is to change instead.
+  bool change(Numbers& numbers, Plan& plan) const {
+    std::vector<Index>& order = plan.order;
     const std::size_t from = numbers.below(order.size()), to = numbers.below(order.size());
-    if (numbers.below(2) == 0) {
+    const std::size_t kind = numbers.below(16);
+    if (kind == 0) return false;
+    if (kind < 6) {
       std::swap(order[from], order[to]);
-    } else if (from > to) {
-      std::rotate(order.begin() + to, order.begin() + from, order.begin() + from + 1);
+    } else if (kind < 11) {
+      const auto first = order.begin() + static_cast<std::ptrdiff_t>(std::min(from, to));
+      const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::max(from, to)) + 1;
+      std::rotate(first, from > to ? last - 1 : first + 1, last);
     } else {
-      std::rotate(order.begin() + from, order.begin() + from + 1, order.begin() + to + 1);
+      // Mostly of the first charts, which are large.
+      const Index chart = order[std::min(from, to)];
+      const auto turns = static_cast<std::size_t>(problem_.turns());
+      plan.turns[chart] = kind < 13 ? kNone : static_cast<int>(numbers.below(turns));
     }
+    return true;
   }
 
+  static constexpr std::int64_t kPlansOfFew = 100;
   static constexpr double kFirstShare = 0.75, kStepDown = 0.8;
 
   const Problem& problem_;
   int cells_;
   Page strip_, square_;
-  std::vector<Index> order_;
+  Plan first_;
   double density_ = 0;
   Masks masks_;
   std::int64_t steps_ = 0;
@@ -222,13 +233,13 @@ class OnePage {
 Packed pack_on_pages(const Problem& problem) {
   constexpr double kEnough = 1.005;
   const Page empty(problem.cells(), problem.cells());
-  const std::vector<Index> order = problem.order();
+  const Plan plan{problem.order(), {}};
   double density = density_for(problem, 0.75), low = 0, high = 0;
   Packed best;
   for (int step = 0; step < kMostStepsDown; ++step) {
     const Masks masks = problem.masks(density);
     const Layout layout =
-        place_in_order(masks, order, Rule::kLowest, {}, empty, problem.options().max_pages);
+        place_in_order(masks, plan, Rule::kLowest, {}, empty, problem.options().max_pages);
     if (layout.failed == kNone) {
       low = density;
       best = {problem.placements(masks, layout), density};
@@ -260,9 +271,9 @@ Packed pack_at_largest(const Problem& problem) {
 Packed pack_at_density(const Problem& problem, double density) {
   const Masks masks = problem.masks(density);
   const Page empty(problem.cells(), problem.cells());
-  const std::vector<Index> order = problem.order();
+  const Plan plan{problem.order(), {}};
   for (const Rule rule : {Rule::kLowest, Rule::kCorner}) {
-    const Layout layout = place_in_order(masks, order, rule, problem.kept_pages(density), empty,
+    const Layout layout = place_in_order(masks, plan, rule, problem.kept_pages(density), empty,
                                          problem.options().max_pages);
     if (layout.failed == kNone) return {problem.placements(masks, layout), density};
     if (rule == Rule::kCorner) {
