@@ -235,7 +235,10 @@ TEST(StructSize, IsRespectedByEveryOutputOfAnAtlas) {
       [&](beltrami_atlas* out) { return beltrami_get_atlas(c, out); },
       offsetof(beltrami_atlas, seams));
   expect_sizes_respected<beltrami_chart>(
-      [&](beltrami_chart* out) { return beltrami_get_chart(c, 0, out); });
+      [&](beltrami_chart* out) { return beltrami_get_chart(c, 0, out); },
+      offsetof(beltrami_chart, page));
+  expect_sizes_respected<beltrami_packing>(
+      [&](beltrami_packing* out) { return beltrami_get_packing(c, out); });
   expect_sizes_respected<beltrami_stage>(
       [&](beltrami_stage* out) { return beltrami_get_atlas_stage(c, 0, out); });
   expect_sizes_respected<beltrami_atlas_certificate>([&](beltrami_atlas_certificate* out) {

@@ -53,6 +53,8 @@ pub const BELTRAMI_E_GENUS: _bindgen_ty_1 = -30;
 pub const BELTRAMI_E_ZERO_AREA: _bindgen_ty_1 = -31;
 /// The pins of a surface cannot be met. Corner: the first that cannot, with those before it.
 pub const BELTRAMI_E_PINS: _bindgen_ty_1 = -32;
+/// The charts do not fit onto the pages that the options allow.
+pub const BELTRAMI_E_NO_ROOM: _bindgen_ty_1 = -33;
 /// A linear system could not be solved.
 pub const BELTRAMI_E_SOLVER: _bindgen_ty_1 = -40;
 pub type _bindgen_ty_1 = ::core::ffi::c_int;
@@ -185,99 +187,130 @@ pub const BELTRAMI_OPTION_HIDDEN_SEAMS: _bindgen_ty_3 = 27;
 pub const BELTRAMI_OPTION_HARD_SEAMS: _bindgen_ty_3 = 28;
 /// float: the same where the materials of faces differ
 pub const BELTRAMI_OPTION_MATERIAL_SEAMS: _bindgen_ty_3 = 29;
+/// choice: BELTRAMI_PACK_
+pub const BELTRAMI_OPTION_PACK: _bindgen_ty_3 = 30;
+/// int: texels to the side of a page
+pub const BELTRAMI_OPTION_RESOLUTION: _bindgen_ty_3 = 31;
+/// float: texels between charts, half to a page's edge
+pub const BELTRAMI_OPTION_MARGIN: _bindgen_ty_3 = 32;
+/// float: density; 0: the greatest that fits
+pub const BELTRAMI_OPTION_TEXELS_PER_UNIT: _bindgen_ty_3 = 33;
+/// int: 0: one, or with a density as many as it takes
+pub const BELTRAMI_OPTION_MAX_PAGES: _bindgen_ty_3 = 34;
+/// choice: BELTRAMI_PACK_TURNS_
+pub const BELTRAMI_OPTION_PACK_TURNS: _bindgen_ty_3 = 35;
+/// int: charts share no block of so many texels a side
+pub const BELTRAMI_OPTION_PACK_BLOCK: _bindgen_ty_3 = 36;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
-pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
+pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_4 = -1;
+/** On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
+ page are in [0,1]^2. A surface with pins is not packed.*/
+pub const BELTRAMI_PACK_PAGES: _bindgen_ty_4 = 0;
+/// Side by side, in the surface's own unit of length.
+pub const BELTRAMI_PACK_NONE: _bindgen_ty_4 = 1;
+/// Where the charts of an atlas lie.
+pub type _bindgen_ty_4 = ::core::ffi::c_int;
+pub const BELTRAMI_PACK_TURNS_FORCE_SIGNED_: _bindgen_ty_5 = -1;
+pub const BELTRAMI_PACK_TURNS_ANY: _bindgen_ty_5 = 0;
+/// by 90 degrees and multiples
+pub const BELTRAMI_PACK_TURNS_QUARTER: _bindgen_ty_5 = 1;
+pub const BELTRAMI_PACK_TURNS_NONE: _bindgen_ty_5 = 2;
+/// How charts may be turned on a page; they are never mirrored.
+pub type _bindgen_ty_5 = ::core::ffi::c_int;
+pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_6 = -1;
 /// Nothing but a short cut graph where a piece is no disk.
-pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_4 = 0;
+pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_6 = 0;
 /// Also where the corner UVs of the surface part: its charts stay what they are.
-pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_4 = 1;
+pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_6 = 1;
 /** The default: short seams that are searched for, along which the maps have the energy asked for
  by the option target-energy.*/
-pub const BELTRAMI_CUT_AUTO: _bindgen_ty_4 = 2;
+pub const BELTRAMI_CUT_AUTO: _bindgen_ty_6 = 2;
 /** Nothing: the seams that come with the surface are used as they are. What is no disk then is
  opened as by MINIMAL, which does the same; seams of an earlier atlas leave nothing to open.*/
-pub const BELTRAMI_CUT_GIVEN: _bindgen_ty_4 = 3;
+pub const BELTRAMI_CUT_GIVEN: _bindgen_ty_6 = 3;
 /// What is cut beside the seams that come with a surface.
-pub type _bindgen_ty_4 = ::core::ffi::c_int;
-pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_5 = -1;
+pub type _bindgen_ty_6 = ::core::ffi::c_int;
+pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_7 = -1;
 /// The defaults.
-pub const BELTRAMI_PRESET_NONE: _bindgen_ty_5 = 0;
+pub const BELTRAMI_PRESET_NONE: _bindgen_ty_7 = 0;
 /** Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
  hard edges: hidden-seams 0, hard-seams 0.5.*/
-pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_5 = 1;
+pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_7 = 1;
 /** Textures that are painted or photographed: seams where nobody looks, though they be longer:
  concave-seams 0.6, hidden-seams 2.*/
-pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_5 = 2;
+pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_7 = 2;
 /// One chart for each component, at the energy that it can have: max-charts 1.
-pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_5 = 3;
+pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_7 = 3;
 /// What the seams are for: setting one writes its values to the options of the search.
-pub type _bindgen_ty_5 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_6 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_6 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_6 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_6 = 2;
-/// Whether vertices at one place are one.
-pub type _bindgen_ty_6 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_7 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_7 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_7 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_7 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_7 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_7 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_7 = 5;
 pub type _bindgen_ty_7 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_8 = -1;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_8 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_8 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_8 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_8 = 2;
+/// Whether vertices at one place are one.
+pub type _bindgen_ty_8 = ::core::ffi::c_int;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_9 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_9 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_9 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_9 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_9 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_9 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_9 = 5;
+pub type _bindgen_ty_9 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_10 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_8 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_10 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_8 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_10 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_8 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_10 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_8 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_10 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_8 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_10 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_8 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_9 = -1;
-/// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_9 = 0;
-/// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_9 = 1;
-/// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_9 = 2;
-/// What the optimisation sees to. The certificate always judges global injectivity.
-pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_10 = -1;
-/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_10 = 0;
-/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_10 = 1;
 pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_11 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_11 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_11 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_11 = 2;
-/// How an option's value is given.
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// Global, but for the method CM: that is left as the literature has it, the reference.
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_11 = 0;
+/// No flips, and no part of the boundary may cross another.
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_11 = 1;
+/// No flips; the boundary may overlap itself, at a slightly lower energy.
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_11 = 2;
+/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_11 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_12 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_12 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_12 = 2;
-/// What an option is for.
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+/// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_12 = 0;
+/// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_12 = 1;
 pub type _bindgen_ty_12 = ::core::ffi::c_int;
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_13 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_13 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_13 = 2;
+/// How an option's value is given.
+pub type _bindgen_ty_13 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_14 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_14 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_14 = 2;
+/// beltrami_pack
+pub const BELTRAMI_CALL_PACK: _bindgen_ty_14 = 4;
+/// What an option is for.
+pub type _bindgen_ty_14 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -397,13 +430,13 @@ extern "C" {
         value: *mut f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_13 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_13 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_13 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_13 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_13 = 3;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_15 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_15 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_15 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_15 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_15 = 3;
 /// Element types of buffers.
-pub type _bindgen_ty_13 = ::core::ffi::c_int;
+pub type _bindgen_ty_15 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -1079,14 +1112,15 @@ extern "C" {
 }
 extern "C" {
     /** Cuts a surface into charts that are disks, flattens each with the options of beltrami_run (but
- for delaunay), lays them out side by side at the surface's own scale, and judges the whole. The
- surface is read, not kept. The context's mesh and the results of beltrami_run stay; those of an
- earlier beltrami_unwrap are kept if it fails. Returns OK, or with a result NOT_CONVERGED,
- NOT_INJECTIVE (a chart has no map, or one that is not injective: beltrami_get_chart says which;
- or charts with pins lie on each other: the certificate says where) or NOT_INJECTIVE_FLOAT32;
- errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, CANCELLED,
- OUT_OF_MEMORY (also before any chart is flattened, if one of the largest is estimated to need
- more than the option memory-limit), INVALID_STATE (during a run), INTERNAL.
+ for delaunay), packs them onto pages (or with the option pack at NONE lays them out side by side
+ at the surface's own scale), and judges the whole. The surface is read, not kept. The context's
+ mesh and the results of beltrami_run stay; those of an earlier beltrami_unwrap are kept if it
+ fails. Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE (a chart has no map, or one that
+ is not injective: beltrami_get_chart says which; or charts with pins lie on each other: the
+ certificate says where) or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY,
+ INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, NO_ROOM, CANCELLED, OUT_OF_MEMORY (also before
+ any chart is flattened, if one of the largest is estimated to need more than the option
+ memory-limit), INVALID_STATE (during a run), INTERNAL.
 
  Charts with pins stay where the pins put them, and the others lie above their box. With one pin
  the free map is moved there, with two it is turned and scaled as well; with more its energy is
@@ -1096,8 +1130,8 @@ extern "C" {
  met the call fails with PINS and the corner of the first pin that cannot be met together with
  those before it: what is proven before the flattening first (two UV vertices at one place, a face
  turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
- to reach them without folding a face. Pins go with neither the option unit-square nor densities:
- INVALID_ARGUMENT. Pins of faces without area set their corners alone.*/
+ to reach them without folding a face. Pins go with neither densities nor the option unit-square,
+ nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.*/
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
@@ -1153,7 +1187,8 @@ pub struct beltrami_atlas {
     pub area: f64,
     /// on the surface, each seam once, no open border
     pub seam_length: f64,
-    /// area of the UVs over that of their bounding box
+    /** area of the UVs over that of the pages, or where it is not packed
+ of their bounding box*/
     pub utilisation: f64,
     /// mean over the area, at one scale for all: >= 2
     pub symmetric_dirichlet: f64,
@@ -1173,11 +1208,13 @@ pub struct beltrami_atlas {
     /** 1 where those meet what was asked for: energy (to 0.0001), p99,
  charts (or one for each component), seam length; else 0*/
     pub reached: i32,
+    /// 0 where it is not packed: beltrami_get_packing has the rest
+    pub pages: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 256usize];
+    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 264usize];
     ["Alignment of beltrami_atlas"][::core::mem::align_of::<beltrami_atlas>() - 8usize];
     [
         "Offset of field: beltrami_atlas::struct_size",
@@ -1281,6 +1318,9 @@ const _: () = {
     [
         "Offset of field: beltrami_atlas::reached",
     ][::core::mem::offset_of!(beltrami_atlas, reached) - 252usize];
+    [
+        "Offset of field: beltrami_atlas::pages",
+    ][::core::mem::offset_of!(beltrami_atlas, pages) - 256usize];
 };
 /// A chart: a connected piece of the surface.
 #[repr(C)]
@@ -1305,11 +1345,13 @@ pub struct beltrami_chart {
     pub max: f64,
     /// of its UVs: least u, least v, greatest u, greatest v
     pub box_: [f64; 4usize],
+    /// counted from 0; 0 where the atlas is not packed
+    pub page: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_chart"][::core::mem::size_of::<beltrami_chart>() - 96usize];
+    ["Size of beltrami_chart"][::core::mem::size_of::<beltrami_chart>() - 104usize];
     ["Alignment of beltrami_chart"][::core::mem::align_of::<beltrami_chart>() - 8usize];
     [
         "Offset of field: beltrami_chart::struct_size",
@@ -1344,6 +1386,9 @@ const _: () = {
     [
         "Offset of field: beltrami_chart::box_",
     ][::core::mem::offset_of!(beltrami_chart, box_) - 64usize];
+    [
+        "Offset of field: beltrami_chart::page",
+    ][::core::mem::offset_of!(beltrami_chart, page) - 96usize];
 };
 /** The exact verdict on an atlas: every triangle positive, no two with a common inner point, in one
  chart or in two. Signs are decided by exact predicates on the very floats given.*/
@@ -1471,6 +1516,17 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
+    /** Writes the page of each corner's UV: `type` U32 or U64; 0 where the atlas is not packed. It is
+ that of the face's chart, but for corners of faces that lie in two charts or in none. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_corner_pages(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
     /** Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
  buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
  INVALID_ARGUMENT.*/
@@ -1561,6 +1617,250 @@ extern "C" {
         out: *mut beltrami_atlas_certificate,
         pairs: *mut u64,
         capacity: u64,
+    ) -> beltrami_status;
+}
+/** Triangles in the plane, in the caller's memory: what beltrami_pack packs. Triangles that share a
+ UV vertex are of one chart. Buffers said to be optional are left out by data NULL.*/
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_uv_mesh {
+    pub struct_size: u32,
+    /// 0
+    pub flags: u32,
+    /// UV vertices, at most 2^31 - 1, those of all meshes together
+    pub uv_count: u64,
+    /// at most 700,000,000, likewise
+    pub face_count: u64,
+    /// uv_count items of 2: F32 or F64
+    pub uvs: beltrami_buffer,
+    /// face_count items of 3: U32 or U64, the UV vertices of corners
+    pub uv_indices: beltrami_buffer,
+    /// of positions
+    pub vertex_count: u64,
+    /** optional: vertex_count items of 3: F32 or F64. With them charts get
+ equally many texels for equal areas on the surface, else they keep
+ their sizes to each other. All meshes have them, or none*/
+    pub positions: beltrami_buffer,
+    /** with positions: face_count items of 3: U32 or U64, the vertices of
+ corners; left out where UV vertices are vertices*/
+    pub indices: beltrami_buffer,
+    /** optional: face_count items of 1: U32 or U64. All bits set: the
+ chart of the face is placed anew; else it stays where its UVs, in
+ [0,1]^2, are on this page. The same for all faces of a chart*/
+    pub kept_pages: beltrami_buffer,
+    /// of the first mesh: as in beltrami_mesh
+    pub cancel: *const i32,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_uv_mesh"][::core::mem::size_of::<beltrami_uv_mesh>() - 160usize];
+    [
+        "Alignment of beltrami_uv_mesh",
+    ][::core::mem::align_of::<beltrami_uv_mesh>() - 8usize];
+    [
+        "Offset of field: beltrami_uv_mesh::struct_size",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_uv_mesh::flags",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, flags) - 4usize];
+    [
+        "Offset of field: beltrami_uv_mesh::uv_count",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, uv_count) - 8usize];
+    [
+        "Offset of field: beltrami_uv_mesh::face_count",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, face_count) - 16usize];
+    [
+        "Offset of field: beltrami_uv_mesh::uvs",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, uvs) - 24usize];
+    [
+        "Offset of field: beltrami_uv_mesh::uv_indices",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, uv_indices) - 48usize];
+    [
+        "Offset of field: beltrami_uv_mesh::vertex_count",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, vertex_count) - 72usize];
+    [
+        "Offset of field: beltrami_uv_mesh::positions",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, positions) - 80usize];
+    [
+        "Offset of field: beltrami_uv_mesh::indices",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, indices) - 104usize];
+    [
+        "Offset of field: beltrami_uv_mesh::kept_pages",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, kept_pages) - 128usize];
+    [
+        "Offset of field: beltrami_uv_mesh::cancel",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, cancel) - 152usize];
+};
+impl Default for beltrami_uv_mesh {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+extern "C" {
+    /** Packs the charts of `mesh_count` meshes onto common pages: each is moved and turned as the
+ options of pages say, and scaled, never mirrored. With charts that stay and no texels-per-unit
+ the others get the density that those have. The meshes are read, not kept, and so are the
+ context's mesh and other results; those of an earlier beltrami_pack stay if it fails. Charts that
+ are folded, flipped or lie on themselves are packed as they are. Returns OK, or with a result
+ NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
+ errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted
+ in the mesh that the sentence names), NO_ROOM, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a
+ run), INTERNAL.*/
+    pub fn beltrami_pack(
+        context: *mut beltrami_context,
+        meshes: *const *const beltrami_uv_mesh,
+        mesh_count: u64,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+/// What lies on the pages.
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_packing {
+    pub struct_size: u32,
+    /// of the call that packed it
+    pub status: beltrami_status,
+    pub charts: u64,
+    pub triangles: u64,
+    pub pages: u64,
+    /// texels to the side of a page
+    pub resolution: u64,
+    /// of the surface, or without positions of the UVs that were packed
+    pub texels_per_unit: f64,
+    /// area of the UVs over that of the pages
+    pub utilisation: f64,
+    /** texels: the least of the distances of two charts and of twice those to
+ the edges of pages, in the numbers that are delivered*/
+    pub margin: f64,
+    /// wall time of the call
+    pub seconds: f64,
+    /// of the whole process during the call
+    pub cpu_seconds: f64,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_packing"][::core::mem::size_of::<beltrami_packing>() - 80usize];
+    [
+        "Alignment of beltrami_packing",
+    ][::core::mem::align_of::<beltrami_packing>() - 8usize];
+    [
+        "Offset of field: beltrami_packing::struct_size",
+    ][::core::mem::offset_of!(beltrami_packing, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_packing::status",
+    ][::core::mem::offset_of!(beltrami_packing, status) - 4usize];
+    [
+        "Offset of field: beltrami_packing::charts",
+    ][::core::mem::offset_of!(beltrami_packing, charts) - 8usize];
+    [
+        "Offset of field: beltrami_packing::triangles",
+    ][::core::mem::offset_of!(beltrami_packing, triangles) - 16usize];
+    [
+        "Offset of field: beltrami_packing::pages",
+    ][::core::mem::offset_of!(beltrami_packing, pages) - 24usize];
+    [
+        "Offset of field: beltrami_packing::resolution",
+    ][::core::mem::offset_of!(beltrami_packing, resolution) - 32usize];
+    [
+        "Offset of field: beltrami_packing::texels_per_unit",
+    ][::core::mem::offset_of!(beltrami_packing, texels_per_unit) - 40usize];
+    [
+        "Offset of field: beltrami_packing::utilisation",
+    ][::core::mem::offset_of!(beltrami_packing, utilisation) - 48usize];
+    [
+        "Offset of field: beltrami_packing::margin",
+    ][::core::mem::offset_of!(beltrami_packing, margin) - 56usize];
+    [
+        "Offset of field: beltrami_packing::seconds",
+    ][::core::mem::offset_of!(beltrami_packing, seconds) - 64usize];
+    [
+        "Offset of field: beltrami_packing::cpu_seconds",
+    ][::core::mem::offset_of!(beltrami_packing, cpu_seconds) - 72usize];
+};
+extern "C" {
+    /// Counts, density, margin and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.
+    pub fn beltrami_get_packing(
+        context: *mut beltrami_context,
+        out: *mut beltrami_packing,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the share of each page that charts cover: `type` F32 or F64. Errors: INVALID_STATE,
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_get_page_utilisations(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the page of each chart, counted from 0: `type` U32 or U64. As tiles (UDIM) page k is
+ 1001 + k: there u is greater by k mod 10, and v by k div 10, and no rounding to the type of the
+ UVs folds what the certificate found whole. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_chart_pages(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** The certificate of the UVs in F64, or with `type` BELTRAMI_F32 of those in F32, page by page.
+ Faces count through the meshes, one after another. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_packing_certificate(
+        context: *mut beltrami_context,
+        type_: i32,
+        out: *mut beltrami_atlas_certificate,
+    ) -> beltrami_status;
+}
+pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_16 = -1;
+pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_16 = 0;
+/// no further than the margin asked for from a covered one
+pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_16 = 1;
+/// a face has a point in common with it
+pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_16 = 2;
+/// What a byte of a mask says of its texel.
+pub type _bindgen_ty_16 = ::core::ffi::c_int;
+extern "C" {
+    /** Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
+ down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,
+ INVALID_ARGUMENT, OUT_OF_MEMORY.*/
+    pub fn beltrami_get_page_mask(
+        context: *mut beltrami_context,
+        page: u64,
+        out: *mut u8,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Of beltrami_pack alone: the new (u, v) of each UV vertex of mesh `mesh`, counted from 0, on the
+ page of its chart, (0, 0) where no face uses it: `type` F32 or F64. F32 is rounded to nearest.
+ Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_packed_uvs(
+        context: *mut beltrami_context,
+        mesh: u64,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Of beltrami_pack alone: the chart of each face of mesh `mesh`: `type` U32 or U64. Charts count
+ through all meshes, by their first faces. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_packed_charts(
+        context: *mut beltrami_context,
+        mesh: u64,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
     ) -> beltrami_status;
 }
 extern "C" {

@@ -136,23 +136,27 @@ choice! {
 }
 
 choice! {
-    /// Where. See [`UnwrapOptions::pack`].
+    /// Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
+    /// unit square) or none (side by side in the unit of length of the mesh; so are charts with
+    /// pins in any case). See [`UnwrapOptions::pack`].
     Pack {
-        /// Pages.
+        /// On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs
+        /// of a page are in [0,1]^2. A surface with pins is not packed.
         Pages = "pages",
-        /// None.
+        /// Side by side, in the surface's own unit of length.
         None = "none",
     }
 }
 
 choice! {
-    /// Turns. See [`UnwrapOptions::pack_turns`].
+    /// How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
+    /// none; they are never mirrored. See [`UnwrapOptions::pack_turns`].
     PackTurns {
         /// Any.
         Any = "any",
         /// Quarter.
         Quarter = "quarter",
-        /// None.
+        /// by 90 degrees and multiples
         None = "none",
     }
 }
@@ -208,16 +212,16 @@ options! {
     /// From 1 to 1024.
     ///
     /// Default: 1.
-    threads(u32) of [Options UnwrapOptions] = 5 "threads"
+    threads(u32) of [Options UnwrapOptions PackOptions] = 5 "threads"
         "Threads to use, the calling one included; the result does not depend on it."
-        Int(&[]), 1..=1024, default 1, calls 3;
+        Int(&[]), 1..=1024, default 1, calls 7;
 
-    /// `true` scales and shifts the UVs into the unit square; `false` keeps them in the mesh's unit
-    /// of length.
+    /// `true` scales and shifts the UVs into the unit square, where those of pages are in any case;
+    /// `false` keeps them in the mesh's unit of length.
     ///
     /// Default: `false`.
     unit_square(bool) of [Options UnwrapOptions] = 6 "unit-square"
-        "1 scales and shifts the UVs into the unit square; 0 keeps them in the mesh's unit of length."
+        "1 scales and shifts the UVs into the unit square, where those of pages are in any case; 0 keeps them in the mesh's unit of length."
         Switch(&[]), 0..=1, default 0, calls 3;
 
     /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
@@ -270,9 +274,9 @@ options! {
     /// injective.
     ///
     /// Default: `false`.
-    float32(bool) of [Options UnwrapOptions] = 12 "float32"
+    float32(bool) of [Options UnwrapOptions PackOptions] = 12 "float32"
         "1 delivers UVs that single precision holds exactly, rounded so that the map stays injective."
-        Switch(&[]), 0..=1, default 0, calls 3;
+        Switch(&[]), 0..=1, default 0, calls 7;
 
     /// [`On`](Delaunay::On) flips edges to the intrinsic Delaunay triangulation of the prolonged
     /// metric before the fine mesh is flattened: what is injective then are its own triangles on
@@ -437,4 +441,68 @@ options! {
     material_seams(f64) of [UnwrapOptions] = 29 "material-seams"
         "What a seam costs, times its length, along an edge between faces of different materials, where these are given: below 1 such edges are sought."
         Float(&[]), 0.01..=100, default 0.5, calls 2;
+
+    /// Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
+    /// unit square) or none (side by side in the unit of length of the mesh; so are charts with
+    /// pins in any case).
+    ///
+    /// Default: [`Pages`](Pack::Pages).
+    pack(Pack) of [UnwrapOptions] = 30 "pack"
+        "Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the unit square) or none (side by side in the unit of length of the mesh; so are charts with pins in any case)."
+        Choice(Pack::NAMES), 0..=1, default 0, calls 2;
+
+    /// Texels to the side of a page.
+    ///
+    /// From 8 to 32768.
+    ///
+    /// Default: 1024.
+    resolution(u32) of [UnwrapOptions PackOptions] = 31 "resolution"
+        "Texels to the side of a page."
+        Int(&[]), 8..=32768, default 1024, calls 6;
+
+    /// Texels between two charts at least, and half as many to the edges of a page.
+    ///
+    /// From 0 to 1024.
+    ///
+    /// Default: 2.
+    margin(f64) of [UnwrapOptions PackOptions] = 32 "margin"
+        "Texels between two charts at least, and half as many to the edges of a page."
+        Float(&[]), 0..=1024, default 2, calls 6;
+
+    /// Texels for a unit of length of the surface; 0 makes charts as large as they fit into
+    /// max-pages.
+    ///
+    /// From 0 to 1e30.
+    ///
+    /// Default: 0.
+    texels_per_unit(f64) of [UnwrapOptions PackOptions] = 33 "texels-per-unit"
+        "Texels for a unit of length of the surface; 0 makes charts as large as they fit into max-pages."
+        Float(&[]), 0..=1e30, default 0, calls 6;
+
+    /// Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be.
+    ///
+    /// From 0 to 1000.
+    ///
+    /// Default: 0.
+    max_pages(u32) of [UnwrapOptions PackOptions] = 34 "max-pages"
+        "Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be."
+        Int(&[]), 0..=1000, default 0, calls 6;
+
+    /// How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
+    /// none; they are never mirrored.
+    ///
+    /// Default: [`Any`](PackTurns::Any).
+    pack_turns(PackTurns) of [UnwrapOptions PackOptions] = 35 "pack-turns"
+        "How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or none; they are never mirrored."
+        Choice(PackTurns::NAMES), 0..=2, default 0, calls 6;
+
+    /// Texels to the side of the blocks that no two charts share, as compressed textures want it:
+    /// 4; 1 leaves it to the margin.
+    ///
+    /// From 1 to 64.
+    ///
+    /// Default: 1.
+    pack_block(u32) of [UnwrapOptions PackOptions] = 36 "pack-block"
+        "Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin."
+        Int(&[]), 1..=64, default 1, calls 6;
 }
