@@ -45,7 +45,7 @@ BREAKS = [
         "a circle: bindings/rust",
     ),
     ("lengths.py", "src/base/types.h", "\n" * 600, "src/base/types.h: "),
-    ("lengths.py", "include/beltrami/beltrami.h", "\n" * 900, "include/beltrami/beltrami.h: "),
+    ("lengths.py", "include/beltrami/beltrami.h", "\n" * 1000, "include/beltrami/beltrami.h: "),
     ("lengths.py", "bindings/python/src/beltrami/plot.py", "\n" * 600, "plot.py: "),
     (
         "lengths.py", "src/ring/ring_faces.cpp", f"void f() {{\n{LONG_BODY}}}",
