@@ -62,9 +62,7 @@ def test_packs_meshes_onto_common_pages() -> None:
     assert packing.injective
     assert packing.report.charts == 7
     assert packing.report.margin >= 2
-    first, second = (
-        areas(uvs, faces) for uvs, faces in zip(packing.uvs, packing.uv_faces)
-    )
+    first, second = (areas(uvs, faces) for uvs, faces in zip(packing.uvs, packing.uv_faces))
     assert (first > 0).all()
     assert second == pytest.approx(4 * first[0])
     assert first.sum() + second.sum() == pytest.approx(packing.utilisation)

@@ -96,12 +96,14 @@ def test_arrays_are_documented_with_shapes_and_types():
                 pair = "tuple of (k, 2) array_like of integers and (k,) array_like of floats"
                 assert f"edge_paint : {pair}" in text
                 continue
-            shape = r"\((n, [23]|n,|m, 3|m, 2|m,|3,|[mtks], [23k]|k,|m, k, 2|t,)\) "
+            shape = r"\((n, [23]|n,|m, 3|m, 2|m,|3,|[mtks], [23k]|[kcpm],|m, k, 2|t,)\) "
             shape += r"array(_like)? of (floats|integers|(float|int)\d\d)"
             assert re.search(rf"^{array} : {shape}", text, re.M), (name, array)
             described += 1
         if isinstance(thing, property) and thing.fget.__annotations__["return"] == "Array":
-            shape = r"An? \((m,|t,|t, 3|m, k, 2)\) array of (bool|float64|int64|floats|integers): "
+            shape = (
+                r"An? \((m,|k, 2|t,|t, 3|m, k, 2)\) array of (bool|float64|int64|floats|integers): "
+            )
             assert re.match(shape, text), name
             described += 1
     assert described > 25
@@ -124,6 +126,9 @@ def test_every_option_is_a_keyword_with_its_default():
     assert beltrami.Flattener().options.keys() == table.keys()
     table = library.options_of(library.UNWRAP)
     assert beltrami.UnwrapOptions.__annotations__.keys() == table.keys()
+    table = library.options_of(library.PACK)
+    assert set(table) <= set(inspect.signature(beltrami.pack).parameters)
+    assert beltrami.PackOptions.__annotations__.keys() == table.keys()
 
 
 def test_generated_sources_are_what_the_c_interface_says():

@@ -328,7 +328,7 @@ def test_options_of_unwrapping():
     shared = beltrami.unwrap(*doubled(), share_copies=True)
     assert shared.injective
     assert shared.certificate.excepted == 32
-    unit = beltrami.unwrap(CUBE, QUADS, unit_square=True)
+    unit = beltrami.unwrap(CUBE, QUADS, pack="none", unit_square=True)
     assert unit.uvs.min() == 0
     assert 0.5 <= unit.uvs.max() <= 1
 

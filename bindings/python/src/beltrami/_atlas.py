@@ -133,7 +133,7 @@ class Atlas:
 
     @property
     def udim_uvs(self) -> Array:
-        """The UVs of UV vertices in the tiles of UDIM: page k is 1001 + k."""
+        """A (k, 2) array of floats: the UVs in the tiles of UDIM, where page k is 1001 + k."""
         tiled: Array = self.uvs + tile_of(self.page_of_uv, self.uvs.dtype)
         return tiled
 

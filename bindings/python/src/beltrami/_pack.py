@@ -71,8 +71,8 @@ class Packing:
     Attributes
     ----------
     uvs : tuple of (k, 2) arrays of float32 or float64
-        For each mesh one (u, v) per UV vertex, in the unit square of its page; (0, 0) for those that
-        no face uses.
+        For each mesh one (u, v) per UV vertex, in the unit square of its page; (0, 0) for those
+        that no face uses.
     chart_of_face : tuple of (m,) arrays of int64
         For each mesh the chart of each face: charts count through all meshes, by their first faces.
     page_of_chart : (c,) array of int64
@@ -93,6 +93,8 @@ class Packing:
     masks : tuple of (r, r) arrays of uint8
         Where asked for, for each page a number for each texel, rows from the top: 0 free, 1 a
         gutter, 2 covered by a chart.
+    uv_faces : tuple of (m, 3) arrays of integers
+        For each mesh the UV vertices of each triangle, as they were given.
     """
 
     uvs: tuple[Array, ...] = field(repr=False)
@@ -159,6 +161,10 @@ def pack(
     ----------
     meshes : UvMesh, Atlas, or sequence of them
         What shares the pages. An atlas is packed by its UVs and vertices.
+    masks : bool, default False
+        True adds for each page which texels charts cover, and which are gutters.
+    progress : bool or callable, optional
+        As for `parameterize`.
 
     Options
     -------
@@ -198,8 +204,8 @@ def pack(
     NoRoomError
         The charts do not fit onto the pages that the options allow.
     MeshError
-        `IndexOutOfRangeError`, `NonFiniteError`, or a mesh without faces, with the face or vertex in
-        `element`.
+        `IndexOutOfRangeError`, `NonFiniteError`, or a mesh without faces, with the face or vertex
+        in `element`.
     TypeError, ValueError
         For arrays of other shapes or types, for options out of range, and for charts that cannot
         stay where they are.
@@ -245,9 +251,7 @@ def _uv_mesh(mesh: Any) -> UvMesh:
     return UvMesh(mesh.uvs, mesh.uv_triangles, mesh.vertices[mesh.origins])
 
 
-def _pack(
-    meshes: Sequence[UvArrays], given: dict[str, object], masks: bool, hook: Hook
-) -> Packing:
+def _pack(meshes: Sequence[UvArrays], given: dict[str, object], masks: bool, hook: Hook) -> Packing:
     context = PackContext()
     single = all(mesh.uvs.dtype == np.float32 for mesh in meshes)
     if single and given["float32"] is False:
