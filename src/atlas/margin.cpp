@@ -153,9 +153,10 @@ double least_margin(const PagedCharts& charts, const Work& work) {
   }
   if (!has_pairs(charts, sides)) return margin;
   double between = kInfinity;
-  for (double reach = kFirstReach; between > reach && reach < margin; reach *= 2) {
+  for (double reach = kFirstReach;; reach *= 2) {
     between = least_within(charts, sides, reach, work);
-    if (reach > 2.0 * charts.resolution) break;
+    // What is further apart than so is neither the least nor on one page.
+    if (between <= reach || reach >= margin || reach > 2.0 * charts.resolution) break;
   }
   return std::min(margin, between);
 }
