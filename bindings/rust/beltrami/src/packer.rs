@@ -63,7 +63,8 @@ impl<'a> UvMesh<'a> {
     /// The library's description, which holds as long as the borrow and the token.
     fn raw(&self, token: &CancelToken) -> Result<sys::beltrami_uv_mesh, Error> {
         let faces = self.uv_faces.len();
-        let lengths = [self.faces.map(|faces| faces.len()), self.kept_pages.map(|pages| pages.len())];
+        let lengths =
+            [self.faces.map(|faces| faces.len()), self.kept_pages.map(|pages| pages.len())];
         if let Some(other) = lengths.into_iter().flatten().find(|&length| length != faces) {
             return Err(Error::argument(format!(
                 "there are {other} items for {faces} faces: give one per face"
