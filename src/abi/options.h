@@ -52,8 +52,8 @@ struct Options {
 /// How a disk is to be flattened.
 ChartOptions chart_options(const Options& options);
 
-/// How charts are to be packed. Throws Error INVALID_ARGUMENT where the margin or the blocks are too
-/// large for the pages.
+/// How charts are to be packed. Throws Error INVALID_ARGUMENT where the margin or the blocks are
+/// too large for the pages.
 PackOptions pack_options(const Options& options);
 
 /// How a surface is to be unwrapped.

@@ -95,7 +95,8 @@ std::vector<Index> Annulus::cheapest_path(const std::vector<bool>& is_on,
     surface_.for_each_outgoing(v, [&, so_far = so_far](Index h) { go(so_far, h); });
   }
   std::vector<Index> path;
-  for (Index h = last; h != kNone; h = is_on[surface_.origin(h)] ? kNone : from[surface_.origin(h)]) {
+  for (Index h = last; h != kNone;
+       h = is_on[surface_.origin(h)] ? kNone : from[surface_.origin(h)]) {
     path.push_back(h);
   }
   return {path.rbegin(), path.rend()};

@@ -50,7 +50,7 @@ class ElasticModel {
 
  private:
   const Surface& surface_;
-  Eigen::VectorXd defect_;  ///< per vertex: K
+  Eigen::VectorXd defect_;    ///< per vertex: K
   SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
   std::vector<bool> pinned_;
   std::unique_ptr<SpdSolver> solver_;

@@ -136,8 +136,8 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
   if (crossing.empty()) return maps;
   parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
     const std::size_t c = crossing[i];
-    std::vector<Vec2> uvs = map_chart(maps.cut.charts[c], {}, Injectivity::kGlobal, tolerance,
-                                      work.aside());
+    std::vector<Vec2> uvs =
+        map_chart(maps.cut.charts[c], {}, Injectivity::kGlobal, tolerance, work.aside());
     if (is_simple(maps.cut.charts[c].mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
   });
   measure(real_faces, maps);

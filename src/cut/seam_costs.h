@@ -15,10 +15,10 @@ namespace beltrami {
 /// How much each term counts; a seam costs its length alone where concavity and visibility are 0
 /// and the others 1. All are >= 0, those of hard edges and materials > 0.
 struct SeamWeights {
-  double concavity = 0.15;  ///< a: times exp(-a c), c in [-1, 1] as edge_concavity has it
-  double visibility = 0.2;    ///< b: times 1 + b v, v in [0, 1] as visibility has it
-  double hard_edges = 0.85; ///< factor of edges with a greater angle than SeamHints has
-  double materials = 0.5;   ///< factor of edges between faces of different labels
+  double concavity = 0.15;   ///< a: times exp(-a c), c in [-1, 1] as edge_concavity has it
+  double visibility = 0.2;   ///< b: times 1 + b v, v in [0, 1] as visibility has it
+  double hard_edges = 0.85;  ///< factor of edges with a greater angle than SeamHints has
+  double materials = 0.5;    ///< factor of edges between faces of different labels
 };
 
 /// An edge of the surface, by its ends in either order, and its factor.

@@ -43,8 +43,8 @@ SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
 }  // namespace
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, double budget, double least_cost,
-                       const Work& work, std::vector<bool> anchors)
+                       EdgeMarks seams, double budget, double least_cost, const Work& work,
+                       std::vector<bool> anchors)
     : surface_(surface),
       cost_(cost),
       degree_(surface.positions.size()),
@@ -295,8 +295,8 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
     for (Index v = 0; v < surface_.vertex_count(); ++v) {
       is_on[v] = degree_[v] > 0 || surface_.on_boundary[v];
     }
-    std::vector<Index> across = path_across(surface_, seams_, is_on, arc.front(), cost_,
-                                            cost * (1 - kLeastGain));
+    std::vector<Index> across =
+        path_across(surface_, seams_, is_on, arc.front(), cost_, cost * (1 - kLeastGain));
     if (!across.empty()) path.swap(across);
   }
   const bool is_new = path != arc;
@@ -393,7 +393,6 @@ bool SeamSearch::is_branch(const Branch& branch) const {
   });
   return stays;
 }
-
 
 bool SeamSearch::move_branch(Index tip, double price) {
   Branch old = branch_from(tip);

@@ -6,8 +6,8 @@
 
 #include "base/types.h"
 #include "base/work.h"
-#include "cut/elastic_model.h"
 #include "cut/edge_marks.h"
+#include "cut/elastic_model.h"
 #include "cut/seam_paths.h"
 #include "mesh/surface.h"
 
@@ -20,7 +20,8 @@ class SeamSearch {
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
   /// extended, 0: any; `least_cost`: what a path costs beside its own, over the root of the area,
-  /// for short ones are worth little to the eye; `anchors`: per vertex, or none. Keeps references to `surface` and `cost`.
+  /// for short ones are worth little to the eye; `anchors`: per vertex, or none. Keeps references
+  /// to `surface` and `cost`.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
              EdgeMarks seams, double budget, double least_cost, const Work& work,
              std::vector<bool> anchors = {});

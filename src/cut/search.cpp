@@ -30,8 +30,8 @@ constexpr std::array kLeastCosts = {0.02, 0.06};
 constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
 constexpr double kMapTolerance = 1e-3;
-/// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than so
-/// much of the excess, or the map is parted, too, where it lies on itself on less.
+/// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
+/// so much of the excess, or the map is parted, too, where it lies on itself on less.
 constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;

@@ -121,7 +121,7 @@ SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology&
 
 std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, Index real_faces,
                                 const SeamWeights& weights, const SeamHints& hints,
-                               const Work& work) {
+                                const Work& work) {
   std::vector<double> factor(fine.positions.size(), 1);
   for (std::size_t v = 0; v < level.factor.size(); ++v) {
     factor[level.fine_vertex[v]] = level.factor[v];

@@ -16,7 +16,7 @@ namespace beltrami {
 struct SearchLevel {
   Surface surface;
   Index real_faces = 0;
-  EdgeMarks locked;                ///< or none
+  EdgeMarks locked;  ///< or none
   SeamHints hints;
   std::vector<double> cost;        ///< per half-edge, what a seam along it costs
   std::vector<double> factor;      ///< per vertex, what seams there cost for their length by shape

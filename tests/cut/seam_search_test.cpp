@@ -259,8 +259,8 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
       const Trial trial(mesh, seed % 2 == 0 ? 1.5 : 6, generator);
       const EdgeMarks seams = trial.opened();
       const std::size_t pieces = trial.charts(seams);
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength, kLeastCost,
-                        Work(1));
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                        kLeastCost, Work(1));
       for (int i = 0; i < 12; ++i) {
         step(trial, search, generator);
         trial.expect_sound(search, pieces);
@@ -330,7 +330,8 @@ TEST(SeamSearch, JoinsPartsAnewWhereThatIsCheaper) {
   const EdgeMarks seams = trial.opened();
   std::vector<double> cost = trial.cost;
   for (Index h = 0; h < size_of(cost); ++h) cost[h] *= seams[h] ? 10 : 1;
-  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, kLeastCost, Work(1));
+  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, kLeastCost,
+                    Work(1));
   const double before = search.cost();
   search.reconnect();
   EXPECT_LT(search.cost(), 0.5 * before);
@@ -376,8 +377,8 @@ TEST(SeamSearch, LockedEdgesStayUncut) {
         ASSERT_FALSE(locked[h] && seams[h]);
         if (locked[h]) trial.cost[h] = kNever;
       }
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength, kLeastCost,
-                        Work(1));
+      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                        kLeastCost, Work(1));
       search.extend(2 + 0.1 * (search.energy() - 2));
       search.reconnect();
       search.shrink(2 + 2 * (search.energy() - 2));
