@@ -1,0 +1,120 @@
+#include "pack/page.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "pack/mask.h"
+#include "pack/outline.h"
+
+namespace beltrami {
+namespace {
+
+/// A triangle of the size given, as it lies.
+Mask triangle(double width, double height, double radius) {
+  const PackChart chart{{{0, 0}, {width, height / 3}, {width / 2, height}}, {{0, 1, 2}}};
+  return mask_of(outline_of(chart), Vec2(1, 0), 1, radius, 1000);
+}
+
+/// Cells one by one, to compare with.
+class Cells {
+ public:
+  Cells(int width, int height) : width_(width), height_(height), taken_(width * height, 0) {}
+
+  bool is_free(const Mask& mask, int x, int y) const {
+    for (const Run& run : mask.runs) {
+      for (int k = run.begin; k < run.end; ++k) {
+        if (taken_[(y + run.row) * width_ + x + k] != 0) return false;
+      }
+    }
+    return true;
+  }
+  int first_free(const Mask& mask, int y) const {
+    for (int x = 0; x + mask.width <= width_; ++x) {
+      if (is_free(mask, x, y)) return x;
+    }
+    return -1;
+  }
+  void take(const Mask& mask, int x, int y) {
+    for (const Run& run : mask.runs) {
+      for (int k = run.begin; k < run.end; ++k) taken_[(y + run.row) * width_ + x + k] = 1;
+    }
+  }
+  std::int64_t free_cells() const { return std::count(taken_.begin(), taken_.end(), 0); }
+  int height() const { return height_; }
+
+ private:
+  int width_, height_;
+  std::vector<char> taken_;
+};
+
+TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
+  Page page(150, 90);
+  Cells cells(150, 90);
+  std::uint32_t state = 7;
+  const auto below = [&](std::uint32_t count) {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<int>((state >> 8) % count);
+  };
+  std::int64_t steps = 0;
+  for (int round = 0; round < 60; ++round) {
+    const Mask mask = triangle(1 + below(40), 1 + below(30), 0.3 * below(5));
+    ASSERT_LE(mask.height, page.height());
+    int found = -1, row = -1;
+    for (int y = 0; y + mask.height <= page.height(); ++y) {
+      const int x = page.first_free(mask, y, page.width() - mask.width, steps);
+      ASSERT_EQ(x, cells.first_free(mask, y));
+      if (x >= 0 && found < 0) {
+        found = x;
+        row = y;
+      }
+    }
+    // What is skipped has no place.
+    int y = 0;
+    const int last = page.height() - mask.height, to = page.width() - mask.width;
+    while (y <= last) {
+      const int next = page.skip_full_rows(mask, y, last, to, steps);
+      for (; y < std::min(next, last + 1); ++y) ASSERT_EQ(cells.first_free(mask, y), -1);
+      ++y;
+    }
+    if (found < 0) continue;
+    page.take(mask, found, row);
+    cells.take(mask, found, row);
+    ASSERT_EQ(page.free_cells(), cells.free_cells());
+  }
+}
+
+TEST(Mask, HasTheCellsThatAreNearerThanTheRadius) {
+  const double radius = 1.7;
+  const PackChart frame{
+      {{0, 0}, {30, 0}, {30, 30}, {0, 30}, {10, 10}, {20, 10}, {20, 20}, {10, 20}},
+      {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  const Outline outline = outline_of(frame);
+  EXPECT_DOUBLE_EQ(outline.area, 800);
+  const Mask mask = mask_of(outline, Vec2(0.8, 0.6), 1, radius, 1000);
+  std::vector<std::vector<bool>> taken(mask.height, std::vector<bool>(mask.width, false));
+  for (const beltrami::Run& run : mask.runs) {
+    for (int x = run.begin; x < run.end; ++x) taken[run.row][x] = true;
+  }
+  // Points of the chart and about it, in the cells that they are in.
+  for (double u = -3; u < 33; u += 0.37) {
+    for (double v = -3; v < 33; v += 0.37) {
+      // Distance to the frame: outside of the outer square, or in the hole from its sides.
+      const double outside = Vec2(std::max({-u, u - 30, 0.0}), std::max({-v, v - 30, 0.0})).norm();
+      const double inside = std::min({u - 10, 20 - u, v - 10, 20 - v});
+      const double distance = std::max(outside, inside);
+      const Vec2 p = mask.origin + Vec2(0.8 * u - 0.6 * v, 0.6 * u + 0.8 * v);
+      const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
+      const bool in = x >= 0 && y >= 0 && x < mask.width && y < mask.height && taken[y][x];
+      const bool near = distance<radius, far = distance> radius + 1.5;  // a cell's diagonal
+      EXPECT_FALSE(near && !in) << u << " " << v;
+      EXPECT_FALSE(far && in) << u << " " << v;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace beltrami
