@@ -22,6 +22,7 @@
 #include "files/polygons.h"
 #include "files/triangulate.h"
 #include "picture/page_picture.h"
+#include "picture/picture.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "commands/command.h"
 #include "picture/stb_in_one_place.h"
-#include "process/failure.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "commands/command.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
 
@@ -20,7 +19,8 @@ inline constexpr std::uint64_t kPagesInARow = 10;
 
 /// The least u and v of a page in a file.
 inline std::pair<double, double> corner_of_page(std::uint64_t page) {
-  return {static_cast<double>(page % kPagesInARow), static_cast<double>(page / kPagesInARow)};
+  const std::uint64_t column = page % kPagesInARow, row = page / kPagesInARow;
+  return {static_cast<double>(column), static_cast<double>(row)};
 }
 
 /// "folder/name.1001.png" for "folder/name.png" or "folder/name".

@@ -28,7 +28,7 @@ namespace {
 using Uv = std::array<double, 2>;
 using TriangleUvs = std::array<Uv, 3>;
 
-constexpr std::uint64_t kMostPages = 1000;
+constexpr std::uint64_t kMostRows = 100;  // of pages
 
 Uv uv_of_corner(const MeshFile& file, std::uint32_t corner) {
   const auto& [values, of_corner] = file.corner_uvs;
@@ -45,7 +45,7 @@ std::uint64_t take_page(TriangleUvs& uvs, const std::string& path) {
     corner[k] = std::floor((uvs[0][k] + uvs[1][k] + uvs[2][k]) / 3);
   }
   const bool is_page = corner[0] >= 0 && corner[0] < double(kPagesInARow) && corner[1] >= 0 &&
-                       corner[1] < double(kMostPages / kPagesInARow);
+                       corner[1] < double(kMostRows);
   if (!is_page) {
     throw Failure(path +
                   ": a face has its UVs beside the pages of a texture, [0,1]^2 and the "

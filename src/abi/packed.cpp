@@ -7,8 +7,8 @@
 
 #include "abi/buffers.h"
 #include "admit/admit.h"
+#include "atlas/atlas.h"
 #include "base/error.h"
-#include "base/interrupt.h"
 #include "base/resources.h"
 #include "mesh/disk_mesh.h"
 

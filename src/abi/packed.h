@@ -11,6 +11,7 @@
 #include "atlas/pages.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
 #include "pack/pack.h"
 

@@ -9,12 +9,11 @@
 
 #include "abi/buffers.h"
 #include "abi/context.h"
-#include "abi/failure.h"
 #include "abi/packed.h"
 #include "abi/reports.h"
 #include "atlas/page_mask.h"
+#include "atlas/pages.h"
 #include "base/error.h"
-#include "base/interrupt.h"
 #include "base/types.h"
 
 namespace beltrami {

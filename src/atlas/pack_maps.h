@@ -6,7 +6,6 @@
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/pages.h"
-#include "base/types.h"
 #include "base/work.h"
 #include "pack/pack.h"
 

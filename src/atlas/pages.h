@@ -16,7 +16,8 @@ inline constexpr int kPagesInARow = 10;
 
 /// The lower left corner of the unit square that is the page.
 inline Vec2 tile_of(Index page) {
-  return {static_cast<double>(page % kPagesInARow), static_cast<double>(page / kPagesInARow)};
+  const Index column = page % kPagesInARow, row = page / kPagesInARow;
+  return {static_cast<double>(column), static_cast<double>(row)};
 }
 
 /// Charts on their pages.

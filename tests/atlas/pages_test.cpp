@@ -15,6 +15,7 @@
 #include "atlas/pack_uvs.h"
 #include "atlas/page_mask.h"
 #include "base/error.h"
+#include "chart/flattening.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
