@@ -253,14 +253,14 @@ def unwrap(
     seam_budget : float, default 0.0
         Length of the seams, over the root of the area, that the search is to stay within; 0 takes
         any length. A number from 0 to 1,000,000,000.
-    concave_seams : float, default 0.3, or as the preset has it
+    concave_seams : float, default 0.15, or as the preset has it
         How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of
         its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart. A
         number from 0 to 10.
-    hidden_seams : float, default 1.0, or as the preset has it
+    hidden_seams : float, default 0.2, or as the preset has it
         How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
         seen from nowhere, to 1, seen from all sides; 0 does not. A number from 0 to 100.
-    hard_seams : float, default 0.7, or as the preset has it
+    hard_seams : float, default 0.85, or as the preset has it
         What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
         below 1 such edges are sought. A number from 0.01 to 100.
     material_seams : float, default 0.5

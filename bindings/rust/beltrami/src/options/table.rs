@@ -407,30 +407,30 @@ options! {
     ///
     /// From 0 to 10.
     ///
-    /// Default: 0.3.
+    /// Default: 0.15.
     concave_seams(f64) of [UnwrapOptions] = 26 "concave-seams"
         "How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart."
-        Float(&[]), 0..=10, default 0.3, calls 2;
+        Float(&[]), 0..=10, default 0.15, calls 2;
 
     /// How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
     /// seen from nowhere, to 1, seen from all sides; 0 does not.
     ///
     /// From 0 to 100.
     ///
-    /// Default: 1.
+    /// Default: 0.2.
     hidden_seams(f64) of [UnwrapOptions] = 27 "hidden-seams"
         "How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not."
-        Float(&[]), 0..=100, default 1, calls 2;
+        Float(&[]), 0..=100, default 0.2, calls 2;
 
     /// What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
     /// below 1 such edges are sought.
     ///
     /// From 0.01 to 100.
     ///
-    /// Default: 0.7.
+    /// Default: 0.85.
     hard_seams(f64) of [UnwrapOptions] = 28 "hard-seams"
         "What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees: below 1 such edges are sought."
-        Float(&[]), 0.01..=100, default 0.7, calls 2;
+        Float(&[]), 0.01..=100, default 0.85, calls 2;
 
     /// What a seam costs, times its length, along an edge between faces of different materials,
     /// where these are given: below 1 such edges are sought.
