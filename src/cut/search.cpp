@@ -35,6 +35,8 @@ constexpr double kMapTolerance = 1e-3;
 constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
+/// Straightening that gains more than the rest moves seams from where they are needed.
+constexpr double kStraight = 0.95;
 /// Beyond any excess of the model; and what differs by less is one.
 constexpr double kFar = 1e9, kSame = 1.02;
 constexpr int kRounds = 8, kTrims = 3;
@@ -299,6 +301,20 @@ Attempt search_level(const SearchLevel& level, const SeamTarget& target, const S
   return LevelSearch(level, std::move(start), kLeastCosts[0], target, work.part(0.3, 1)).run(true);
 }
 
+/// Seams that would lose a bend for which they were made, if they were straightened, are held.
+void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
+  const EdgeMarks straight = straighten(level.surface, found.seams.seams, level.cost,
+                                        found.seams.anchors, level.locked, work);
+  double cost = 0;
+  for (Index h = 0; h < size_of(straight); ++h) {
+    if (straight[h] && level.surface.edge(h) == h) cost += level.cost[h];
+  }
+  if (cost >= kStraight * found.cost) return;
+  for (Index h = 0; h < size_of(straight); ++h) {
+    if (found.seams.seams[h]) found.seams.anchors[level.surface.origin(h)] = true;
+  }
+}
+
 }  // namespace
 
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
@@ -308,8 +324,12 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                                      hints, work.part(0, 0.3));
   Attempt found = search_level(coarse, target, weights, work.part(0.3, 0.9));
   if (coarse.fine_vertex.empty()) {
+    const bool is_cut = std::find(found.seams.seams.begin(), found.seams.seams.end(), true) !=
+                        found.seams.seams.end();
+    if (!is_cut) found.maps.clear();
     return {std::move(found.seams.seams), found.energy, {}, std::move(found.maps)};
   }
+  hold_bends(coarse, work.aside(), found);
   AnchoredSeams fine = carry_to_finer(
       coarse, surface, finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
       found.seams, work.part(0.9, 1));

@@ -25,7 +25,8 @@ struct SearchedSeams {
   EdgeMarks seams;          ///< on the surface given
   double energy = 2;        ///< of the coarse maps along them
   CollapseHistory history;  ///< of the surface on its way to the coarse one; empty: it is its own
-  /// The maps, where the surface is its own coarse one: per chart of it cut along the seams.
+  /// The maps, where the surface is its own coarse one and is cut at all: per chart of it cut along
+  /// the seams.
   std::vector<std::vector<Vec2>> maps;
 };
 

@@ -156,7 +156,7 @@ TEST(AbiSeams, APresetSetsTheOtherOptionsAndIsOverridden) {
   set_option(context, BELTRAMI_OPTION_PRESET, BELTRAMI_PRESET_ONE_CHART);
   EXPECT_EQ(option(context, BELTRAMI_OPTION_TARGET_ENERGY), 2.05);
   EXPECT_EQ(option(context, BELTRAMI_OPTION_MAX_CHARTS), 1);
-  EXPECT_EQ(option(context, BELTRAMI_OPTION_HIDDEN_SEAMS), 1);
+  EXPECT_EQ(option(context, BELTRAMI_OPTION_HIDDEN_SEAMS), 0.2);
   set_option(context, BELTRAMI_OPTION_PRESET, BELTRAMI_PRESET_NONE);
   EXPECT_EQ(option(context, BELTRAMI_OPTION_MAX_CHARTS), 0);
   double value = 7;
