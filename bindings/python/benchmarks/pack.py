@@ -7,11 +7,12 @@ Every mesh (all that trimesh reads in a folder; without any the examples' spot) 
 charts: those of our unwrap, and those of xatlas. Each set is packed from its UVs alone onto one
 page by ours, and by xatlas, which pads charts by half the margin, rounded up, with its random
 places and, up to --most-charts, with its search of all places. Utilisation is the area of the
-charts over that of the page. xatlas makes pages of about the resolution: what it makes is scaled to
-the square around it, as it is; and the densities next to that are tried, at the resolution itself,
-in search of the largest that fits on one page. What it shrinks or stretches, which it does to charts
-that are longer than the page, does not count: large charts must have one scale. CPU seconds are those
-of one call. With --many made-up charts are packed, so many at once, for the time alone.
+charts over that of the page. xatlas makes pages of about the resolution: what it makes is scaled
+to the square around it, as it is; and the densities next to that are tried, at the resolution
+itself, in search of the largest that fits on one page. What it shrinks or stretches, which it
+does to charts that are longer than the page, does not count: large charts must have one scale.
+CPU seconds are those of one call. With --many made-up charts are packed, so many at once, for the
+time alone.
 """
 
 from __future__ import annotations
@@ -29,7 +30,6 @@ import numpy as np
 import records
 import xatlas
 from atlas import SPOT, files_of
-from atlas_figures import components
 from atlas_runs import load
 
 import beltrami
