@@ -26,6 +26,9 @@ constexpr Index kRoughFaces = 3000;
 /// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
 /// few long ones, and the better is taken.
 constexpr std::array kLeastCosts = {0.02, 0.06};
+/// Of a surface of no more faces both are finished, which makes seams 2% shorter: on a larger one
+/// the search is to take less than half of the flattening.
+constexpr Index kThoroughFaces = 100'000;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
@@ -270,35 +273,47 @@ AnchoredSeams opened(const SearchLevel& level, const Work& work) {
           std::vector<bool>(surface.positions.size(), false)};
 }
 
-/// Where the surface has many faces, first on one of fewer. `run`: what to do with a search.
+/// The better of what `run` makes of each of the costs that a path may have beside its own.
 template <typename Run>
-Attempt best_of(const SearchLevel& level, const AnchoredSeams& start, const SeamTarget& target,
-                const Work& work, const Run& run) {
+Attempt best_of(const Work& work, const Run& run) {
   Attempt best;
   for (std::size_t i = 0; i < kLeastCosts.size(); ++i) {
-    const double count = kLeastCosts.size();
-    LevelSearch search(level, start, kLeastCosts[i], target, work.part(i / count, (i + 1) / count));
-    Attempt attempt = run(search);
+    const double count = kLeastCosts.size(), from = i / count;
+    Attempt attempt = run(kLeastCosts[i], work.part(from, from + 1 / count));
     if (attempt.is_better_than(best)) best = std::move(attempt);
   }
   return best;
 }
 
-Attempt search_level(const SearchLevel& level, const SeamTarget& target, const SeamWeights& weights,
-                     const Work& work) {
+/// Where the level has many faces, first on one of fewer; `is_thorough`: what comes of each start
+/// there is finished, and not the better one alone.
+Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
+                     const SeamWeights& weights, const Work& work) {
   const auto without_sketch = [&] {
-    return best_of(level, opened(level, work), target, work,
-                   [](LevelSearch& search) { return search.run(false); });
+    const AnchoredSeams start = opened(level, work);
+    return best_of(work, [&](double least_cost, const Work& part) {
+      return LevelSearch(level, start, least_cost, target, part).run(false);
+    });
   };
   if (!level.locked.empty()) return without_sketch();  // which coarse seams would not heed
   const SearchLevel rough =
       coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
                     kRoughFaces, weights, level.hints, work);
   if (rough.fine_vertex.empty()) return without_sketch();
-  const Attempt sketch = best_of(rough, opened(rough, work), target, work.part(0, 0.3),
-                                 [](LevelSearch& search) { return search.sketch(); });
-  AnchoredSeams start = carry_to_finer(rough, level.surface, level.cost, {}, sketch.seams, work);
-  return LevelSearch(level, std::move(start), kLeastCosts[0], target, work.part(0.3, 1)).run(true);
+  const AnchoredSeams start = opened(rough, work);
+  const auto sketch = [&](double least_cost, const Work& part) {
+    return LevelSearch(rough, start, least_cost, target, part).sketch();
+  };
+  const auto finish = [&](const Attempt& from, double least_cost, const Work& part) {
+    AnchoredSeams carried = carry_to_finer(rough, level.surface, level.cost, {}, from.seams, part);
+    return LevelSearch(level, std::move(carried), least_cost, target, part).run(true);
+  };
+  if (!is_thorough) {
+    return finish(best_of(work.part(0, 0.3), sketch), kLeastCosts[0], work.part(0.3, 1));
+  }
+  return best_of(work, [&](double least_cost, const Work& part) {
+    return finish(sketch(least_cost, part.part(0, 0.2)), least_cost, part.part(0.2, 1));
+  });
 }
 
 /// Seams that would lose a bend for which they were made, if they were straightened, are held.
@@ -322,7 +337,8 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamWeights& weights, const SeamHints& hints, const Work& work) {
   SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces, weights,
                                      hints, work.part(0, 0.3));
-  Attempt found = search_level(coarse, target, weights, work.part(0.3, 0.9));
+  Attempt found = search_level(coarse, surface.face_count() <= kThoroughFaces, target, weights,
+                               work.part(0.3, 0.9));
   if (coarse.fine_vertex.empty()) {
     const bool is_cut = std::find(found.seams.seams.begin(), found.seams.seams.end(), true) !=
                         found.seams.seams.end();

@@ -10,6 +10,7 @@
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
 #include "cut/seam_search.h"
+#include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
 #include "support/disks.h"
@@ -95,6 +96,23 @@ TEST(LocalMaps, WhatIsDevelopableIsNotDistortedThoughItLiesOnItself) {
     expect_sound(surface, maps);
     EXPECT_NEAR(maps.energy, 2, 10 * kTolerance);
   }
+}
+
+TEST(LocalMaps, ContactKeepsThemOffThemselvesAtACost) {
+  const Surface surface = built(disks::winding(60, 3, 0.3, 1.3));
+  const LocalMaps maps = mapped(surface, EdgeMarks(surface.twin.size(), false));
+  const auto is_injective = [](const LocalMaps& of) {
+    return is_simple(of.cut.charts[0].mesh.boundary, of.uvs[0]);
+  };
+  ASSERT_FALSE(is_injective(maps));
+  const LocalMaps apart = with_contact(maps, surface.face_count(), kTolerance, Work(1));
+  EXPECT_TRUE(is_injective(apart));
+  EXPECT_GT(apart.energy, maps.energy);
+  expect_sound(surface, apart);
+  // What lies on itself nowhere stays to the bit.
+  const Surface grid = built(meshes::grid(5, 4));
+  const LocalMaps flat = mapped(grid, EdgeMarks(grid.twin.size(), false));
+  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, Work(1)).uvs, flat.uvs);
 }
 
 TEST(LocalMaps, MoreSeamsDistortLess) {

@@ -229,7 +229,7 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
   constexpr double kTargets[] = {2.001, 2.01, 2.05, 2.2, 2.6, 4, 20};
   const double target = kTargets[random_below(generator, 7)];
   const double energy = search.energy(), cost = search.cost();
-  switch (random_below(generator, 4)) {
+  switch (random_below(generator, 6)) {
     case 0: {
       const bool reached = search.extend(target);
       EXPECT_EQ(reached, search.energy() <= target);
@@ -243,6 +243,15 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
       break;
     case 2:
       search.reconnect();
+      EXPECT_LE(search.cost(), cost + 1e-9);
+      break;
+    case 3:
+      search.reopen();
+      EXPECT_LE(search.cost(), cost + 1e-9);
+      break;
+    case 4:
+      search.exchange(std::max(target, energy));
+      EXPECT_LE(search.energy(), std::max(target, energy) + 1e-6);
       EXPECT_LE(search.cost(), cost + 1e-9);
       break;
     default:
@@ -261,7 +270,7 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
       const std::size_t pieces = trial.charts(seams);
       SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
                         kLeastCost, Work(1));
-      for (int i = 0; i < 12; ++i) {
+      for (int i = 0; i < 16; ++i) {
         step(trial, search, generator);
         trial.expect_sound(search, pieces);
         if (testing::Test::HasFailure()) return;
