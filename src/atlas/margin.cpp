@@ -76,7 +76,7 @@ void enter(const Side& side, Index number, double reach, double cell, std::int64
     return std::clamp(static_cast<std::int64_t>(std::floor(x / cell)), std::int64_t{0}, cells - 1);
   };
   const double half = reach / 2;
-  const auto [low, high] = std::minmax(side.a.y(), side.b.y());
+  const double low = std::min(side.a.y(), side.b.y()), high = std::max(side.a.y(), side.b.y());
   const Vec2 along = side.b - side.a;
   for (std::int64_t row = at(low - half); row <= at(high + half); ++row) {
     // What of the side is within the reach of the row, but beyond the ends for the first and last.
@@ -87,8 +87,8 @@ void enter(const Side& side, Index number, double reach, double cell, std::int64
       from = std::clamp(std::min(bottom, top), 0.0, 1.0);
       to = std::clamp(std::max(bottom, top), 0.0, 1.0);
     }
-    const auto [left, right] =
-        std::minmax(side.a.x() + from * along.x(), side.a.x() + to * along.x());
+    const double start = side.a.x() + from * along.x(), end = side.a.x() + to * along.x();
+    const double left = std::min(start, end), right = std::max(start, end);
     for (std::int64_t column = at(left - half); column <= at(right + half); ++column) {
       entries.push_back({(side.page * cells + row) * cells + column, number});
     }
