@@ -7,7 +7,7 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use beltrami::{
     check_atlas, check_atlas_with, triangulate, AtlasRules, CancelToken, Control, Cut, Element,
-    ErrorKind, Method, Preset, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
+    ErrorKind, Method, Pack, Preset, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
 };
 use support::{sheet, single};
 
@@ -172,7 +172,8 @@ fn paint_and_materials_are_taken_and_looked_at() {
 fn densities_scale_charts() {
     let (positions, faces) = two_tetrahedra();
     let densities = [1.0_f32, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0];
-    let mut unwrapper = Unwrapper::new().unwrap();
+    let options = UnwrapOptions::new().pack(Pack::None);
+    let mut unwrapper = Unwrapper::with_options(&options).unwrap();
     let surface = Surface::new(&positions, &faces).densities(&densities);
     let charts = unwrapper.unwrap(&surface).unwrap().charts();
     let width = |chart: usize| charts[chart].uv_box[1][0] - charts[chart].uv_box[0][0];
@@ -291,7 +292,7 @@ fn a_failure_leaves_the_last_atlas() {
 #[test]
 fn an_atlas_that_is_not_injective_is_a_result() {
     let (positions, faces) = support::spiral(60, 2.2, 0.05);
-    let options = UnwrapOptions::new().method(Method::Bff);
+    let options = UnwrapOptions::new().method(Method::Bff).cut(Cut::Minimal);
     let mut unwrapper = Unwrapper::with_options(&options).unwrap();
     let atlas = unwrapper.unwrap(&Surface::new(&positions, &faces)).unwrap();
     assert_eq!(atlas.status(), Status::NotInjective);
