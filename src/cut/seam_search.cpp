@@ -394,6 +394,7 @@ bool SeamSearch::is_branch(const Branch& branch) const {
   return stays;
 }
 
+/// Puts a branch to where it is worth more at the price of the energy, or nowhere. Whether it went.
 bool SeamSearch::move_branch(Index tip, double price) {
   Branch old = branch_from(tip);
   if (old.halfedges.empty() || !is_branch(old)) return false;
@@ -403,8 +404,9 @@ bool SeamSearch::move_branch(Index tip, double price) {
   refresh();
   const SeamPaths& paths = this->paths();
   const double least = least_cost_;
+  // What it costs more than its energy is worth; without it that is 0.
   double best = old.cost + least - price * (model_.energy() - before);
-  best -= kLeastGain + 1e-3 * (old.cost + least);
+  best -= kLeastGain + kLeastExchange * (old.cost + least);
   SeamPath chosen;
   bool moved = best > 0;
   if (moved) best = 0;
