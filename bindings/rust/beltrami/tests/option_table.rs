@@ -221,7 +221,8 @@ fn header_comments() -> HashMap<String, String> {
         let name: String =
             after.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
         if name.starts_with("BELTRAMI_") {
-            comments.insert(name, words.join(" "));
+            // Intervals are no links.
+            comments.insert(name, words.join(" ").replace('[', "\\[").replace(']', "\\]"));
         }
         rest = after;
     }

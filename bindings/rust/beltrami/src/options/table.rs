@@ -141,7 +141,7 @@ choice! {
     /// pins in any case). See [`UnwrapOptions::pack`].
     Pack {
         /// On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs
-        /// of a page are in [0,1]^2. A surface with pins is not packed.
+        /// of a page are in \[0,1\]^2. A surface with pins is not packed.
         Pages = "pages",
         /// Side by side, in the surface's own unit of length.
         None = "none",
