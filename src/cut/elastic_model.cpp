@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -33,6 +34,12 @@ double corner_angle(const RestTriangle& rest, int k) {
 }
 
 }  // namespace
+
+double ModelChange::energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const {
+  const auto load = load_.segment(first, count);
+  const auto factor = compliance_.block(first, first, count, count).ldlt();
+  return std::max(energy_ + sign_ * 2 * std::max(load.dot(factor.solve(load)), 0.0), 2.0);
+}
 
 ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work& work)
     : surface_(surface),
@@ -96,7 +103,7 @@ void ElasticModel::pin(const std::vector<bool>& pinned) {
   energy_ = 2 + 2 * std::max(force.dot(stress), 0.0);
 }
 
-double ElasticModel::energy_with(std::span<const Index> vertices) const {
+ModelChange ElasticModel::with(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix unit(surface_.vertex_count(), count);
   Eigen::VectorXd there(count);
@@ -106,11 +113,11 @@ double ElasticModel::energy_with(std::span<const Index> vertices) const {
   }
   unit.makeCompressed();
   poll_interrupt();
-  const DenseMatrix among = solver_->solve_rows(unit, {vertices.begin(), vertices.end()});
-  return std::max(energy_ - 2 * there.dot(among.ldlt().solve(there)), 2.0);
+  DenseMatrix among = solver_->solve_rows(unit, {vertices.begin(), vertices.end()});
+  return {energy_, std::move(there), std::move(among), -1};
 }
 
-double ElasticModel::energy_without(std::span<const Index> vertices) const {
+ModelChange ElasticModel::without(std::span<const Index> vertices) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix coupling(surface_.vertex_count(), count);  // to vertices that are not pinned
   DenseMatrix among = DenseMatrix::Zero(count, count);
@@ -146,7 +153,7 @@ double ElasticModel::energy_without(std::span<const Index> vertices) const {
       force[i] -= entry.value() * stress_[entry.row()];
     }
   }
-  return energy_ + 2 * std::max(force.dot(among.ldlt().solve(force)), 0.0);
+  return {energy_, std::move(force), std::move(among), 1};
 }
 
 }  // namespace beltrami

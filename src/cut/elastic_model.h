@@ -8,8 +8,10 @@
 // membranes with crystalline order", 1988, section III). Its energy is the integral of (Delta x)^2.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -18,6 +20,26 @@
 #include "mesh/surface.h"
 
 namespace beltrami {
+
+/// What the energy of a model becomes where vertices, or a run of them, are pinned or let go.
+class ModelChange {
+ public:
+  /// The energy of the model as it is; per vertex, what is let go or held there; what each of them
+  /// yields to the others, with a minus where that is gained.
+  ModelChange(double energy, Eigen::VectorXd load, DenseMatrix compliance, double sign)
+      : energy_(energy), load_(std::move(load)), compliance_(std::move(compliance)), sign_(sign) {}
+
+  /// Where all are.
+  double energy() const { return energy_of(0, load_.size()); }
+  /// Where `count` vertices from the one with the number `first` are.
+  double energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const;
+
+ private:
+  double energy_;
+  Eigen::VectorXd load_;
+  DenseMatrix compliance_;
+  double sign_;
+};
 
 /// The stress function by linear elements, Delta Delta as L M^-1 L (mixed method of Ciarlet &
 /// Raviart 1974): L the cotangent Laplacian, M the areas of vertices. A seam is where x = 0; that
@@ -41,12 +63,12 @@ class ElasticModel {
   /// the model's, and up to 2 times where most vertices lie on seams.
   double energy() const { return energy_; }
 
-  /// That energy if `vertices` were pinned, too. Precondition: none of them is.
-  double energy_with(std::span<const Index> vertices) const;
+  /// Where `vertices` are pinned, too. Precondition: none of them is.
+  ModelChange with(std::span<const Index> vertices) const;
 
-  /// That energy if pinned `vertices` were not. Precondition: all of them are, none is of a border,
-  /// and of each component one that is not among them.
-  double energy_without(std::span<const Index> vertices) const;
+  /// Where pinned `vertices` are pinned no more. Precondition: all of them are, none is of a
+  /// border, and of each component one that is not among them.
+  ModelChange without(std::span<const Index> vertices) const;
 
  private:
   const Surface& surface_;

@@ -22,22 +22,23 @@ constexpr double kLeastGain = 1e-7;
 /// More rounds gain nothing.
 constexpr int kReconnections = 4;
 /// Parts of a branch that may go alone: its half, quarter and so on.
-constexpr std::size_t kEnds = 4;
-/// Seams cost about the excess of the energy over 2 to the power of minus that.
-constexpr double kPrice = 0.36;
+constexpr std::size_t kEnds = 6;
 constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
 
-/// What is left of a path without the half at its start; nothing of the shortest.
-SeamPath last_half(const SeamPath& path, const SeamPaths& paths) {
-  const std::ptrdiff_t first = (std::ssize(path.vertices) + 1) / 2;
-  SeamPath half;
-  if (first == std::ssize(path.vertices)) return half;
-  half.vertices.assign(path.vertices.begin() + first, path.vertices.end());
-  half.halfedges.assign(path.halfedges.begin() + first, path.halfedges.end());
-  half.cost = paths.costs()[half.vertices.front()];
-  return half;
+/// What is left of a path without its first vertices.
+SeamPath last_part(const SeamPath& path, std::ptrdiff_t first, const SeamPaths& paths) {
+  SeamPath part;
+  part.vertices.assign(path.vertices.begin() + first, path.vertices.end());
+  part.halfedges.assign(path.halfedges.begin() + first, path.halfedges.end());
+  part.cost = first == 0 ? path.cost : paths.costs()[part.vertices.front()];
+  return part;
+}
+
+/// Where the half at the end of what is left of a path begins.
+std::ptrdiff_t halved(std::ptrdiff_t first, const SeamPath& path) {
+  return first + (std::ssize(path.vertices) - first + 1) / 2;
 }
 
 }  // namespace
@@ -156,9 +157,13 @@ bool SeamSearch::extend_once() {
   double best = 0;
   SeamPath chosen;
   for (const Index v : ends) {
-    for (SeamPath path = paths.from(v); !path.vertices.empty(); path = last_half(path, paths)) {
+    const SeamPath whole = paths.from(v);
+    const ModelChange change = model_.with(whole.vertices);
+    const std::ptrdiff_t count = std::ssize(whole.vertices);
+    for (std::ptrdiff_t first = 0; first < count; first = halved(first, whole)) {
+      const SeamPath path = last_part(whole, first, paths);
       if (!affords(path)) continue;
-      const double gain = model_.energy() - model_.energy_with(path.vertices);
+      const double gain = model_.energy() - change.energy_of(first, count - first);
       if (!(gain > kLeastGain)) break;
       const double worth = gain / (path.cost + least_cost_);
       // A half that is worth less than the whole has halves that are.
@@ -202,16 +207,16 @@ SeamSearch::Branch SeamSearch::branch_from(Index tip) const {
   }
 }
 
-void SeamSearch::judge(Branch& branch) const {
-  branch.energy = model_.energy_without(branch.vertices);
+void SeamSearch::judge(Branch& branch, double energy_without) const {
+  branch.energy = energy_without;
   branch.worth = (branch.energy - model_.energy()) / (branch.cost + least_cost_);
 }
 
-/// The seams between vertices that other than two meet at, or that were ends of paths, each by its
-/// half-edges in order; the most costly first.
-std::vector<std::vector<Index>> SeamSearch::arcs() const {
+/// The seams between vertices that other than two meet at, or that were ends of paths where they
+/// are to end there, each by its half-edges in order; the most costly first.
+std::vector<std::vector<Index>> SeamSearch::arcs(bool ends_at_anchors) const {
   const auto is_node = [&](Index v) {
-    return degree_[v] != 2 || anchored_[v] || surface_.on_boundary[v];
+    return degree_[v] != 2 || (ends_at_anchors && anchored_[v]) || surface_.on_boundary[v];
   };
   std::vector<std::pair<double, std::vector<Index>>> found;
   for (Index first = 0; first < size_of(seams_); ++first) {
@@ -306,7 +311,7 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
 
 bool SeamSearch::reconnect_all(bool around_handles) {
   bool gained = false;
-  for (const std::vector<Index>& arc : arcs()) {
+  for (const std::vector<Index>& arc : arcs(true)) {
     poll_interrupt();
     gained = reconnect(arc, around_handles) || gained;
   }
@@ -328,15 +333,16 @@ void SeamSearch::reopen() {
 /// A branch and parts of it from its tip, judged.
 std::vector<SeamSearch::Branch> SeamSearch::ends_of(Branch branch) const {
   std::vector<Branch> ends;
+  const ModelChange change = model_.without(branch.vertices);
   for (std::ptrdiff_t count = std::ssize(branch.vertices) / 2; count > 0; count /= 2) {
     Branch& end = ends.emplace_back();
     end.vertices.assign(branch.vertices.begin(), branch.vertices.begin() + count);
     end.halfedges.assign(branch.halfedges.begin(), branch.halfedges.begin() + count);
     for (const Index h : end.halfedges) end.cost += cost_[h];
-    judge(end);
+    judge(end, change.energy_of(0, count));
     if (ends.size() == kEnds) break;
   }
-  judge(branch);
+  judge(branch, change.energy());
   ends.push_back(std::move(branch));
   return ends;
 }
@@ -366,7 +372,7 @@ void SeamSearch::shrink(double target) {
     Branch branch = std::move(heap.back());
     heap.pop_back();
     if (!is_branch(branch)) continue;
-    judge(branch);
+    judge(branch, model_.without(branch.vertices).energy());
     if (branch.energy > target) continue;
     if (!heap.empty() && branch.worth > heap.front().worth) {
       push(std::move(branch));
@@ -412,9 +418,13 @@ bool SeamSearch::move_branch(Index tip, double price) {
   if (moved) best = 0;
   std::vector<Index> ends = candidates(paths);
   for (const Index v : ends) {
-    for (SeamPath path = paths.from(v); !path.vertices.empty(); path = last_half(path, paths)) {
+    const SeamPath whole = paths.from(v);
+    const ModelChange change = model_.with(whole.vertices);
+    const std::ptrdiff_t count = std::ssize(whole.vertices);
+    for (std::ptrdiff_t first = 0; first < count; first = halved(first, whole)) {
+      const SeamPath path = last_part(whole, first, paths);
       if (!affords(path)) continue;
-      const double gain = model_.energy() - model_.energy_with(path.vertices);
+      const double gain = model_.energy() - change.energy_of(first, count - first);
       const double value = path.cost + least - price * gain;
       if (value < best) {
         best = value;
@@ -443,7 +453,7 @@ void SeamSearch::exchange(double target) {
     const EdgeMarks before = seams_;
     const std::vector<bool> anchors = anchored_;
     const double cost = cost_of_seams_;
-    const double price = kPrice * cost / (target - 2);
+    const double price = kSeamPrice * cost / (target - 2);
     bool moved = false;
     for (Index v = 0; v < surface_.vertex_count(); ++v) {
       if (degree_[v] == 1 && !surface_.on_boundary[v]) moved = move_branch(v, price) || moved;
@@ -458,6 +468,42 @@ void SeamSearch::exchange(double target) {
     take(before, anchors);
     return;
   }
+}
+
+std::vector<SeamSearch::Joint> SeamSearch::joints(const std::vector<Index>& chart,
+                                                  double target) const {
+  const double price = kSeamPrice * cost_of_seams_ / (target - 2);
+  std::vector<std::tuple<double, Index, Joint>> found;
+  for (const std::vector<Index>& arc : arcs(false)) {
+    const Index twin = surface_.twin[arc.front()];
+    if (twin == kNone || chart[arc.front() / 3] == chart[twin / 3]) continue;
+    poll_interrupt();
+    std::vector<Index> inner;
+    for (std::size_t i = 0; i + 1 < arc.size(); ++i) inner.push_back(surface_.target(arc[i]));
+    const ModelChange change = model_.without(inner);
+    const std::ptrdiff_t count = std::ssize(arc), half = count / 2;
+    for (const auto& [first, last] : {std::pair(std::ptrdiff_t{0}, count),
+                                      std::pair(std::ptrdiff_t{0}, half), std::pair(half, count)}) {
+      if (first == last) continue;
+      Joint joint;
+      joint.halfedges.assign(arc.begin() + first, arc.begin() + last);
+      for (const Index h : joint.halfedges) joint.cost += cost_[h];
+      joint.energy = change.energy_of(first, last - first - 1);
+      const double value = joint.cost - price * (joint.energy - model_.energy());
+      if (value > 0) found.emplace_back(-value, arc[first], std::move(joint));
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return std::pair(std::get<0>(a), std::get<1>(a)) < std::pair(std::get<0>(b), std::get<1>(b));
+  });
+  std::vector<Joint> joints;
+  for (auto& [value, first, joint] : found) joints.push_back(std::move(joint));
+  return joints;
+}
+
+void SeamSearch::join(const Joint& joint) {
+  for (const Index h : joint.halfedges) mark(h, false);
+  refresh();
 }
 
 }  // namespace beltrami

@@ -13,6 +13,9 @@
 
 namespace beltrami {
 
+/// Seams cost about the excess of the energy over 2 to the power of minus that.
+constexpr double kSeamPrice = 0.36;
+
 /// Seams that grow and shrink. What they leave of a surface are the same pieces as at the start:
 /// they grow by trees, and lose branches only.
 class SeamSearch {
@@ -46,6 +49,24 @@ class SeamSearch {
   /// `target`, and goes there, as long as something is gained.
   void exchange(double target);
 
+  /// A seam between two charts, and what it is worth.
+  struct Joint {
+    std::vector<Index> halfedges;  ///< in order
+    double cost = 0;
+    double energy = 0;  ///< of the model without it
+
+    /// By which it is known again.
+    Index middle() const { return halfedges[halfedges.size() / 2]; }
+  };
+
+  /// The seams that part two charts and not one from itself, from node to node, and their halves;
+  /// `chart`: per face. What is most costly for the energy that it holds at the price of `target`
+  /// comes first.
+  std::vector<Joint> joints(const std::vector<Index>& chart, double target) const;
+
+  /// Joins the charts on its sides.
+  void join(const Joint& joint);
+
   double energy() const { return model_.energy(); }
   double cost() const { return cost_of_seams_; }
   const EdgeMarks& seams() const { return seams_; }
@@ -70,7 +91,7 @@ class SeamSearch {
   bool extend_once();
   double length_of(Index halfedge) const;
   bool affords(const SeamPath& path) const;
-  std::vector<std::vector<Index>> arcs() const;
+  std::vector<std::vector<Index>> arcs(bool ends_at_anchors) const;
   std::vector<bool> joined_to(Index vertex) const;
   bool is_alone(Index halfedge) const;
   bool reconnect(const std::vector<Index>& arc, bool around_handles);
@@ -78,7 +99,7 @@ class SeamSearch {
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);
   Branch branch_from(Index tip) const;
-  void judge(Branch& branch) const;
+  void judge(Branch& branch, double energy_without) const;
   std::vector<Branch> ends_of(Branch branch) const;
   bool is_branch(const Branch& branch) const;
 

@@ -123,10 +123,14 @@ TEST(ElasticModel, MorePinsAreJudgedAsIfTheyWereThere) {
       model.pin(pinned);
       const std::vector<bool> all(pinned.size(), true);
       const auto more = picked(surface, all, pinned, false, 1 + 3 * trial, generator);
-      const double with = model.energy_with(more);
+      const ModelChange with = model.with(more);
+      const std::size_t half = more.size() / 2;
+      for (std::size_t i = half; i < more.size(); ++i) pinned[more[i]] = true;
+      model.pin(pinned);
+      EXPECT_NEAR(with.energy_of(half, more.size() - half), model.energy(), 1e-6);
       for (const Index v : more) pinned[v] = true;
       model.pin(pinned);
-      EXPECT_NEAR(with, model.energy(), 1e-6);
+      EXPECT_NEAR(with.energy(), model.energy(), 1e-6);
     }
   }
 }
@@ -145,10 +149,14 @@ TEST(ElasticModel, FewerPinsAreJudgedAsIfTheyWereGone) {
       }
       model.pin(pinned);
       const auto gone = picked(surface, wanted, pinned, true, 1 + 5 * trial, generator);
-      const double without = model.energy_without(gone);
+      const ModelChange without = model.without(gone);
+      const std::size_t half = gone.size() / 2;
+      for (std::size_t i = 0; i < half; ++i) pinned[gone[i]] = false;
+      model.pin(pinned);
+      EXPECT_NEAR(without.energy_of(0, half), model.energy(), 1e-6);
       for (const Index v : gone) pinned[v] = false;
       model.pin(pinned);
-      EXPECT_NEAR(without, model.energy(), 1e-6);
+      EXPECT_NEAR(without.energy(), model.energy(), 1e-6);
     }
   }
 }

@@ -371,6 +371,45 @@ TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
   }
 }
 
+TEST(SeamSearch, JoinsChartsAndKnowsWhatThatCosts) {
+  std::mt19937_64 generator(11);
+  int joined = 0;
+  for (const TriangleList& mesh : {meshes::sphere(3), meshes::torus(9), meshes::bumps(12, 12)}) {
+    const Trial trial(mesh, 0.5, generator);
+    const Surface& surface = trial.surface;
+    for (int round = 0; round < 20; ++round) {
+      SeamSearch search(surface, surface.face_count(), trial.cost, trial.opened(), 0, 0.02,
+                        Work(1));
+      search.extend(2.02);
+      EdgeMarks seams = search.seams();
+      // A part of the surface is cut out: faces nearer to one place than to another.
+      const Vec3 here = surface.positions[random_below(generator, surface.vertex_count())];
+      const Vec3 there = surface.positions[random_below(generator, surface.vertex_count())];
+      const auto is_in = [&](Index face) {
+        const Vec3 p = surface.positions[surface.faces[face][0]];
+        return (p - here).norm() < (p - there).norm();
+      };
+      for (Index h = 0; h < size_of(seams); ++h) {
+        const Index twin = surface.twin[h];
+        if (twin != kNone && is_in(h / 3) != is_in(twin / 3)) mark_edge(surface, h, seams);
+      }
+      const CutSurface cut = cut_into_charts(surface, seams, Work(1));
+      if (!cut.non_disks.empty()) continue;
+      search.take(seams);
+      for (const SeamSearch::Joint& joint : search.joints(cut.chart_of_face, 2.05)) {
+        search.take(seams);
+        const double cost = search.cost();
+        search.join(joint);
+        trial.expect_sound(search, cut.charts.size() - 1);
+        EXPECT_NEAR(search.cost(), cost - joint.cost, 1e-9);
+        EXPECT_NEAR(search.energy(), joint.energy, 1e-6);
+        ++joined;
+      }
+    }
+  }
+  EXPECT_GT(joined, 100);
+}
+
 TEST(SeamSearch, LockedEdgesStayUncut) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     std::mt19937_64 generator(seed);

@@ -1,0 +1,71 @@
+// Seams of one level: by the elastic model, and corrected by real maps.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "cut/local_maps.h"
+#include "cut/seam_search.h"
+#include "cut/search.h"
+#include "cut/search_level.h"
+
+namespace beltrami {
+
+/// Where a search starts.
+struct Start {
+  double least_cost = 0.02;  ///< what a path costs beside its own, in roots of the area
+  int number = 0;            ///< starts of one least cost differ by it: their first paths go astray
+};
+
+/// Seams and what is known of them.
+struct Attempt {
+  AnchoredSeams seams;
+  double model_energy = 2;
+  double cost = std::numeric_limits<double>::infinity();
+  double energy = std::numeric_limits<double>::infinity();
+  double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
+  std::vector<std::vector<Vec2>> maps;                      ///< per chart, none of a sketch
+
+  /// Of two that reach the target the shorter one, else the one that is nearer to it.
+  bool is_better_than(const Attempt& other) const;
+
+  /// What it would cost to reach the target, about.
+  double promised() const;
+};
+
+/// The search on one level. All that is asked for it does from the seams that it stands at.
+class LevelSearch {
+ public:
+  /// `seams` open the surface into disks. Keeps references to `level` and `target`.
+  LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
+              const SeamTarget& target, const Work& work);
+
+  /// By the model alone.
+  Attempt sketch();
+
+  /// Until maps have the energy asked for. `is_sketched`: the seams are a sketch.
+  Attempt run(bool is_sketched);
+
+  /// Charts of `best` that were parted are joined elsewhere on trial, where that makes it better.
+  void join_charts(Attempt& best);
+
+ private:
+  bool extend_first(double model_energy);
+  void shorten_seams(double model_energy);
+  LocalMaps map(const LocalMaps* before) const;
+  bool part_overlaps(const LocalMaps& maps, double tolerance);
+  double missed_by(const LocalMaps& maps) const;
+  bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);
+  void trim(LocalMaps& maps, Attempt& best);
+
+  const SearchLevel& level_;
+  const Start start_;
+  const SeamTarget& target_;
+  const Work work_;
+  std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
+  SeamSearch search_;
+};
+
+}  // namespace beltrami
