@@ -9,8 +9,8 @@
 #include "atlas/map_charts.h"
 #include "atlas/measure.h"
 #include "atlas/open.h"
+#include "atlas/open_and_map.h"
 #include "atlas/pack_maps.h"
-#include "atlas/pin_conflicts.h"
 #include "atlas/pins.h"
 #include "atlas/place.h"
 #include "base/interrupt.h"
@@ -29,15 +29,7 @@ constexpr std::int64_t kGrain = 16384;
 constexpr Index kWorthArranging = 50'000;
 // Where the stages end in the progress.
 constexpr double kAdmitted = 0.04, kMapped = 0.9, kPlaced = 0.95;
-constexpr double kCut = 0.15;      // of opening and mapping
-constexpr double kFirstTry = 0.6;  // at a target that may be missed
 
-/// Missed by more, a target is worth a second try;
-constexpr double kMissed = 1e-4;
-/// which aims lower by so many times that,
-constexpr double kMoreThanMissed = 1.1;
-/// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
-constexpr double kLeastAim = 0.3;
 /// Texels per unit of a surface of unit area that stand for any fewer.
 constexpr double kLeastDensity = 1e-100;
 
@@ -303,105 +295,6 @@ double pack_onto_pages(const OpenedSurface& opened, int exponent, const AtlasOpt
   return scale > 0 ? scale : 1;
 }
 
-/// Throws Error PINS with the first pin that is proven not to go with those before it.
-void require_no_conflict(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
-                         const std::vector<Pin>& all) {
-  std::optional<PinConflict> first;
-  for (std::size_t c = 0; c < charts.size(); ++c) {
-    auto conflict = find_conflict(charts[c], pins.of_chart[c], all);
-    if (conflict && (!first || conflict->pin < first->pin)) first = std::move(conflict);
-  }
-  if (first) throw unmet(all[first->pin], first->why);
-}
-
-/// Throws Error PINS with the first pin that could not be met together with those before it.
-void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& all) {
-  Index first = kNone;
-  for (const MappedChart& map : maps) {
-    if (map.failed_pin == kNone) continue;
-    first = first == kNone ? map.failed_pin : std::min(first, map.failed_pin);
-  }
-  if (first == kNone) return;
-  throw unmet(
-      all[first],
-      "cannot be met together with those before it: no way was found to bring them all into "
-      "place without folding a face");
-}
-
-/// Charts and their maps.
-struct Mapped {
-  OpenedSurface opened;
-  AssignedPins pins;
-  std::vector<MappedChart> maps;
-  AtlasEnergy energy;
-};
-
-/// Opens the surface and flattens its charts, as the stages "cut" and "flatten".
-Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
-                    const std::optional<SeamTarget>& target, const AtlasOptions& options,
-                    const Work& work, std::vector<StageStatistics>& stages) {
-  Mapped mapped;
-  OpenedSurface& opened = mapped.opened;
-  run_stage("cut", work.part(0, kCut), stages, [&](StageStatistics&, const Work& inner) {
-    opened = open_surface(admitted, input.cuts, options.fill_limit,
-                          {options.admit.polygons, options.diagonals}, target, options.weights,
-                          input.hints, inner);
-  });
-  mapped.pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
-  require_no_conflict(opened.charts, mapped.pins, input.pins);
-  run_stage("flatten", work.part(kCut, 1), stages, [&](StageStatistics&, const Work& inner) {
-    mapped.maps = map_charts(opened.charts, mapped.pins, options.chart, inner);
-    require_met(mapped.maps, input.pins);
-    std::vector<ChartInfo> charts(opened.charts.size());
-    mapped.energy = measure_charts(opened.charts, mapped.maps, 1, charts, inner);
-  });
-  return mapped;
-}
-
-bool misses(double energy, double target) {
-  return target > 0 && energy > target + kMissed;
-}
-
-/// The excess over 2 by that which is asked for, of the mean or of the percentile.
-double excess_of(const AtlasEnergy& energy, const SeamTarget& target) {
-  const double mean = (energy.symmetric_dirichlet - 2) / (target.energy - 2);
-  return target.p99 > 0 ? std::max(mean, (energy.p99 - 2) / (target.p99 - 2)) : mean;
-}
-
-/// The target at which coarse maps would leave fine ones the energy that is asked for, if what
-/// these have more stays; none where that is met, or where a cut cannot bring it.
-std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const Mapped& mapped) {
-  const double mean = mapped.energy.symmetric_dirichlet, p99 = mapped.energy.p99;
-  const double predicted = mapped.opened.predicted_energy;
-  if (misses(predicted, target.energy)) return std::nullopt;  // the search has done what it can
-  SeamTarget lower = target;
-  if (misses(mean, target.energy)) lower.energy -= kMoreThanMissed * (mean - predicted);
-  if (misses(p99, target.p99)) lower.p99 -= kMoreThanMissed * (p99 - target.p99);
-  const auto is_possible = [](double aim, double asked) {
-    return asked == 0 || aim >= 2 + kLeastAim * (asked - 2);
-  };
-  const bool is_lower = lower.energy < target.energy || lower.p99 < target.p99;
-  const bool all = is_possible(lower.energy, target.energy) && is_possible(lower.p99, target.p99);
-  return is_lower && all ? std::optional(lower) : std::nullopt;
-}
-
-/// Where fine maps miss the target that coarse ones met, once more with a lower one.
-Mapped open_and_map_to_target(const AtlasInput& input, const Admitted& admitted, int exponent,
-                              const AtlasOptions& options, const Work& work,
-                              std::vector<StageStatistics>& stages) {
-  const auto run = [&](const std::optional<SeamTarget>& target, const Work& part) {
-    return open_and_map(input, admitted, exponent, target, options, part, stages);
-  };
-  if (!options.target) return run(options.target, work);
-  Mapped mapped = run(options.target, work.part(0, kFirstTry));
-  const std::optional<SeamTarget> lower = aimed_lower(*options.target, mapped);
-  if (!lower || work.out_of_time()) return mapped;
-  Mapped again = run(lower, work.part(kFirstTry, 1));
-  const bool is_better =
-      excess_of(again.energy, *options.target) < excess_of(mapped.energy, *options.target);
-  return is_better ? std::move(again) : std::move(mapped);
-}
-
 }  // namespace
 
 std::vector<Triangle> oriented_faces(const Atlas& atlas) {
@@ -438,8 +331,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     arrange_surface(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
   });
-  Mapped mapped = open_and_map_to_target(input, admitted, exponent, options,
-                                         work.part(kAdmitted, kMapped), atlas.stages);
+  Mapped mapped =
+      open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
   const OpenedSurface& opened = mapped.opened;
   std::vector<MappedChart>& maps = mapped.maps;
   Numbers numbers{.single = options.float32, .exponent = exponent};

@@ -183,7 +183,8 @@ Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
 
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
-                           const SeamWeights& weights, const InputHints& hints, const Work& work) {
+                           const SeamWeights& weights, const InputHints& hints,
+                           const AnchoredSeams& begun, const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {
@@ -206,8 +207,10 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
     std::vector<Index> vertices(filled.real_vertices);
     for (Index v = 0; v < filled.real_vertices; ++v) vertices[v] = admitted.input_vertex[input(v)];
     found = search_seams(filled.surface, filled.real_faces, topology, locked, *target, weights,
-                         hints_for(filled, vertices, admitted, hints), work.part(kFilled, kOpened));
+                         hints_for(filled, vertices, admitted, hints), begun,
+                         work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
+    opened.coarse_seams = std::move(found.coarse);
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
     if (!cut.non_disks.empty()) {
       found.maps.clear();

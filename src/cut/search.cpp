@@ -27,10 +27,8 @@ constexpr Index kRoughFaces = 3000;
 /// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
 /// few long ones, and the better is taken.
 constexpr std::array kLeastCosts = {0.02, 0.06};
-/// Surfaces of no more faces are searched from so many starts with either, of which so many are
-/// finished, and their charts joined on trial: seams are 4% shorter. On a larger one the search is
-/// to take less than half of the flattening.
-constexpr Index kThoroughFaces = 100'000;
+/// With care, a surface is searched from so many starts with either, of which so many are finished,
+/// and their charts joined on trial: seams are 4% shorter.
 constexpr int kStarts = 3;
 constexpr std::size_t kFinished = 3;
 /// Straightening that gains more than the rest moves seams from where they are needed.
@@ -126,25 +124,37 @@ void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
 
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
-                           const SeamWeights& weights, const SeamHints& hints, const Work& work) {
+                           const SeamWeights& weights, const SeamHints& hints,
+                           const AnchoredSeams& begun, const Work& work) {
   SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces, weights,
                                      hints, work.part(0, 0.3));
-  const bool is_thorough = surface.face_count() <= kThoroughFaces;
-  Attempt found = search_level(coarse, is_thorough, target, weights, work.part(0.3, 0.8));
-  if (is_thorough) {
-    LevelSearch(coarse, found.seams, Start(), target, work.part(0.8, 0.9)).join_charts(found);
+  Attempt found;
+  if (begun.seams.size() == coarse.surface.twin.size()) {
+    found = LevelSearch(coarse, begun, Start(), target, work.part(0.3, 0.9)).run(true);
+  } else {
+    const bool is_thorough = surface.face_count() <= kThoroughFaces;
+    found = search_level(coarse, is_thorough, target, weights, work.part(0.3, 0.8));
+    if (is_thorough) {
+      LevelSearch(coarse, found.seams, Start(), target, work.part(0.8, 0.9)).join_charts(found);
+    }
   }
+  SearchedSeams searched;
+  searched.energy = found.energy;
   if (coarse.fine_vertex.empty()) {
-    const bool is_cut = std::find(found.seams.seams.begin(), found.seams.seams.end(), true) !=
-                        found.seams.seams.end();
-    if (!is_cut) found.maps.clear();
-    return {std::move(found.seams.seams), found.energy, {}, std::move(found.maps)};
+    const EdgeMarks& seams = found.seams.seams;
+    const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
+    if (is_cut) searched.maps = std::move(found.maps);
+    searched.seams = std::move(found.seams.seams);
+    return searched;
   }
+  searched.coarse = found.seams;
   hold_bends(coarse, work.aside(), found);
-  AnchoredSeams fine = carry_to_finer(
-      coarse, surface, finer_costs(coarse, surface, real_faces, weights, hints, work), locked,
-      found.seams, work.part(0.9, 1));
-  return {std::move(fine.seams), found.energy, std::move(coarse.history), {}};
+  searched.seams = carry_to_finer(coarse, surface,
+                                  finer_costs(coarse, surface, real_faces, weights, hints, work),
+                                  locked, found.seams, work.part(0.9, 1))
+                       .seams;
+  searched.history = std::move(coarse.history);
+  return searched;
 }
 
 }  // namespace beltrami

@@ -7,6 +7,7 @@
 #include "base/work.h"
 #include "cut/edge_marks.h"
 #include "cut/seam_costs.h"
+#include "cut/search_level.h"
 #include "mesh/surface.h"
 #include "simplify/history.h"
 
@@ -21,10 +22,15 @@ struct SeamTarget {
   double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
 };
 
+/// Surfaces of no more faces are searched with care; on larger ones a search is to take less than
+/// half of the flattening.
+inline constexpr Index kThoroughFaces = 100'000;
+
 struct SearchedSeams {
   EdgeMarks seams;          ///< on the surface given
   double energy = 2;        ///< of the coarse maps along them
   CollapseHistory history;  ///< of the surface on its way to the coarse one; empty: it is its own
+  AnchoredSeams coarse;     ///< what was found there; empty where it is its own
   /// The maps, where the surface is its own coarse one and is cut at all: per chart of it cut along
   /// the seams.
   std::vector<std::vector<Vec2>> maps;
@@ -35,10 +41,12 @@ struct SearchedSeams {
 /// cannot leave them, these are left out, and a piece may be no disk.) All of it is decided on a
 /// coarse surface, by a model of the maps and then by maps, and carried to the fine one.
 /// `real_faces`: those after them are virtual, they weigh and cost nothing. `locked`: edges that
-/// are not to be cut where there is a way, or none. Preconditions: `topology` is the surface's;
-/// hints are of its vertices and faces; area about 1. Throws Error SOLVER.
+/// are not to be cut where there is a way, or none. `begun`: coarse seams that were found for
+/// another target, from which the search goes on; empty: it begins. Preconditions: `topology` is
+/// the surface's; hints are of its vertices and faces; area about 1. Throws Error SOLVER.
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
-                           const SeamWeights& weights, const SeamHints& hints, const Work& work);
+                           const SeamWeights& weights, const SeamHints& hints,
+                           const AnchoredSeams& begun, const Work& work);
 
 }  // namespace beltrami

@@ -9,6 +9,7 @@
 
 #include "admit/fill.h"
 #include "cut/cut_into_charts.h"
+#include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
 #include "support/disks.h"
@@ -33,7 +34,7 @@ Surface built(TriangleList mesh) {
 SearchedSeams searched(const Surface& surface, double energy, const EdgeMarks& locked = {},
                        int threads = 1, const SeamWeights& weights = {}) {
   return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), locked,
-                      {.energy = energy}, weights, {}, Work(threads));
+                      {.energy = energy}, weights, {}, {}, Work(threads));
 }
 
 double length(const Surface& surface, const EdgeMarks& marks) {
@@ -130,10 +131,15 @@ TEST(Search, WhatIsADiskAndFlatEnoughStaysWhole) {
 }
 
 TEST(Search, PartsWhatLiesOnItselfInTheMap) {
-  // At 2.05 contact keeps it apart.
   const Surface surface = built(disks::ramp(48, 6));
   const SearchedSeams found = searched(surface, 2.01);
-  EXPECT_EQ(charts(surface, found.seams), 2);
+  const CutSurface cut = cut_into_charts(surface, found.seams, Work(1));
+  ASSERT_EQ(cut.charts.size(), found.maps.size());
+  for (std::size_t c = 0; c < cut.charts.size(); ++c) {
+    const DiskMesh& mesh = cut.charts[c].mesh;
+    EXPECT_TRUE(certify(mesh.faces, mesh.boundary, found.maps[c], Work(1)).injective());
+  }
+  EXPECT_GT(length(surface, found.seams), 0);
   EXPECT_LE(found.energy, 2.01);
   EXPECT_LT(length(surface, found.seams), 0.5);
 }
@@ -160,7 +166,7 @@ TEST(Search, FilledHolesWeighNothing) {
   ASSERT_EQ(filled.filled_loops, 3);
   const SearchedSeams found =
       search_seams(filled.surface, filled.real_faces, topology_of(filled.surface, Work(1)), {},
-                   {.energy = 2.05}, {}, {}, Work(1));
+                   {.energy = 2.05}, {}, {}, {}, Work(1));
   EXPECT_EQ(charts(filled.surface, found.seams), 1);
   EXPECT_LE(found.energy, 2.05);
 }
