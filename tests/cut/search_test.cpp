@@ -192,6 +192,23 @@ TEST(Search, CarriesTheSeamsOfACoarseSurfaceToTheFineOne) {
   EXPECT_LE(found.energy, 2.05);
 }
 
+TEST(Search, GoesOnFromWhatWasFoundForAnotherTarget) {
+  const Surface surface = built(meshes::torus(82));
+  const auto go_on = [&](double energy, const AnchoredSeams& begun) {
+    return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), {},
+                        {.energy = energy}, kLengths, {}, begun, Work(1));
+  };
+  const SearchedSeams found = go_on(2.05, {});
+  ASSERT_FALSE(found.coarse.seams.empty());
+  for (const double energy : {2.03, 2.08}) {
+    const SearchedSeams other = go_on(energy, found.coarse);
+    EXPECT_EQ(charts(surface, other.seams), 1);
+    EXPECT_LE(other.energy, energy);
+    EXPECT_GE(other.energy, 2 + 0.8 * (energy - 2));
+    EXPECT_EQ(length(surface, other.seams) > length(surface, found.seams), energy < 2.05);
+  }
+}
+
 TEST(Search, LockedEdgesStayUncutWhereTheSurfaceIsSimplified) {
   const Surface surface = built(meshes::torus(82));
   const EdgeMarks locked = diagonals(surface);
