@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "chart/hold.h"
+#include "chart/inherited.h"
 #include "chart/memory_estimate.h"
 #include "descend/flat_start.h"
 #include "mesh/chart.h"

@@ -9,6 +9,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "energy/measure.h"
+#include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

@@ -14,6 +14,7 @@
 #include "cut/open_minimal.h"
 #include "mesh/split_fans.h"
 #include "mesh/surface.h"
+#include "simplify/history.h"
 #include "simplify/replay.h"
 
 namespace beltrami {

@@ -5,6 +5,7 @@
 #include "atlas/margin.h"
 #include "atlas/round_chart.h"
 #include "base/parallel.h"
+#include "base/types.h"
 
 namespace beltrami {
 namespace {

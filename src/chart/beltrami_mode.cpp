@@ -7,6 +7,7 @@
 #include "chart/chart_map.h"
 #include "chart/coarser_start.h"
 #include "chart/fine_problem.h"
+#include "chart/inherited.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"

@@ -5,8 +5,6 @@
 #include <queue>
 #include <utility>
 
-#include "mesh/disk_mesh.h"
-
 namespace beltrami {
 namespace {
 

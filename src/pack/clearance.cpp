@@ -6,6 +6,7 @@
 #include "base/disjoint_sets.h"
 #include "base/interrupt.h"
 #include "pack/edge_grid.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 namespace {
@@ -105,13 +106,13 @@ Clearance clearance(const std::vector<PlacedOutline>& charts, double side, doubl
     least.page = std::min({least.page, box.min().minCoeff(), side - box.max().maxCoeff()});
   }
   // A walk along an edge passes within half a step of its point that is nearest to the other.
-  constexpr double step = 2;
-  const EdgeGrid grid(charts, reach + step / 2);
+  constexpr double kStep = 2;
+  const EdgeGrid grid(charts, reach + kStep / 2);
   PollSometimes poll;
   for (Index c = 0; c < size_of(charts); ++c) {
     for (const auto& [from, to] : charts[c].edges) {
       const Vec2 &p = charts[c].points[from], &q = charts[c].points[to];
-      const int pieces = static_cast<int>((q - p).norm() / step) + 1;
+      const int pieces = static_cast<int>((q - p).norm() / kStep) + 1;
       for (int k = 0; k <= pieces; ++k) {
         const Vec2 place = p + (q - p) * (static_cast<double>(k) / pieces);
         for (const ChartEdge& other : grid.near(charts[c].page, place)) {

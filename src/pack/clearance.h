@@ -5,6 +5,7 @@
 
 #include "base/types.h"
 #include "pack/outline.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 

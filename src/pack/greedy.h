@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/types.h"
-#include "base/work.h"
 #include "pack/mask.h"
 #include "pack/page.h"
 

@@ -6,8 +6,11 @@
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "pack/clearance.h"
 #include "pack/edge_grid.h"
+#include "pack/outline.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 namespace {

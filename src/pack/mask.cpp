@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "pack/pack.h"
+
 namespace beltrami {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/types.h"
 #include "pack/mask.h"
 
 namespace beltrami {

@@ -7,7 +7,11 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/types.h"
+#include "pack/greedy.h"
 #include "pack/grow.h"
+#include "pack/mask.h"
+#include "pack/page.h"
 
 namespace beltrami {
 namespace {

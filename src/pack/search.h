@@ -1,6 +1,7 @@
 // The density at which charts fill their pages, and the order in which they do.
 #pragma once
 
+#include "pack/pack.h"
 #include "pack/problem.h"
 
 namespace beltrami {

@@ -17,6 +17,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "simplify/history.h"
 #include "simplify/quadric.h"
 #include "simplify/shape.h"
 

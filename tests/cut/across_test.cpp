@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "base/work.h"
 #include "cut/cut_into_charts.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "cut/edge_marks.h"
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"

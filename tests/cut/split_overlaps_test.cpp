@@ -61,7 +61,7 @@ Mapped flat(meshes::TriangleList mesh) {
 
 /// A strip of width 0.4 along a line of the curvatures given, each for a step of length 0.1.
 Mapped strip_along(const std::vector<double>& curvatures) {
-  constexpr Index kAcross = 4;
+  constexpr Index kAcross = 4, kMiddle = kAcross / 2;
   const Index along = size_of(curvatures);
   meshes::TriangleList mesh = meshes::grid(along, kAcross);
   Vec3 p = Vec3::Zero();
@@ -69,7 +69,7 @@ Mapped strip_along(const std::vector<double>& curvatures) {
   for (Index i = 0; i <= along; ++i) {
     const Vec3 left(-portable::sin(angle), portable::cos(angle), 0);
     for (Index j = 0; j <= kAcross; ++j) {
-      mesh.positions[j * (along + 1) + i] = p + 0.1 * (j - kAcross / 2) * left;
+      mesh.positions[j * (along + 1) + i] = p + 0.1 * (j - kMiddle) * left;
     }
     if (i == along) break;
     const double middle = angle + 0.05 * curvatures[i];

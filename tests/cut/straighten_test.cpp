@@ -346,7 +346,7 @@ EdgeMarks marked_star(const Surface& surface, Index centre,
 TEST(Straighten, TheNodeOfATMoves) {
   // The arms are a shortest path between their ends, and the stem is one to them. But others are as
   // short, and come nearer to the end of the stem.
-  constexpr Index n = 61;
+  const Index n = 61;
   const Surface surface = built(triangular(n));
   const std::vector<double> cost = lengths(surface);
   const Index left = 20 * n + 10, centre = left + 5;
@@ -359,7 +359,7 @@ TEST(Straighten, TheNodeOfATMoves) {
 }
 
 TEST(Straighten, ThreeEndsMeetWhereTheirWaysAreLeast) {
-  constexpr Index n = 61;
+  const Index n = 61;
   const Surface surface = built(triangular(n));
   const std::vector<double> cost = lengths(surface);
   // Ends at equal distances in directions 120 degrees apart, which lead along edges; their node is
@@ -376,7 +376,7 @@ TEST(Straighten, ThreeEndsMeetWhereTheirWaysAreLeast) {
 }
 
 TEST(Straighten, AnAnchoredNodeStays) {
-  constexpr Index n = 61;
+  const Index n = 61;
   const Surface surface = built(triangular(n));
   const Index off = 30 * n + 39;
   const EdgeMarks seams =
@@ -389,7 +389,7 @@ TEST(Straighten, AnAnchoredNodeStays) {
 
 TEST(Straighten, ANodeOfFourBecomesTwo) {
   // The diagonals of a long rectangle: its least tree has two nodes.
-  constexpr Index n = 61;
+  const Index n = 61;
   const Surface surface = built(triangular(n));
   const std::vector<double> cost = lengths(surface);
   const Index centre = 30 * n + 30;

@@ -9,6 +9,7 @@
 
 #include "pack/mask.h"
 #include "pack/outline.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 namespace {
