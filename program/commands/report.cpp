@@ -177,7 +177,10 @@ Json packing_json(const Report& report) {
           {"texels_per_unit", number(found.texels_per_unit)},
           {"utilisation", number(found.utilisation)},
           {"page_utilisations", report.page_utilisations},
-          {"margin", number(found.margin)}};
+          {"margin", number(found.margin)},
+          {"splits", found.splits},
+          {"split_length", number(found.split_length)},
+          {"unsplit_utilisation", number(found.unsplit_utilisation)}};
 }
 
 Json charts_json(const Report& report) {
@@ -280,6 +283,10 @@ void append_packing(const Report& report, std::string& text) {
          static_cast<unsigned long long>(found.pages),
          static_cast<unsigned long long>(found.resolution), 100 * found.utilisation, found.margin,
          found.texels_per_unit);
+  if (found.splits == 0) return;
+  append(text, "splits     %llu, of %.4g root areas, for %.1f%% more of the pages used\n",
+         static_cast<unsigned long long>(found.splits), found.split_length,
+         100 * (found.utilisation - found.unsplit_utilisation));
 }
 
 /// What had to be done to the input, where that is anything.

@@ -510,6 +510,19 @@ const OptionEntry kOptions[] = {
         .set = set<&Options::pack_block>,
         .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
     },
+    {
+        .key = BELTRAMI_OPTION_PACK_SPLITS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "pack-splits",
+        .summary = "Length of seams, over the root of the area, that all of the utilisation is "
+                   "worth: at 10 a chart is split in two where a tenth of the root of the area "
+                   "lets a hundredth more of the pages be filled; 0 splits none.",
+        .minimum = 0,
+        .maximum = 1e9,
+        .get = get<&Options::pack_splits>,
+        .set = set<&Options::pack_splits>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.

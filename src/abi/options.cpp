@@ -67,7 +67,8 @@ constexpr std::int32_t kOfTheSearch[] = {
 
 constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
                                      BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
-                                     BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK};
+                                     BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK,
+                                     BELTRAMI_OPTION_PACK_SPLITS};
 
 /// Pages that are as many as it takes: as many as the option max-pages allows.
 constexpr int kManyPages = 1000;
@@ -154,6 +155,7 @@ AtlasOptions atlas_options(const Options& options) {
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
   if (options.pack == BELTRAMI_PACK_PAGES) atlas.pack = pack_options(options);
+  atlas.split_price = options.pack_splits;
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
   atlas.float32 = std::exchange(atlas.chart.float32, false);
@@ -201,7 +203,14 @@ void require_effect_on_atlas(const Options& options, bool pins) {
       refuse_if_set(options, key, with_cut, "or take cut=auto");
     }
   }
-  if (options.pack == BELTRAMI_PACK_PAGES && !pins) return;
+  if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
+    if (options.texels_per_unit > 0) {
+      refuse_if_set(options, BELTRAMI_OPTION_PACK_SPLITS,
+                    written(*find_option(BELTRAMI_OPTION_TEXELS_PER_UNIT), options),
+                    "or let charts be as large as they fit");
+    }
+    return;
+  }
   for (const std::int32_t key : kOfPages) {
     refuse_if_set(options, key, pins ? "pins" : "pack=none",
                   pins ? "or do without pins" : "or take pack=pages");

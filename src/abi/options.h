@@ -47,6 +47,7 @@ struct Options {
   int max_pages = 0;
   std::int32_t pack_turns = BELTRAMI_PACK_TURNS_ANY;
   int pack_block = 1;
+  double pack_splits = 0;
 };
 
 /// How a disk is to be flattened.

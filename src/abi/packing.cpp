@@ -32,6 +32,12 @@ beltrami_packing describe(const OnPages& result) {
   report.margin = pages.margin;
   report.seconds = result.seconds;
   report.cpu_seconds = result.cpu_seconds;
+  report.unsplit_utilisation = pages.utilisation;
+  if (pages.split && pages.split->count > 0) {
+    report.splits = static_cast<std::uint64_t>(pages.split->count);
+    report.split_length = pages.split->length;
+    report.unsplit_utilisation = pages.split->before;
+  }
   return report;
 }
 

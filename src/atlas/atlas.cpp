@@ -13,6 +13,7 @@
 #include "atlas/pack_maps.h"
 #include "atlas/pins.h"
 #include "atlas/place.h"
+#include "atlas/split_necks.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "mesh/chart.h"
@@ -281,15 +282,23 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
 
 /// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
 /// their pages.
-double pack_onto_pages(const OpenedSurface& opened, int exponent, const AtlasOptions& options,
-                       std::vector<MappedChart>& maps, const Work& work, Atlas& atlas) {
+double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOptions& options,
+                       const SplitCharts& charts, const Work& work, Atlas& atlas) {
   PackOptions pack = *options.pack;
   if (pack.texels_per_unit > 0) {
     // 0 would leave the scale open.
     const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
     pack.texels_per_unit = std::clamp(scaled, kLeastDensity, 1 / kLeastDensity);
   }
-  Pages& pages = atlas.pages.emplace(pack_maps(opened.charts, pack, options.float32, maps, work));
+  SplitRules rules{.price = options.split_price,
+                   .polygons = {options.admit.polygons, options.diagonals}};
+  if (options.target && options.target->max_charts > 0) {
+    rules.most_charts = std::max(options.target->max_charts, admitted.counts.components);
+  }
+  if (options.target) rules.seam_budget = options.target->seam_budget;
+  Pages& pages = atlas.pages.emplace(
+      rules.price > 0 ? pack_split_maps(admitted, rules, pack, options.float32, charts, work)
+                      : pack_maps(charts.charts, pack, options.float32, charts.maps, work));
   const double scale = pages.texels_per_unit / pages.resolution;
   pages.texels_per_unit = std::ldexp(pages.texels_per_unit, exponent);
   return scale > 0 ? scale : 1;
@@ -333,15 +342,15 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   });
   Mapped mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
-  const OpenedSurface& opened = mapped.opened;
+  OpenedSurface& opened = mapped.opened;
   std::vector<MappedChart>& maps = mapped.maps;
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
-    const std::vector<double> scales =
-        scale_by_density(input.densities, admitted, opened.charts, maps);
+    std::vector<double> scales = scale_by_density(input.densities, admitted, opened.charts, maps);
     double page_scale = 1;
     if (options.pack && input.pins.empty()) {
-      page_scale = pack_onto_pages(opened, exponent, options, maps, inner, atlas);
+      page_scale =
+          pack_onto_pages(admitted, exponent, options, {opened.charts, maps, scales}, inner, atlas);
       numbers.exponent = 0;
     } else {
       numbers.exponent =

@@ -52,6 +52,9 @@ struct AtlasOptions {
   /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
   /// pins: they lie side by side in that unit.
   std::optional<PackOptions> pack = {};
+  /// Seams that charts are split along for the sake of the pages: their length, in roots of the
+  /// area, that all of the utilisation is worth; 0: none. Without texels per unit alone.
+  double split_price = 0;
   bool unit_square = false;  ///< scale what is not packed by a power of two into the unit square
   bool float32 = false;      ///< deliver single-precision numbers
 };
@@ -60,8 +63,8 @@ struct ChartInfo {
   Index faces = 0;
   Index first_face = 0;  ///< of the input, the least one
   double area = 0;       ///< of the surface, in the input's unit squared
-  double density = 1;    ///< lengths in the plane were scaled by it: the mean of its faces, or
-                         ///< what its pins ask for
+  double density = 1;    ///< lengths in the plane were scaled by it: the mean of its faces, those
+                         ///< included that were split off, or what its pins ask for
   bool pinned = false;
   Eigen::AlignedBox2d box;  ///< of its UVs, on its page
   Outcome outcome = Outcome::kOk;

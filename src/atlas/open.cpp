@@ -29,18 +29,6 @@ constexpr double kLevel = 4;
 /// Above this share of the faces of a chart it is simplified from the start.
 constexpr double kWorthInheriting = 0.5;
 
-/// Whether an edge lies inside a polygon: not where a side of it meets another side of the same.
-bool is_inside(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin) {
-  const auto is_diagonal = [&](Index of) {
-    if (polygons.diagonals.empty()) return true;
-    const Index face = of / 3;
-    const int k = admitted.reversed[face] ? 2 - of % 3 : of % 3;
-    return (polygons.diagonals[admitted.input_face[face]] >> k & 1) != 0;
-  };
-  const auto polygon = [&](Index of) { return polygons.polygon[admitted.input_face[of / 3]]; };
-  return polygon(h) == polygon(twin) && is_diagonal(h) && is_diagonal(twin);
-}
-
 /// The surface with what is given cut, but for the inside of polygons.
 SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, const PolygonParts& polygons,
                   const Work& work) {
@@ -48,7 +36,8 @@ SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, const Polygon
   std::vector<Index> twin = admitted.surface.twin;
   for (Index h = 0; h < size_of(twin); ++h) {
     if (!marks[h] || twin[h] == kNone) continue;
-    if (polygons.polygon.empty() || !is_inside(admitted, polygons, h, admitted.surface.twin[h])) {
+    if (polygons.polygon.empty() ||
+        !is_inside_polygon(admitted, polygons, h, admitted.surface.twin[h])) {
       twin[h] = kNone;
     }
   }
@@ -66,7 +55,7 @@ EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
     for (Index h = 0; h < 3 * filled.real_faces; ++h) {
       const Index twin = surface.twin[h];
       if (twin == kNone || twin >= 3 * filled.real_faces) continue;
-      if (is_inside(admitted, polygons, h, twin)) locked[h] = true;
+      if (is_inside_polygon(admitted, polygons, h, twin)) locked[h] = true;
     }
   }
   for (Index v = filled.real_vertices; v < surface.vertex_count(); ++v) {
@@ -173,6 +162,18 @@ std::vector<std::vector<Index>> inherited_collapses(const Surface& surface,
 }
 
 }  // namespace
+
+bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h,
+                       Index twin) {
+  const auto is_diagonal = [&](Index of) {
+    if (polygons.diagonals.empty()) return true;
+    const Index face = of / 3;
+    const int k = admitted.reversed[face] ? 2 - of % 3 : of % 3;
+    return (polygons.diagonals[admitted.input_face[face]] >> k & 1) != 0;
+  };
+  const auto polygon = [&](Index of) { return polygons.polygon[admitted.input_face[of / 3]]; };
+  return polygon(h) == polygon(twin) && is_diagonal(h) && is_diagonal(twin);
+}
 
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
   Index first = admitted.input_face[chart.chart.input_face[0]];

@@ -55,6 +55,10 @@ struct PolygonParts {
                                             ///< none: all are that lie between two of its faces
 };
 
+/// Whether an edge of the surface, by its half-edges, lies inside a polygon: not where a side of it
+/// meets another side of the same. Precondition: polygons are given.
+bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin);
+
 /// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
 /// the root of their component's area, and cuts what there is then along the seams that are
 /// searched for `target`, or without one what is no disk along a short cut graph. The search goes

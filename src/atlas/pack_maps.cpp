@@ -10,24 +10,6 @@
 namespace beltrami {
 namespace {
 
-/// The real faces of a map, on the vertices that they use.
-PackChart real_part(const AtlasChart& part, const std::vector<Vec2>& uvs) {
-  PackChart chart;
-  const std::vector<Triangle>& faces = part.chart.mesh.faces;
-  chart.faces.assign(faces.begin(), faces.begin() + part.real_faces);
-  std::vector<Index> number(uvs.size(), kNone);
-  for (Triangle& face : chart.faces) {
-    for (Index& v : face) {
-      if (number[v] == kNone) {
-        number[v] = size_of(chart.points);
-        chart.points.push_back(uvs[v]);
-      }
-      v = number[v];
-    }
-  }
-  return chart;
-}
-
 /// All charts in one list of faces, for their margin.
 double margin_of(const std::vector<AtlasChart>& charts, const std::vector<MappedChart>& maps,
                  const std::vector<Index>& page_of_chart, int resolution, const Work& work) {
@@ -48,6 +30,23 @@ double margin_of(const std::vector<AtlasChart>& charts, const std::vector<Mapped
 }
 
 }  // namespace
+
+PackChart real_part(const AtlasChart& part, const std::vector<Vec2>& uvs) {
+  PackChart chart;
+  const std::vector<Triangle>& faces = part.chart.mesh.faces;
+  chart.faces.assign(faces.begin(), faces.begin() + part.real_faces);
+  std::vector<Index> number(uvs.size(), kNone);
+  for (Triangle& face : chart.faces) {
+    for (Index& v : face) {
+      if (number[v] == kNone) {
+        number[v] = size_of(chart.points);
+        chart.points.push_back(uvs[v]);
+      }
+      v = number[v];
+    }
+  }
+  return chart;
+}
 
 Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& options, bool float32,
                 std::vector<MappedChart>& maps, const Work& work) {

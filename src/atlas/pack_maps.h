@@ -11,6 +11,9 @@
 
 namespace beltrami {
 
+/// The real faces of a map, on the vertices that they use.
+PackChart real_part(const AtlasChart& chart, const std::vector<Vec2>& uvs);
+
 /// Moves every map by a rigid motion of its own and scales all of them alike, onto pages (tile_of)
 /// in the numbers delivered. What rounding would fold is mended, and outcomes say where it cannot
 /// be; the margin asked for holds then, too. On further pages than the first one numbers are single

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,13 @@ inline Vec2 tile_of(Index page) {
   return {static_cast<double>(column), static_cast<double>(row)};
 }
 
+/// What charts were split for.
+struct SplitFigures {
+  double before = 0;  ///< the utilisation of the charts whole
+  Index count = 0;    ///< splits: each makes two of one
+  double length = 0;  ///< of their seams, in roots of the surface's area
+};
+
 /// Charts on their pages.
 struct Pages {
   int count = 0;
@@ -30,6 +38,7 @@ struct Pages {
   double utilisation = 0;                ///< area of the UVs over that of the pages
   std::vector<double> page_utilisation;  ///< of each page
   std::vector<Index> page_of_chart;
+  std::optional<SplitFigures> split;  ///< where splits were asked for
 };
 
 /// Packs charts, and again with more room between them as long as the margin that `deliver` returns

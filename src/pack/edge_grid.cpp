@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kLeastCell = 4;             // texels
 constexpr std::int64_t kMostPerSide = 4096;  // cells
+/// Cells of all pages up to which each has its list, those without an edge included.
+constexpr std::int64_t kMostInARow = 1 << 20;
 
 }  // namespace
 
@@ -30,9 +32,11 @@ EdgeGrid::EdgeGrid(const std::vector<PlacedOutline>& charts, double reach) {
     ChartEdge edge;
   };
   std::vector<Entry> entries;
+  std::int64_t pages = 0;
   for (Index c = 0; c < size_of(charts); ++c) {
     poll_interrupt();
     const PlacedOutline& chart = charts[c];
+    pages = std::max<std::int64_t>(pages, chart.page + 1);
     for (Index e = 0; e < size_of(chart.edges); ++e) {
       const Vec2 &p = chart.points[chart.edges[e][0]], &q = chart.points[chart.edges[e][1]];
       const int pieces = static_cast<int>((q - p).norm() / cell_) + 1;
@@ -51,7 +55,17 @@ EdgeGrid::EdgeGrid(const std::vector<PlacedOutline>& charts, double reach) {
       }
     }
   }
-  // By chart and edge in each cell, as they have come.
+  const std::int64_t cells = pages * rows_ * columns_;
+  if (cells <= kMostInARow) {
+    // By chart and edge in each cell, as they have come.
+    start_.assign(static_cast<std::size_t>(cells) + 1, 0);
+    for (const Entry& entry : entries) ++start_[entry.cell + 1];
+    for (std::int64_t k = 0; k < cells; ++k) start_[k + 1] += start_[k];
+    std::vector<Index> next(start_.begin(), start_.end() - 1);
+    edges_.resize(entries.size());
+    for (const Entry& entry : entries) edges_[next[entry.cell]++] = entry.edge;
+    return;
+  }
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& a, const Entry& b) { return a.cell < b.cell; });
   edges_.reserve(entries.size());
@@ -74,6 +88,10 @@ std::int64_t EdgeGrid::cell_of(Index page, const Vec2& place) const {
 
 std::span<const ChartEdge> EdgeGrid::near(Index page, const Vec2& place) const {
   const std::int64_t cell = cell_of(page, place);
+  if (cells_.empty()) {
+    if (page < 0 || cell + 1 >= size_of(start_)) return {};
+    return std::span(edges_).subspan(start_[cell], start_[cell + 1] - start_[cell]);
+  }
   const auto found = std::lower_bound(cells_.begin(), cells_.end(), cell);
   if (found == cells_.end() || *found != cell) return {};
   const auto k = static_cast<std::size_t>(found - cells_.begin());

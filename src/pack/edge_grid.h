@@ -29,8 +29,8 @@ class EdgeGrid {
   Vec2 low_{0, 0};
   double cell_ = 1;
   std::int64_t columns_ = 1, rows_ = 1;
-  std::vector<std::int64_t> cells_;  // that have edges, increasing
-  std::vector<Index> start_;         // per such cell its first edge, and one more
+  std::vector<std::int64_t> cells_;  // that have edges, increasing; empty: all have a list
+  std::vector<Index> start_;         // per cell its first edge, and one more
   std::vector<ChartEdge> edges_;
 };
 

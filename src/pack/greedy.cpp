@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "base/interrupt.h"
 
@@ -33,7 +32,7 @@ class Floor {
 
 /// A place and what it is worth: less is better.
 struct Candidate {
-  int cost = std::numeric_limits<int>::max(), second = 0;
+  int cost = kNoLimit + 1, second = 0;
   Spot spot;
 
   bool found() const { return spot.page != kNone; }
@@ -80,8 +79,9 @@ void look_corner(const Page& page, const Mask& mask, int from, Spot spot, std::i
 }
 
 Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index index, Rule rule,
-                     int from, int forced, std::int64_t& steps) {
+                     int from, int forced, int limit, std::int64_t& steps) {
   Candidate best;
+  best.cost = limit + 1;
   for (int turn = 0; turn < static_cast<int>(masks.size()); ++turn) {
     if (forced != kNone && turn != forced) continue;
     const Mask& mask = masks[turn];
@@ -100,7 +100,7 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
 }  // namespace
 
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
-                      std::vector<Page> pages, const Page& empty, int max_pages) {
+                      std::vector<Page> pages, const Page& empty, int max_pages, int limit) {
   Layout layout;
   layout.steps = empty.height() * kStepsPerRow;
   layout.spots.resize(masks.size());
@@ -127,7 +127,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
       const int forced = plan.turns.empty() ? kNone : plan.turns[chart];
       const int from = many ? floors[p].row() : 0;
       const bool was_empty = pages[p].empty();
-      spot = best_place(pages[p], masks[chart], p, rule, from, forced, layout.steps).spot;
+      spot = best_place(pages[p], masks[chart], p, rule, from, forced, limit, layout.steps).spot;
       floors[p].found(spot.page == kNone ? pages[p].height() : spot.y);
       if (was_empty && spot.page == kNone) break;  // it is too large for any page
     }

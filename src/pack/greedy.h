@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/types.h"
@@ -36,10 +37,15 @@ struct Plan {
   std::vector<int> turns;  ///< per chart the mask that is taken, or kNone: the best; empty: all so
 };
 
+/// Nothing is placed further than so many cells from the corner, by what its rule looks at: no
+/// limit but the page.
+inline constexpr int kNoLimit = std::numeric_limits<int>::max() - 1;
+
 /// Places the charts of a plan in its order, each on the first of the pages that has room for it:
 /// those given, which may have taken cells, and up to `max_pages` copies of `empty`. `masks` are
 /// per chart, one for each turn; a chart without any gets page 0.
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
-                      std::vector<Page> pages, const Page& empty, int max_pages);
+                      std::vector<Page> pages, const Page& empty, int max_pages,
+                      int limit = kNoLimit);
 
 }  // namespace beltrami

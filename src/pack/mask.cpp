@@ -1,9 +1,11 @@
 #include "pack/mask.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "pack/pack.h"
 
@@ -35,6 +37,14 @@ class Bits {
       const int low = std::max(begin - w * kBits, 0), high = std::min(end - w * kBits, kBits);
       words[w] |= (high == kBits ? ~Word{0} : (Word{1} << high) - 1) & (~Word{0} << low);
     }
+  }
+
+  /// 64 cells of a row, from the word `w` of it; none beyond.
+  Word word(int row, int w) const {
+    return row < height_ ? bits_[static_cast<std::size_t>(row) * words_ + w] : 0;
+  }
+  void set_word(int row, int w, Word word) {
+    if (row < height_) bits_[static_cast<std::size_t>(row) * words_ + w] = word;
   }
 
   /// The next cell of a row from `from` on that is set, or not; the width where there is none.
@@ -112,7 +122,8 @@ void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2
     double x;
     int turn;
   };
-  std::vector<Crossing> crossings;
+  std::vector<Crossing> found;
+  std::vector<std::size_t> start(static_cast<std::size_t>(bits.height()) + 1, 0);
   for (const auto& [from, to] : edges) {
     const Vec2 &p = points[from], &q = points[to];
     const double low = std::min(p.y(), q.y()), high = std::max(p.y(), q.y());
@@ -121,50 +132,56 @@ void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2
     const double last = std::min<double>(bits.height(), std::ceil(high - 0.5));
     for (double row = first; row < last; ++row) {
       const double share = (row + 0.5 - p.y()) / (q.y() - p.y());
-      crossings.push_back(
+      found.push_back(
           {static_cast<int>(row), p.x() + share * (q.x() - p.x()), q.y() > p.y() ? -1 : 1});
+      ++start[static_cast<std::size_t>(row) + 1];
     }
   }
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return a.row != b.row ? a.row < b.row : a.x < b.x;
-  });
-  int winding = 0;
-  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-    const Crossing &here = crossings[i], &next = crossings[i + 1];
-    winding += here.turn;
-    if (here.row != next.row) {
-      winding = 0;
-    } else if (winding != 0) {
-      bits.set(here.row, std::ceil(here.x - 0.5), std::floor(next.x - 0.5));
+  for (std::size_t row = 1; row < start.size(); ++row) start[row] += start[row - 1];
+  std::vector<Crossing> crossings(found.size());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  for (const Crossing& crossing : found) crossings[next[crossing.row]++] = crossing;
+  for (int row = 0; row < bits.height(); ++row) {
+    Crossing* const of_row = crossings.data() + start[row];
+    const std::size_t count = start[row + 1] - start[row];
+    std::sort(of_row, of_row + count,
+              [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    int winding = 0;
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+      winding += of_row[i].turn;
+      if (winding == 0) continue;
+      bits.set(row, std::ceil(of_row[i].x - 0.5), std::floor(of_row[i + 1].x - 0.5));
     }
   }
 }
 
-/// The longest run first; then rows far from those before them, where the next obstacle may be.
+/// The longest run first; then rows far from those before them, where the next obstacle may be: in
+/// the sequence of van der Corput, by their bits reversed. Longer runs of a row come first.
 std::vector<int> probes_of(const Mask& mask) {
-  struct Probe {
-    std::uint32_t key;
-    int length, run;
-  };
   const auto length = [&](int r) { return mask.runs[r].end - mask.runs[r].begin; };
-  std::vector<Probe> probes;
+  const int count = static_cast<int>(mask.runs.size());
+  std::vector<int> start(static_cast<std::size_t>(mask.height) + 1, 0), order;
   int longest = 0;
-  for (int r = 0; r < static_cast<int>(mask.runs.size()); ++r) {
+  for (int r = 0; r < count; ++r) {
+    ++start[mask.runs[r].row + 1];
     if (length(r) > length(longest)) longest = r;
-    // The row's bits reversed: the sequence of van der Corput.
-    std::uint32_t key = 0;
-    for (int bit = 0; bit < 16; ++bit) key |= (mask.runs[r].row >> bit & 1) << (15 - bit);
-    probes.push_back({key, length(r), r});
   }
-  if (!probes.empty()) probes[longest].length = 1 << 30;
-  std::sort(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
-    const bool first_a = a.length == 1 << 30, first_b = b.length == 1 << 30;
-    if (first_a != first_b) return first_a;
-    if (a.key != b.key) return a.key < b.key;
-    return a.length != b.length ? a.length > b.length : a.run < b.run;
-  });
-  std::vector<int> order;
-  for (const Probe& probe : probes) order.push_back(probe.run);
+  if (count == 0) return order;
+  for (int row = 0; row < mask.height; ++row) start[row + 1] += start[row];
+  order.reserve(mask.runs.size());
+  order.push_back(longest);
+  const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(mask.height - 1)));
+  for (int i = 0; i < 1 << bits; ++i) {
+    int row = 0;
+    for (int bit = 0; bit < bits; ++bit) row |= (i >> bit & 1) << (bits - 1 - bit);
+    if (row >= mask.height) continue;
+    const std::size_t first = order.size();
+    for (int r = start[row]; r < start[row + 1]; ++r) {
+      if (r != longest) order.push_back(r);
+    }
+    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
+              [&](int a, int b) { return length(a) != length(b) ? length(a) > length(b) : a < b; });
+  }
   return order;
 }
 
@@ -227,6 +244,46 @@ void read_runs(const Bits& bits, Mask& mask) {
   }
 }
 
+/// Rows become columns (Warren, "Hacker's Delight", 7-3): bit j of word i that of i of j.
+void transpose(std::array<Word, kBits>& block) {
+  Word mask = 0x00000000ffffffff;
+  for (int half = kBits / 2; half > 0; half /= 2, mask ^= mask << half) {
+    for (int i = 0; i < kBits; i = (i + half + 1) & ~half) {
+      const Word swapped = (block[i] >> half ^ block[i + half]) & mask;
+      block[i] ^= swapped << half;
+      block[i + half] ^= swapped;
+    }
+  }
+}
+
+/// Column x of the bits from below is row x of the result.
+Bits transposed(const Bits& bits) {
+  Bits result(bits.height(), bits.width());
+  std::array<Word, kBits> block;
+  for (int y = 0; y < bits.height(); y += kBits) {
+    for (int x = 0; x < bits.width(); x += kBits) {
+      for (int k = 0; k < kBits; ++k) block[k] = bits.word(y + k, x / kBits);
+      transpose(block);
+      for (int k = 0; k < kBits; ++k) result.set_word(x + k, y / kBits, block[k]);
+    }
+  }
+  return result;
+}
+
+/// The runs of mirrored rows.
+void mirror_runs(Mask& mask) {
+  std::vector<Run> runs;
+  runs.reserve(mask.runs.size());
+  for (std::size_t first = 0, end = 0; first < mask.runs.size(); first = end) {
+    const int row = mask.runs[first].row;
+    while (end < mask.runs.size() && mask.runs[end].row == row) ++end;
+    for (std::size_t r = end; r-- > first;) {
+      runs.push_back({row, mask.width - mask.runs[r].end, mask.width - mask.runs[r].begin});
+    }
+  }
+  mask.runs = std::move(runs);
+}
+
 std::vector<Vec2> turned(const std::vector<Vec2>& points, const Vec2& turn, double density) {
   const Placement placement{0, turn, Vec2::Zero()};
   std::vector<Vec2> places;
@@ -276,6 +333,26 @@ Mask mask_of(const Outline& outline, const Vec2& turn, double density, double ra
   mask.probes = probes_of(mask);
   mask.squares = squares_of(mask);
   return mask;
+}
+
+Mask quarter_turned(const Mask& mask) {
+  Mask turned;
+  turned.width = mask.height;
+  turned.height = mask.width;
+  turned.cells = mask.cells;
+  turned.origin = {mask.height - mask.origin.y(), mask.origin.x()};
+  if (mask.runs.empty()) return turned;  // too large a one
+  Bits bits(mask.width, mask.height);
+  for (const Run& run : mask.runs) bits.set(run.row, run.begin, run.end - 1);
+  turned.cells = 0;
+  read_runs(transposed(bits), turned);
+  mirror_runs(turned);
+  turned.probes = probes_of(turned);
+  for (const Square& square : mask.squares) {
+    turned.squares.push_back(
+        {mask.height - square.y - (1 << square.level), square.x, square.level});
+  }
+  return turned;
 }
 
 Mask mask_at(const Outline& outline, const Vec2& turn, double density, double radius,

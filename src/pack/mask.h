@@ -35,6 +35,10 @@ struct Mask {
 /// Of one with more than `most` cells per side there is the size alone, that or a greater one.
 Mask mask_of(const Outline& outline, const Vec2& turn, double density, double radius, int most);
 
+/// The mask turned by 90 degrees about the origin of the chart, which touches what was its lower
+/// side on the right, and by less than a cell not its lower one.
+Mask quarter_turned(const Mask& mask);
+
 /// Likewise, with the chart's origin at `origin` (cells); of cells [0, cells)^2 alone. The mask's
 /// box is these, and its runs are where they are.
 Mask mask_at(const Outline& outline, const Vec2& turn, double density, double radius,

@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "pack/outline.h"
 #include "pack/problem.h"
 #include "pack/search.h"
 
@@ -48,14 +51,9 @@ void check(std::span<const PackChart> charts, const PackOptions& options) {
   }
 }
 
-}  // namespace
-
-Packing pack_charts(std::span<const PackChart> charts, const PackOptions& options,
-                    const Work& work) {
-  check(options);
-  check(charts, options);
-  if (charts.empty()) return {};
-  const Problem problem(charts, options, work);
+Packing pack(std::span<const PackChart> charts, std::vector<Outline> outlines,
+             const PackOptions& options, const Work& work) {
+  const Problem problem(charts, std::move(outlines), options, work);
   Index longest = 0;
   for (Index c = 1; c < problem.size(); ++c) {
     if (problem.length(c) > problem.length(longest)) longest = c;
@@ -64,6 +62,27 @@ Packing pack_charts(std::span<const PackChart> charts, const PackOptions& option
   const double given = problem.length(longest) > 0 ? options.texels_per_unit : 1;
   Packed packed = given > 0 ? pack_at_density(problem, given) : pack_at_largest(problem);
   return problem.packing(std::move(packed.placements), packed.texels_per_unit);
+}
+
+}  // namespace
+
+Packing pack_charts(std::span<const PackChart> charts, const PackOptions& options,
+                    const Work& work) {
+  check(options);
+  check(charts, options);
+  if (charts.empty()) return {};
+  std::vector<Outline> outlines(charts.size());
+  parallel_for(work, size_of(outlines), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) outlines[c] = outline_of(charts[c]);
+  });
+  return pack(charts, std::move(outlines), options, work);
+}
+
+Packing pack_outlines(std::vector<Outline> outlines, const PackOptions& options, const Work& work) {
+  check(options);
+  if (outlines.empty()) return {};
+  const std::vector<PackChart> charts(outlines.size());
+  return pack(charts, std::move(outlines), options, work);
 }
 
 }  // namespace beltrami

@@ -58,4 +58,10 @@ struct Packing {
 Packing pack_charts(std::span<const PackChart> charts, const PackOptions& options,
                     const Work& work);
 
+struct Outline;
+
+/// Likewise for charts of which the outlines are known, all of one scale. What many packings are
+/// made of need not be found again for each.
+Packing pack_outlines(std::vector<Outline> outlines, const PackOptions& options, const Work& work);
+
 }  // namespace beltrami

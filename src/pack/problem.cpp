@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -43,16 +44,16 @@ double greatest_density(const PackOptions& options, double area) {
 
 }  // namespace
 
-Problem::Problem(std::span<const PackChart> charts, const PackOptions& options, const Work& work)
+Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outlines,
+                 const PackOptions& options, const Work& work)
     : charts_(charts),
       options_(options),
       work_(work),
-      outlines_(charts.size()),
+      outlines_(std::move(outlines)),
       base_(charts.size(), Vec2(1, 0)) {
   parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t c = begin; c < end; ++c) {
-      outlines_[c] = outline_of(charts_[c]);
-      if (options_.turns > 4) base_[c] = turn_to_least_box(outlines_[c].hull);
+    for (std::int64_t c = begin; c < end && options_.turns > 4; ++c) {
+      base_[c] = turn_to_least_box(outlines_[c].hull);
     }
   });
   turns_ = options.turns;
@@ -100,7 +101,12 @@ Masks Problem::masks(double texels_per_unit) const {
     for (auto c = static_cast<Index>(begin); c < end; ++c) {
       if (charts_[c].kept || outlines_[c].edges.empty()) continue;
       const double density = texels_per_unit * charts_[c].scale / cell_;
+      const int quarter = turns_ % 4 == 0 ? turns_ / 4 : turns_;
       for (int k = 0; k < turns_; ++k) {
+        if (k >= quarter) {
+          masks[c].push_back(quarter_turned(masks[c][k - quarter]));
+          continue;
+        }
         masks[c].push_back(mask_of(thinned_[c], turn(c, k), density, radius() / cell_ + kThin,
                                    kMostOfPage * cells_));
       }

@@ -19,7 +19,8 @@ using Masks = std::vector<std::vector<Mask>>;  // per chart, per turn
 /// Keeps the references. Precondition: options in range.
 class Problem {
  public:
-  Problem(std::span<const PackChart> charts, const PackOptions& options, const Work& work);
+  Problem(std::span<const PackChart> charts, std::vector<Outline> outlines,
+          const PackOptions& options, const Work& work);
 
   Index size() const { return static_cast<Index>(charts_.size()); }
   const PackOptions& options() const { return options_; }

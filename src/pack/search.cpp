@@ -17,8 +17,8 @@ namespace beltrami {
 namespace {
 
 /// Words of masks and pages that the search for a better order may look at, at an effort of one:
-/// about a second.
-constexpr double kSteps = 2e8;
+/// about half a second.
+constexpr double kSteps = 1.6e8;
 
 /// Charts up to which orders are searched for.
 constexpr Index kMostToOrder = 600;
@@ -101,9 +101,10 @@ class OnePage {
     auto operator<=>(const Cost&) const = default;
   };
 
-  Layout lay(const Plan& plan, Rule rule) {
+  /// A plan that takes more than `limit` cells fails: the sooner, the less it costs.
+  Layout lay(const Plan& plan, Rule rule, int limit = kNoLimit) {
     const Page& page = rule == Rule::kLowest ? strip_ : square_;
-    Layout layout = place_in_order(masks_, plan, rule, {}, page, 1);
+    Layout layout = place_in_order(masks_, plan, rule, {}, page, 1, limit);
     steps_ += layout.steps;
     return layout;
   }
@@ -176,7 +177,7 @@ class OnePage {
       if (steps_ >= budget || count < 2 || problem_.work().out_of_time()) return;
       Plan tried = plan;
       const Rule rule_tried = change(numbers, tried) ? rule : other_of(rule);
-      const Layout layout = lay(tried, rule_tried);
+      const Layout layout = lay(tried, rule_tried, current.side);
       const Cost found = cost(layout);
       if (current < found) continue;
       if (found < current) misses = 0;

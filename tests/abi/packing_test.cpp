@@ -174,6 +174,42 @@ TEST(AbiPacking, OptionsOfPagesWantPages) {
   EXPECT_EQ(beltrami_get_packing(context.get(), &packing), BELTRAMI_E_INVALID_STATE);
 }
 
+TEST(AbiPacking, SplitsChartsAtAPrice) {
+  TriangleList mesh = meshes::grid(40, 2);
+  for (Vec3& p : mesh.positions) p.x() *= 20;
+  const Context context = create();
+  const beltrami_surface surface = surface_view(mesh);
+  ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
+  const beltrami_packing whole = packing_of(context);
+  EXPECT_EQ(whole.splits, 0u);
+  EXPECT_EQ(whole.split_length, 0);
+  EXPECT_EQ(whole.unsplit_utilisation, whole.utilisation);
+  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_PACK_SPLITS, 20), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
+  const beltrami_packing packing = packing_of(context);
+  EXPECT_GT(packing.splits, 0u);
+  EXPECT_EQ(packing.charts, 1 + packing.splits);
+  EXPECT_NEAR(packing.unsplit_utilisation, whole.utilisation, 1e-9);
+  EXPECT_GE(20 * (packing.utilisation - packing.unsplit_utilisation), packing.split_length);
+  auto atlas = sized<beltrami_atlas>();
+  ASSERT_EQ(beltrami_get_atlas(context.get(), &atlas), BELTRAMI_OK);
+  EXPECT_NEAR(atlas.seam_length / std::sqrt(atlas.area), packing.split_length, 1e-9);
+  EXPECT_GT(atlas.seams, 0u);
+
+  const auto refused = [&](std::int32_t key, std::int64_t value, const char* where) {
+    set_option(context, key, value);
+    EXPECT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr),
+              BELTRAMI_E_INVALID_ARGUMENT);
+    EXPECT_NE(message(context).find("pack-splits=20 has no effect with " + std::string(where)),
+              std::string::npos)
+        << message(context);
+  };
+  refused(BELTRAMI_OPTION_PACK, BELTRAMI_PACK_NONE, "pack=none");
+  set_option(context, BELTRAMI_OPTION_PACK, BELTRAMI_PACK_PAGES);
+  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 8), BELTRAMI_OK);
+  refused(BELTRAMI_OPTION_MAX_PAGES, 9, "texels-per-unit=8");
+}
+
 TEST(AbiPacking, PacksSeveralMeshes) {
   const Confetti one(5), other(7);
   const Context context = create();

@@ -199,7 +199,8 @@ enum {
   BELTRAMI_OPTION_TEXELS_PER_UNIT = 33, /* float: density; 0: the greatest that fits */
   BELTRAMI_OPTION_MAX_PAGES = 34,       /* int: 0: one, or with a density as many as it takes */
   BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_PACK_TURNS_ */
-  BELTRAMI_OPTION_PACK_BLOCK = 36       /* int: charts share no block of so many texels a side */
+  BELTRAMI_OPTION_PACK_BLOCK = 36,      /* int: charts share no block of so many texels a side */
+  BELTRAMI_OPTION_PACK_SPLITS = 37      /* float: seam length that more utilisation is worth; 0 */
 };
 
 /* Where the charts of an atlas lie. */
@@ -852,6 +853,10 @@ typedef struct beltrami_packing {
                            * the edges of pages, in the numbers that are delivered */
   double seconds;         /* wall time of the call */
   double cpu_seconds;     /* of the whole process during the call */
+  uint64_t splits;        /* of charts in two, with the option pack-splits */
+  double split_length;    /* of the seams of those, in roots of the surface's area */
+  double unsplit_utilisation; /* that the charts have without them; `utilisation` where there are
+                               * none */
 } beltrami_packing;
 
 /* The functions below speak of what was packed last, by beltrami_pack or beltrami_unwrap. They fail

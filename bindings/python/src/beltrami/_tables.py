@@ -81,6 +81,7 @@ class UnwrapOptions(TypedDict, total=False):
     max_pages: int
     pack_turns: PackTurnsChoice
     pack_block: int
+    pack_splits: float
 
 
 class PackOptions(TypedDict, total=False):
@@ -464,6 +465,12 @@ class PackingReport:
         Wall time of the call.
     cpu_seconds : float
         Of the whole process during the call.
+    splits : int
+        Of charts in two, with the option pack-splits.
+    split_length : float
+        Of the seams of those, in roots of the surface's area.
+    unsplit_utilisation : float
+        That the charts have without them; `utilisation` where there are none.
     """
 
     charts: int
@@ -475,3 +482,6 @@ class PackingReport:
     margin: float
     seconds: float
     cpu_seconds: float
+    splits: int
+    split_length: float
+    unsplit_utilisation: float

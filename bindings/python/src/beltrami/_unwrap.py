@@ -117,6 +117,7 @@ def unwrap(
     max_pages: int = 0,
     pack_turns: PackTurnsChoice = "any",
     pack_block: int = 1,
+    pack_splits: float = 0.0,
     # end of options
     progress: Progress = None,
 ) -> Any:
@@ -287,6 +288,10 @@ def unwrap(
     pack_block : int, default 1
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.
+    pack_splits : float, default 0.0
+        Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
+        chart is split in two where a tenth of the root of the area lets a hundredth more of the
+        pages be filled; 0 splits none. A number from 0 to 1,000,000,000.
 
     Returns
     -------
@@ -350,6 +355,7 @@ def unwrap(
         "max_pages": max_pages,
         "pack_turns": pack_turns,
         "pack_block": pack_block,
+        "pack_splits": pack_splits,
         # end of options
     }
     if faces is None and isinstance(vertices, (str, os.PathLike)):

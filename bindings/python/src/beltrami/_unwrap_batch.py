@@ -66,6 +66,7 @@ def unwrap_batch(
     max_pages: int = 0,
     pack_turns: PackTurnsChoice = "any",
     pack_block: int = 1,
+    pack_splits: float = 0.0,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -231,6 +232,10 @@ def unwrap_batch(
     pack_block : int, default 1
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.
+    pack_splits : float, default 0.0
+        Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
+        chart is split in two where a tenth of the root of the area lets a hundredth more of the
+        pages be filled; 0 splits none. A number from 0 to 1,000,000,000.
 
     Returns
     -------
@@ -288,6 +293,7 @@ def unwrap_batch(
         "max_pages": max_pages,
         "pack_turns": pack_turns,
         "pack_block": pack_block,
+        "pack_splits": pack_splits,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -201,6 +201,8 @@ pub const BELTRAMI_OPTION_MAX_PAGES: _bindgen_ty_3 = 34;
 pub const BELTRAMI_OPTION_PACK_TURNS: _bindgen_ty_3 = 35;
 /// int: charts share no block of so many texels a side
 pub const BELTRAMI_OPTION_PACK_BLOCK: _bindgen_ty_3 = 36;
+/// float: seam length that more utilisation is worth; 0
+pub const BELTRAMI_OPTION_PACK_SPLITS: _bindgen_ty_3 = 37;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /** On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
@@ -1742,11 +1744,18 @@ pub struct beltrami_packing {
     pub seconds: f64,
     /// of the whole process during the call
     pub cpu_seconds: f64,
+    /// of charts in two, with the option pack-splits
+    pub splits: u64,
+    /// of the seams of those, in roots of the surface's area
+    pub split_length: f64,
+    /** that the charts have without them; `utilisation` where there are
+ none*/
+    pub unsplit_utilisation: f64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_packing"][::core::mem::size_of::<beltrami_packing>() - 80usize];
+    ["Size of beltrami_packing"][::core::mem::size_of::<beltrami_packing>() - 104usize];
     [
         "Alignment of beltrami_packing",
     ][::core::mem::align_of::<beltrami_packing>() - 8usize];
@@ -1783,6 +1792,15 @@ const _: () = {
     [
         "Offset of field: beltrami_packing::cpu_seconds",
     ][::core::mem::offset_of!(beltrami_packing, cpu_seconds) - 72usize];
+    [
+        "Offset of field: beltrami_packing::splits",
+    ][::core::mem::offset_of!(beltrami_packing, splits) - 80usize];
+    [
+        "Offset of field: beltrami_packing::split_length",
+    ][::core::mem::offset_of!(beltrami_packing, split_length) - 88usize];
+    [
+        "Offset of field: beltrami_packing::unsplit_utilisation",
+    ][::core::mem::offset_of!(beltrami_packing, unsplit_utilisation) - 96usize];
 };
 extern "C" {
     /// Counts, density, margin and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.

@@ -505,4 +505,15 @@ options! {
     pack_block(u32) of [UnwrapOptions PackOptions] = 36 "pack-block"
         "Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin."
         Int(&[]), 1..=64, default 1, calls 6;
+
+    /// Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
+    /// chart is split in two where a tenth of the root of the area lets a hundredth more of the
+    /// pages be filled; 0 splits none.
+    ///
+    /// From 0 to 1000000000.
+    ///
+    /// Default: 0.
+    pack_splits(f64) of [UnwrapOptions] = 37 "pack-splits"
+        "Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none."
+        Float(&[]), 0..=1000000000, default 0, calls 2;
 }

@@ -1,0 +1,378 @@
+#include "atlas/split_necks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "atlas/measure.h"
+#include "atlas/pack_maps.h"
+#include "base/disjoint_sets.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "chart/flattening.h"
+#include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
+#include "cut/necks.h"
+#include "pack/outline.h"
+
+namespace beltrami {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Of a chart, in the lesser part: less is a crumb.
+constexpr double kLeastShare = 0.12;
+/// What paths differ by from the chords that they are near to.
+constexpr double kSpareShare = 0.01;
+/// Of all charts: what room a split is to free, to be looked at.
+constexpr double kLeastSaved = 0.005;
+/// Charts that are longer than a page this full are worth splitting for that alone.
+constexpr double kFull = 0.75;
+/// Of all charts: smaller ones are not split.
+constexpr double kLeastPiece = 0.01;
+/// Necks of a chart that are looked at.
+constexpr int kNecks = 3;
+/// Splits that are tried next to one another, in packings of so little effort.
+constexpr Index kTries = 4;
+constexpr double kEffort = 0.05;
+/// Borders in these are thinned by so many texels.
+constexpr double kThin = 0.25;
+/// Splits that may follow one another without a gain: one may pay only with the next.
+constexpr int kPatience = 2;
+constexpr Index kMostSplits = 64;
+/// Numbers of splits that are packed with all effort before none is made.
+constexpr int kWhole = 3;
+
+/// A chart, or a part of one.
+struct Piece {
+  AtlasChart chart;
+  MappedChart map;
+  double scale = 1;
+  Outline outline;
+  std::vector<Neck> necks;    // the best first
+  std::vector<bool> is_used;  // per neck
+};
+
+/// A piece that gives way to two.
+struct Split {
+  Index piece = kNone;
+  Index parts[2] = {kNone, kNone};
+  double cost = 0;
+};
+
+/// Whether real faces are connected by themselves.
+bool is_connected(const DiskMesh& mesh, Index real_faces) {
+  if (real_faces == 0) return false;
+  DisjointSets sets(real_faces);
+  for (Index f = 0; f < real_faces; ++f) sets.make(f);
+  Index parts = real_faces;
+  for (Index h = 0; h < 3 * real_faces; ++h) {
+    const Index other = mesh.twin[h] / 3;
+    if (mesh.twin[h] == kNone || other >= real_faces) continue;
+    parts -= sets.unite(h / 3, other) ? 1 : 0;
+  }
+  return parts == 1;
+}
+
+double utilisation_of(const std::vector<AtlasChart>& charts, const std::vector<MappedChart>& maps,
+                      const Pages& pages) {
+  double area = 0;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    for (Index f = 0; f < charts[c].real_faces; ++f) {
+      const auto& [i, j, k] = charts[c].chart.mesh.faces[f];
+      const Vec2 p = maps[c].uvs[j] - maps[c].uvs[i], q = maps[c].uvs[k] - maps[c].uvs[i];
+      area += 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
+    }
+  }
+  return area / pages.count;
+}
+
+/// A search for the splits that pay.
+class Splitter {
+ public:
+  Splitter(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
+           const SplitCharts& whole, const Work& work)
+      : admitted_(admitted), rules_(rules), options_(options), work_(work) {
+    options_.effort = kEffort;
+    double area = 0, covered = 0;
+    for (std::size_t c = 0; c < whole.charts.size(); ++c) {
+      pieces_.push_back({whole.charts[c], whole.maps[c], whole.scales[c], {}, {}, {}});
+      const DiskMesh& mesh = whole.charts[c].chart.mesh;
+      for (Index f = 0; f < whole.charts[c].real_faces; ++f) {
+        const auto& [i, j, k] = mesh.faces[f];
+        area += triangle_area(mesh.positions[i], mesh.positions[j], mesh.positions[k]);
+      }
+    }
+    whole_ = size_of(pieces_);
+    root_ = std::sqrt(area);
+    room_ = rules.seam_budget > 0
+                ? rules.seam_budget * root_ - seam_length(whole.charts, admitted.input_vertex)
+                : kFar;
+    parallel_for(work_, size_of(pieces_), 1, [&](std::int64_t p, std::int64_t) {
+      pieces_[p].outline = outline_of(real_part(pieces_[p].chart, pieces_[p].map.uvs));
+    });
+    for (const Piece& piece : pieces_) covered += piece.map.error ? 0 : piece.outline.area;
+    covered_ = covered;
+  }
+
+  /// The length of seams that is worth a gain of utilisation.
+  double worth(double utilisation) const { return rules_.price * root_ * utilisation; }
+
+  /// Finds splits in an order; `utilisation`: of all charts whole. Returns how many of the first
+  /// are best, by what they gain beyond their price, and others that gain, the better first.
+  std::vector<Index> find(double utilisation) {
+    if (!(covered_ > 0)) return {};
+    utilisation_ = utilisation;
+    density_ = std::sqrt(utilisation * options_.max_pages / covered_) * options_.resolution;
+    for (Index p = 0; p < size_of(pieces_); ++p) alive_.push_back(p);
+    parallel_for(work_, size_of(pieces_), 1,
+                 [&](std::int64_t p, std::int64_t) { prepare(pieces_[p]); });
+    const double before = sketched(alive_, work_);
+    std::vector<double> net{before};
+    std::size_t best = 0;
+    double cost = 0;
+    while (size_of(splits_) < kMostSplits && splits_.size() < best + kPatience + 1) {
+      if (work_.out_of_time() || !may_have_more()) break;
+      const std::optional<double> found = split_best(cost);
+      if (!found) break;
+      cost += splits_.back().cost;
+      net.push_back(*found - cost / worth(1));
+      if (net.back() > net[best]) best = net.size() - 1;
+    }
+    std::vector<Index> order;
+    for (Index k = 1; k < size_of(net); ++k) {
+      if (net[k] > before) order.push_back(k);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return net[a] > net[b]; });
+    return order;
+  }
+
+  /// The charts after the first `count` splits, by their least face.
+  void take(Index count, SplitCharts out) const {
+    std::vector<bool> is_there(pieces_.size(), false);
+    for (Index p = 0; p < whole_; ++p) is_there[p] = true;
+    for (Index s = 0; s < count; ++s) {
+      is_there[splits_[s].piece] = false;
+      for (const Index part : splits_[s].parts) is_there[part] = true;
+    }
+    std::vector<std::pair<Index, Index>> order;
+    for (Index p = 0; p < size_of(pieces_); ++p) {
+      if (is_there[p]) order.emplace_back(first_input_face(pieces_[p].chart, admitted_), p);
+    }
+    std::sort(order.begin(), order.end());
+    out.charts.clear();
+    out.maps.clear();
+    out.scales.clear();
+    for (const auto& [face, p] : order) {
+      out.charts.push_back(pieces_[p].chart);
+      out.maps.push_back(pieces_[p].map);
+      out.scales.push_back(pieces_[p].scale);
+    }
+  }
+
+  double root() const { return root_; }
+
+ private:
+  struct Candidate {
+    double gain = 0;
+    Index piece = kNone, neck = 0;
+  };
+
+  bool may_have_more() const {
+    return rules_.most_charts == 0 || size_of(alive_) < rules_.most_charts;
+  }
+
+  /// Finds the necks of a piece, and makes its outline one for sketches.
+  void prepare(Piece& piece) const {
+    const AtlasChart& chart = piece.chart;
+    const bool may_be_split = !piece.map.error && piece.map.outcome < Outcome::kNotInjective &&
+                              piece.outline.area > kLeastPiece * covered_;
+    if (may_be_split) {
+      const NeckOptions options{.worth = worth(utilisation_ * utilisation_ / covered_),
+                                .page = covered_ / (kFull * options_.max_pages),
+                                .least_share = kLeastShare + kSpareShare,
+                                .most = kNecks};
+      piece.necks =
+          find_necks(chart.chart.mesh, piece.map.uvs, costs(chart), chart.real_faces, options);
+      std::erase_if(piece.necks,
+                    [&](const Neck& neck) { return neck.saved < kLeastSaved * covered_; });
+      piece.is_used.assign(piece.necks.size(), false);
+    }
+    thin(piece.outline, kThin / density_);
+  }
+
+  /// Per half-edge the length of a seam there: what fills holes costs nothing.
+  std::vector<double> costs(const AtlasChart& chart) const {
+    const DiskMesh& mesh = chart.chart.mesh;
+    std::vector<double> costs(mesh.twin.size(), kFar);
+    const auto of_surface = [&](Index h) { return 3 * chart.chart.input_face[h / 3] + h % 3; };
+    PollSometimes poll;
+    for (Index h = 0; h < size_of(mesh.twin); ++h) {
+      poll();
+      const Index twin = mesh.twin[h];
+      if (twin == kNone) continue;
+      if (h >= 3 * chart.real_faces || twin >= 3 * chart.real_faces) {
+        costs[h] = 0;
+      } else if (rules_.polygons.polygon.empty() ||
+                 !is_inside_polygon(admitted_, rules_.polygons, of_surface(h), of_surface(twin))) {
+        costs[h] = (mesh.positions[mesh.target(h)] - mesh.positions[mesh.origin(h)]).norm();
+      }
+    }
+    return costs;
+  }
+
+  double sketched(const std::vector<Index>& alive, const Work& work) const {
+    std::vector<Outline> outlines;
+    for (const Index p : alive) {
+      if (!pieces_[p].map.error) outlines.push_back(pieces_[p].outline);
+    }
+    return pack_outlines(std::move(outlines), options_, work).utilisation;
+  }
+
+  /// The two parts of a piece along one of its necks; none where they are no two connected disks of
+  /// some size.
+  std::vector<Piece> parts_of(const Piece& piece, const Neck& neck) const {
+    const DiskMesh& mesh = piece.chart.chart.mesh;
+    EdgeMarks marks(mesh.twin.size(), false);
+    for (const Index h : neck.halfedges) mark_edge(mesh, h, marks);
+    CutSurface cut = cut_into_charts(mesh, marks, work_.aside());
+    if (!cut.non_disks.empty() || cut.charts.size() != 2) return {};
+    std::vector<Piece> parts;
+    for (Chart& chart : cut.charts) {
+      Piece& part = parts.emplace_back();
+      const auto first_virtual = std::lower_bound(chart.input_face.begin(), chart.input_face.end(),
+                                                  piece.chart.real_faces);
+      part.chart.real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
+      part.map.outcome = piece.map.outcome;
+      part.scale = piece.scale;
+      for (Index& v : chart.input_vertex) {
+        part.map.uvs.push_back(piece.map.uvs[v]);
+        v = piece.chart.chart.input_vertex[v];
+      }
+      for (Index& f : chart.input_face) f = piece.chart.chart.input_face[f];
+      part.chart.chart = std::move(chart);
+      if (!is_connected(part.chart.chart.mesh, part.chart.real_faces)) return {};
+      part.outline = outline_of(real_part(part.chart, part.map.uvs));
+      if (part.outline.area < kLeastShare * piece.outline.area) return {};
+    }
+    return parts;
+  }
+
+  /// The necks that promise most, of all pieces.
+  std::vector<Candidate> candidates(double cost) const {
+    std::vector<Candidate> found;
+    for (const Index p : alive_) {
+      const Piece& piece = pieces_[p];
+      for (Index n = 0; n < size_of(piece.necks); ++n) {
+        const Neck& neck = piece.necks[n];
+        const double gain = worth(utilisation_ * utilisation_ * neck.saved / covered_) - neck.cost;
+        if (!piece.is_used[n] && gain > 0 && cost + neck.cost <= room_) {
+          found.push_back({gain, p, n});
+        }
+      }
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
+    return found;
+  }
+
+  /// Splits one piece more, whatever that gains: the best of those that promise most. Returns the
+  /// utilisation then; none where there is nothing to split.
+  std::optional<double> split_best(double cost) {
+    struct Trial {
+      Candidate candidate;
+      std::vector<Piece> parts;
+      double utilisation = 0, net = 0;
+    };
+    std::vector<Trial> trials;
+    for (const Candidate& candidate : candidates(cost)) {
+      Piece& piece = pieces_[candidate.piece];
+      std::vector<Piece> parts = parts_of(piece, piece.necks[candidate.neck]);
+      if (parts.empty()) {
+        piece.is_used[candidate.neck] = true;
+      } else {
+        trials.push_back({candidate, std::move(parts)});
+      }
+      if (size_of(trials) == kTries) break;
+    }
+    if (trials.empty()) return std::nullopt;
+    parallel_for(work_, size_of(trials), 1, [&](std::int64_t t, std::int64_t) {
+      Trial& trial = trials[t];
+      std::vector<Outline> outlines;
+      for (const Index p : alive_) {
+        if (p != trial.candidate.piece && !pieces_[p].map.error) {
+          outlines.push_back(pieces_[p].outline);
+        }
+      }
+      for (Piece& part : trial.parts) {
+        prepare(part);
+        outlines.push_back(part.outline);
+      }
+      trial.utilisation = pack_outlines(std::move(outlines), options_, work_.aside()).utilisation;
+      const Neck& neck = pieces_[trial.candidate.piece].necks[trial.candidate.neck];
+      trial.net = trial.utilisation - neck.cost / worth(1);
+    });
+    Trial& best = *std::max_element(trials.begin(), trials.end(),
+                                    [](const Trial& a, const Trial& b) { return a.net < b.net; });
+    const Candidate& candidate = best.candidate;
+    splits_.push_back({candidate.piece,
+                       {size_of(pieces_), size_of(pieces_) + 1},
+                       pieces_[candidate.piece].necks[candidate.neck].cost});
+    std::erase(alive_, candidate.piece);
+    for (Piece& part : best.parts) {
+      alive_.push_back(size_of(pieces_));
+      pieces_.push_back(std::move(part));
+    }
+    return best.utilisation;
+  }
+
+  const Admitted& admitted_;
+  const SplitRules& rules_;
+  PackOptions options_;  // of sketches
+  const Work work_;
+  double root_ = 0;                       // of the area of the surface
+  double covered_ = 0;                    // area of all maps
+  double room_ = kFar;                    // for seams
+  double utilisation_ = 0, density_ = 1;  // before any split
+  std::vector<Piece> pieces_;
+  Index whole_ = 0;  // of these: charts that are not split, the first ones
+  std::vector<Index> alive_;
+  std::vector<Split> splits_;
+};
+
+}  // namespace
+
+Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
+                      bool float32, SplitCharts charts, const Work& work) {
+  constexpr double kPacked = 0.3, kFound = 0.7;  // in the progress
+  Splitter splitter(admitted, rules, options, charts, work.part(kPacked, kFound));
+  const std::vector<AtlasChart> whole = charts.charts;
+  const std::vector<double> scales = charts.scales;
+  Pages pages = pack_maps(charts.charts, options, float32, charts.maps, work.part(0, kPacked));
+  const std::vector<MappedChart> packed = charts.maps;
+  const double before = utilisation_of(whole, packed, pages);
+  const double length = seam_length(whole, admitted.input_vertex);
+  pages.split = SplitFigures{before, 0, 0};
+  int tries = 0;
+  for (const Index count : splitter.find(before)) {
+    if (tries++ == kWhole || work.out_of_time()) break;
+    splitter.take(count, charts);
+    const double done = 1 - (1 - kFound) * std::ldexp(1, 1 - tries);
+    Pages split =
+        pack_maps(charts.charts, options, float32, charts.maps, work.part(done, (1 + done) / 2));
+    const double more = seam_length(charts.charts, admitted.input_vertex) - length;
+    const double gained = utilisation_of(charts.charts, charts.maps, split) - before;
+    if (gained > 0 && splitter.worth(gained) >= more) {
+      split.split = SplitFigures{before, count, more / splitter.root()};
+      return split;
+    }
+  }
+  charts.charts = whole;
+  charts.scales = scales;
+  charts.maps = packed;
+  return pages;
+}
+
+}  // namespace beltrami
