@@ -853,10 +853,9 @@ typedef struct beltrami_packing {
                            * the edges of pages, in the numbers that are delivered */
   double seconds;         /* wall time of the call */
   double cpu_seconds;     /* of the whole process during the call */
-  uint64_t splits;        /* of charts in two, with the option pack-splits */
+  uint64_t splits;        /* charts that were made two of, with the option pack-splits */
   double split_length;    /* of the seams of those, in roots of the surface's area */
-  double unsplit_utilisation; /* that the charts have without them; `utilisation` where there are
-                               * none */
+  double unsplit_utilisation; /* utilisation without splits; the same where there are none */
 } beltrami_packing;
 
 /* The functions below speak of what was packed last, by beltrami_pack or beltrami_unwrap. They fail

@@ -1,7 +1,7 @@
-"""Packings of the same charts by ours and by xatlas: utilisation of a page, and time.
+"""Packings of the same charts by ours and by others: utilisation of a page, and time.
 
     pack.py [FILES OR FOLDERS...] [--resolution 1024] [--margin 2] [--most-charts 400]
-            [--many 1000 10000 100000] [--record]
+            [--many 1000 10000 100000] [--rivals-python PYTHON] [--record]
 
 Every mesh (all that trimesh reads in a folder; without any the examples' spot) gives two sets of
 charts: those of our unwrap, and those of xatlas. Each set is packed from its UVs alone onto one
@@ -11,15 +11,19 @@ charts over that of the page. xatlas makes pages of about the resolution: what i
 to the square around it, as it is; and the densities next to that are tried, at the resolution
 itself, in search of the largest that fits on one page. What it shrinks or stretches, which it
 does to charts that are longer than the page, does not count: large charts must have one scale.
-CPU seconds are those of one call. With --many made-up charts are packed, so many at once, for the
+With --rivals-python Blender's packer, of shapes with holes at any angle, and uvunwrap's pack them,
+too, up to --most-charts: see pack_rivals.py. CPU seconds are those of one call. With --many made-up charts are packed, so many at once, for the
 time alone.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import statistics
+import subprocess
+import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -39,6 +43,7 @@ import beltrami
 LARGE = 0.2
 SAME_SCALE = 1.02
 MOST_DENSITIES = 8
+RIVAL_SECONDS = 300
 
 
 @dataclass
@@ -90,6 +95,47 @@ class Packed:
     program: str
     utilisation: float
     cpu_seconds: float
+
+
+class Rival:
+    """A program of pack_rivals.py on one set of charts."""
+
+    def __init__(
+        self, python: Path, program: str, charts: Charts, resolution: int, margin: float
+    ) -> None:
+        self.python, self.program, self.charts = python, program, charts
+        self.resolution, self.margin = resolution, margin
+
+    def best(self) -> tuple[float, float]:
+        """Return the utilisation of the page, 0 where there is none, and the seconds."""
+        script = Path(__file__).with_name("pack_rivals.py")
+        with tempfile.TemporaryDirectory() as folder:
+            given, out = Path(folder, "charts.npz"), Path(folder, "out.npz")
+            np.savez(given, uvs=self.charts.uvs, faces=self.charts.faces)
+            command = [self.python, script, self.program, given, out]
+            command += [str(self.resolution), str(self.margin)]
+            try:
+                subprocess.run(command, stdout=subprocess.DEVNULL, timeout=RIVAL_SECONDS)
+            except subprocess.TimeoutExpired:
+                return 0.0, float(RIVAL_SECONDS)
+            if not out.exists():
+                return 0.0, 0.0
+            with np.load(out) as read:
+                corners, seconds = read["uvs"], float(read["seconds"])
+        placed = np.zeros_like(self.charts.uvs)
+        placed[self.charts.faces.ravel()] = corners.reshape(-1, 2)
+        inside = placed.min() >= -1e-6 and placed.max() <= 1 + 1e-6
+        fits = inside and self.charts.one_scale(placed)
+        return float(self.charts.areas(placed).sum()) if fits else 0.0, seconds
+
+
+def rivals_of(python: Path | None) -> list[str]:
+    """Return the programs that an interpreter has."""
+    if python is None:
+        return []
+    script = Path(__file__).with_name("pack_rivals.py")
+    listed = subprocess.run([python, script, "--programs"], capture_output=True, check=True)
+    return list(json.loads(listed.stdout.splitlines()[-1]))
 
 
 def ours(charts: Charts, resolution: int, margin: float) -> tuple[float, float]:
@@ -182,6 +228,10 @@ def rows_of(name: str, by: str, charts: Charts, args: argparse.Namespace) -> Ite
     }
     if count <= args.most_charts:
         programs["xatlas brute"] = Xatlas(charts, args.resolution, args.margin, True).best
+        for rival in args.rivals:
+            programs[rival] = Rival(
+                args.rivals_python, rival, charts, args.resolution, args.margin
+            ).best
     for program, run in programs.items():
         utilisation, seconds = run()
         row = Packed(name, by, count, program, utilisation, seconds)
@@ -213,8 +263,10 @@ def main() -> None:
     parser.add_argument("--margin", type=float, default=2.0)
     parser.add_argument("--most-charts", type=int, default=400)
     parser.add_argument("--many", nargs="*", type=int, default=[])
+    parser.add_argument("--rivals-python", type=Path)
     records.add_option(parser)
     args = parser.parse_args()
+    args.rivals = rivals_of(args.rivals_python)
     rows: list[Packed] = []
     for path in files_of(args.paths):
         try:

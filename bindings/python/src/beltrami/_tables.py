@@ -466,11 +466,11 @@ class PackingReport:
     cpu_seconds : float
         Of the whole process during the call.
     splits : int
-        Of charts in two, with the option pack-splits.
+        Charts that were made two of, with the option pack-splits.
     split_length : float
         Of the seams of those, in roots of the surface's area.
     unsplit_utilisation : float
-        That the charts have without them; `utilisation` where there are none.
+        Utilisation without splits; the same where there are none.
     """
 
     charts: int

@@ -1744,12 +1744,11 @@ pub struct beltrami_packing {
     pub seconds: f64,
     /// of the whole process during the call
     pub cpu_seconds: f64,
-    /// of charts in two, with the option pack-splits
+    /// charts that were made two of, with the option pack-splits
     pub splits: u64,
     /// of the seams of those, in roots of the surface's area
     pub split_length: f64,
-    /** that the charts have without them; `utilisation` where there are
- none*/
+    /// utilisation without splits; the same where there are none
     pub unsplit_utilisation: f64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]

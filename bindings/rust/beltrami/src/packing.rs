@@ -47,6 +47,13 @@ pub struct PageSummary {
     pub seconds: f64,
     /// Processor time of the whole process during the call.
     pub cpu_seconds: f64,
+    /// Charts that were made two of, with
+    /// [`UnwrapOptions::pack_splits`](crate::UnwrapOptions::pack_splits).
+    pub splits: usize,
+    /// Length of the seams of those, in roots of the surface's area.
+    pub split_length: f64,
+    /// Utilisation without splits; the same where there are none.
+    pub unsplit_utilisation: f64,
 }
 
 /// Charts on pages: of an [`Atlas`](crate::Atlas), or of a [`Packer`](crate::Packer).
@@ -91,6 +98,9 @@ impl<'a> Packing<'a> {
             margin: raw.margin,
             seconds: raw.seconds,
             cpu_seconds: raw.cpu_seconds,
+            splits: count(raw.splits),
+            split_length: raw.split_length,
+            unsplit_utilisation: raw.unsplit_utilisation,
         }
     }
 
