@@ -127,6 +127,40 @@ TEST(Unwrap, SeamsThatAreWrittenMakeTheSameCharts) {
   EXPECT_TRUE(second["target"].is_null());
 }
 
+TEST(Unwrap, SplitsChartsAtAPrice) {
+  const TemporaryDirectory directory;
+  std::string strip;
+  for (int i = 0; i <= 24; ++i) {
+    strip += "v " + std::to_string(i) + " 0 0\nv " + std::to_string(i) + " 1 0\n";
+  }
+  for (int i = 1; i < 49; i += 2) {
+    strip += "f " + std::to_string(i) + " " + std::to_string(i + 2) + " " + std::to_string(i + 3) +
+             " " + std::to_string(i + 1) + "\n";
+  }
+  const std::string in = directory.file("in.obj", strip), out = directory.path("out.obj");
+  const std::string seams = directory.path("seams"), report = directory.path("r.json");
+  const Outcome outcome =
+      run({"unwrap", in, out, "--pack-splits", "20", "--write-seams", seams, "--report", report});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\nsplits "), std::string::npos) << outcome.out;
+  const Json json = Json::parse(directory.read("r.json"));
+  const Json& packing = json["packing"];
+  EXPECT_GT(packing["splits"], 0);
+  EXPECT_EQ(json["charts"], 1 + packing["splits"].get<int>());
+  EXPECT_GE(
+      20 * (packing["utilisation"].get<double>() - packing["unsplit_utilisation"].get<double>()),
+      packing["split_length"].get<double>());
+  EXPECT_EQ(json["seams"], packing["splits"]) << "an edge each";
+  EXPECT_EQ(run({"check", out}).exit_code, 0);
+  ASSERT_EQ(
+      run({"unwrap", in, out, "--seams", seams, "--cut", "given", "--report", report}).exit_code,
+      0);
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["charts"], json["charts"]);
+  const Outcome refused = run({"unwrap", in, out, "--pack-splits", "20", "--pack", "none"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("pack-splits=20 has no effect with pack=none"), std::string::npos);
+}
+
 TEST(Unwrap, SaysWhetherTheTargetIsReached) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");

@@ -56,6 +56,28 @@ def test_pages_are_told_for_uv_vertices() -> None:
     ).injective
 
 
+def test_splits_charts_at_a_price() -> None:
+    x, y = np.meshgrid(np.arange(25.0), np.arange(2.0))
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    low = np.arange(24)
+    quads = np.column_stack([low, low + 1, low + 26, low + 25])
+    whole = beltrami.unwrap(vertices, quads)
+    assert whole.packing is not None
+    assert whole.packing.splits == 0
+    assert whole.packing.unsplit_utilisation == whole.utilisation
+    atlas = beltrami.unwrap(vertices, quads, pack_splits=20.0)
+    assert atlas.injective
+    assert atlas.packing is not None
+    assert atlas.packing.splits == len(atlas.charts) - 1 > 0
+    assert atlas.packing.unsplit_utilisation == pytest.approx(whole.utilisation)
+    gained = atlas.utilisation - whole.utilisation
+    assert 20 * gained >= atlas.packing.split_length > 0
+    given = beltrami.unwrap(vertices, quads, cut="given", seams=atlas.seams)
+    assert (given.chart_of_face == atlas.chart_of_face).all()
+    with pytest.raises(beltrami.InvalidArgumentError, match="pack-splits=20 has no effect"):
+        beltrami.unwrap(vertices, quads, pack_splits=20.0, pack="none")
+
+
 def test_packs_meshes_onto_common_pages() -> None:
     small, large = confetti(3), confetti(4, 2.0)
     packing = beltrami.pack([small, large], resolution=256)

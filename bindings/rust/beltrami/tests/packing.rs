@@ -83,6 +83,24 @@ fn an_atlas_lies_on_pages() {
 }
 
 #[test]
+fn charts_are_split_at_a_price() {
+    let positions: Vec<[f64; 3]> =
+        (0..50_u32).map(|i| [f64::from(i / 2), f64::from(i % 2), 0.0]).collect();
+    let quads: Vec<[u32; 4]> = (0..24).map(|i| [2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1]).collect();
+    let surface = Surface::new(&positions, &quads);
+    let mut unwrapper = Unwrapper::with_options(&UnwrapOptions::new().pack_splits(20.0)).unwrap();
+    let summary = unwrapper.unwrap(&surface).unwrap().packing().unwrap().summary();
+    assert!(summary.splits > 0 && summary.charts == 1 + summary.splits);
+    let gained = summary.utilisation - summary.unsplit_utilisation;
+    assert!(20.0 * gained >= summary.split_length && summary.split_length > 0.0);
+
+    unwrapper.set_options(&UnwrapOptions::new()).unwrap();
+    let whole = unwrapper.unwrap(&surface).unwrap().packing().unwrap().summary();
+    assert_eq!((whole.splits, whole.unsplit_utilisation), (0, whole.utilisation));
+    assert!((whole.utilisation - summary.unsplit_utilisation).abs() < 1e-9);
+}
+
+#[test]
 fn what_cannot_be_packed_is_named() {
     let (uvs, faces, _) = confetti(3, 1.0);
     let mut packer = Packer::with_options(&PackOptions::new().texels_per_unit(1e5)).unwrap();
