@@ -1,7 +1,8 @@
 """Packings of the same charts by ours and by others: utilisation of a page, and time.
 
     pack.py [FILES OR FOLDERS...] [--resolution 1024] [--margin 2] [--most-charts 400]
-            [--many 1000 10000 100000] [--rivals-python PYTHON] [--record]
+            [--many 1000 10000 100000] [--rivals-python PYTHON [--rivals NAMES...]]
+            [--record]
 
 Every mesh (all that trimesh reads in a folder; without any the examples' spot) gives two sets of
 charts: those of our unwrap, and those of xatlas. Each set is packed from its UVs alone onto one
@@ -12,8 +13,8 @@ to the square around it, as it is; and the densities next to that are tried, at 
 itself, in search of the largest that fits on one page. What it shrinks or stretches, which it
 does to charts that are longer than the page, does not count: large charts must have one scale.
 With --rivals-python Blender's packer, of shapes with holes at any angle, and uvunwrap's pack them,
-too, up to --most-charts: see pack_rivals.py. CPU seconds are those of one call. With --many made-up charts are packed, so many at once, for the
-time alone.
+too: see pack_rivals.py. CPU seconds are those of one call. With --many made-up charts are packed,
+so many at once, for the time alone.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import multiprocessing
 import statistics
 import subprocess
 import tempfile
@@ -43,7 +45,8 @@ import beltrami
 LARGE = 0.2
 SAME_SCALE = 1.02
 MOST_DENSITIES = 8
-RIVAL_SECONDS = 300
+MOST_FOR_RIVALS = 1000
+RIVAL_SECONDS = 60  # of wall time: what takes longer has no packing
 
 
 @dataclass
@@ -196,6 +199,18 @@ class Xatlas:
         return best, seconds
 
 
+def limited(run: Callable[[], tuple[float, float]]) -> tuple[float, float]:
+    """Run in a process of its own, which is ended where it takes too long."""
+    context = multiprocessing.get_context("fork")
+    ours_end, its_end = context.Pipe()
+    process = context.Process(target=lambda: its_end.send(run()))
+    process.start()
+    found = ours_end.recv() if ours_end.poll(RIVAL_SECONDS) else (0.0, float(RIVAL_SECONDS))
+    process.kill()
+    process.join()
+    return found
+
+
 def charts_of(path: Path) -> Iterator[tuple[str, Charts]]:
     """Yield the charts that each program cuts a mesh into."""
     mesh = load(path)
@@ -227,11 +242,11 @@ def rows_of(name: str, by: str, charts: Charts, args: argparse.Namespace) -> Ite
         "xatlas": Xatlas(charts, args.resolution, args.margin, False).best,
     }
     if count <= args.most_charts:
-        programs["xatlas brute"] = Xatlas(charts, args.resolution, args.margin, True).best
-        for rival in args.rivals:
-            programs[rival] = Rival(
-                args.rivals_python, rival, charts, args.resolution, args.margin
-            ).best
+        brute = Xatlas(charts, args.resolution, args.margin, True)
+        programs["xatlas brute"] = lambda: limited(brute.best)
+    for rival in args.rivals if count <= MOST_FOR_RIVALS else []:
+        python = args.rivals_python
+        programs[rival] = Rival(python, rival, charts, args.resolution, args.margin).best
     for program, run in programs.items():
         utilisation, seconds = run()
         row = Packed(name, by, count, program, utilisation, seconds)
@@ -264,9 +279,13 @@ def main() -> None:
     parser.add_argument("--most-charts", type=int, default=400)
     parser.add_argument("--many", nargs="*", type=int, default=[])
     parser.add_argument("--rivals-python", type=Path)
+    parser.add_argument("--rivals", nargs="*", help="of those that it has, not all")
     records.add_option(parser)
     args = parser.parse_args()
-    args.rivals = rivals_of(args.rivals_python)
+    chosen = args.rivals
+    args.rivals = [
+        rival for rival in rivals_of(args.rivals_python) if chosen is None or rival in chosen
+    ]
     rows: list[Packed] = []
     for path in files_of(args.paths):
         try:
