@@ -89,14 +89,8 @@ TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
   }
 }
 
-TEST(Mask, HasTheCellsThatAreNearerThanTheRadius) {
-  const double radius = 1.7;
-  const PackChart frame{
-      {{0, 0}, {30, 0}, {30, 30}, {0, 30}, {10, 10}, {20, 10}, {20, 20}, {10, 20}},
-      {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
-  const Outline outline = outline_of(frame);
-  EXPECT_DOUBLE_EQ(outline.area, 800);
-  const Mask mask = mask_of(outline, Vec2(0.8, 0.6), 1, radius, 1000);
+/// That a mask of the frame below, turned so, has the cells that it is to have.
+void expect_near_cells(const Mask& mask, const Vec2& turn, double radius) {
   std::vector<std::vector<bool>> taken(mask.height, std::vector<bool>(mask.width, false));
   for (const beltrami::Run& run : mask.runs) {
     for (int x = run.begin; x < run.end; ++x) taken[run.row][x] = true;
@@ -108,13 +102,33 @@ TEST(Mask, HasTheCellsThatAreNearerThanTheRadius) {
       const double outside = Vec2(std::max({-u, u - 30, 0.0}), std::max({-v, v - 30, 0.0})).norm();
       const double inside = std::min({u - 10, 20 - u, v - 10, 20 - v});
       const double distance = std::max(outside, inside);
-      const Vec2 p = mask.origin + Vec2(0.8 * u - 0.6 * v, 0.6 * u + 0.8 * v);
+      const Vec2 p = mask.origin + Vec2(turn.x() * u - turn.y() * v, turn.y() * u + turn.x() * v);
       const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
       const bool in = x >= 0 && y >= 0 && x < mask.width && y < mask.height && taken[y][x];
       const bool near = distance<radius, far = distance> radius + 1.5;  // a cell's diagonal
       EXPECT_FALSE(near && !in) << u << " " << v;
       EXPECT_FALSE(far && in) << u << " " << v;
     }
+  }
+}
+
+TEST(Mask, HasTheCellsThatAreNearerThanTheRadius) {
+  const double radius = 1.7;
+  const PackChart frame{
+      {{0, 0}, {30, 0}, {30, 30}, {0, 30}, {10, 10}, {20, 10}, {20, 20}, {10, 20}},
+      {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  const Outline outline = outline_of(frame);
+  EXPECT_DOUBLE_EQ(outline.area, 800);
+  const Mask mask = mask_of(outline, Vec2(0.8, 0.6), 1, radius, 1000);
+  Vec2 turn(0.8, 0.6);
+  expect_near_cells(mask, turn, radius);
+  Mask turned = mask;
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    turned = quarter_turned(turned);
+    turn = {-turn.y(), turn.x()};
+    EXPECT_EQ(turned.cells, mask.cells);
+    EXPECT_EQ(turned.probes.size(), turned.runs.size());
+    expect_near_cells(turned, turn, radius);
   }
 }
 
