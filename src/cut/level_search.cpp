@@ -91,7 +91,7 @@ bool Attempt::is_better_than(const Attempt& other) const {
 }
 
 double Attempt::promised() const {
-  return cost * std::pow(std::max(excess, 1.0), kSeamPrice);
+  return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, 1.0)));
 }
 
 LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,

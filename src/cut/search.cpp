@@ -1,7 +1,6 @@
 #include "cut/search.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -26,7 +25,7 @@ constexpr Index kCoarseFaces = 10'000;
 constexpr Index kRoughFaces = 3000;
 /// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
 /// few long ones, and the better is taken.
-constexpr std::array kLeastCosts = {0.02, 0.06};
+constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
 /// With care, a surface is searched from so many starts with either, of which so many are finished,
 /// and their charts joined on trial: seams are 2% shorter.
 constexpr int kStarts = 3;
@@ -77,7 +76,7 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
                      const SeamWeights& weights, const Work& work) {
   std::vector<Start> starts;
   for (int number = 0; number < (is_thorough ? kStarts : 1); ++number) {
-    for (const double least_cost : kLeastCosts) starts.push_back({least_cost, number});
+    for (const double least_cost : {kManyPaths, kFewPaths}) starts.push_back({least_cost, number});
   }
   const SearchLevel rough =
       coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
