@@ -86,8 +86,9 @@ fn an_atlas_lies_on_pages() {
 fn charts_are_split_at_a_price() {
     let positions: Vec<[f64; 3]> =
         (0..50_u32).map(|i| [f64::from(i / 2), f64::from(i % 2), 0.0]).collect();
-    let quads: Vec<[u32; 4]> = (0..24).map(|i| [2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1]).collect();
-    let surface = Surface::new(&positions, &quads);
+    let faces: Vec<[u32; 3]> =
+        (0..48).map(|i| if i % 2 == 0 { [i, i + 2, i + 1] } else { [i, i + 1, i + 2] }).collect();
+    let surface = Surface::new(&positions, &faces);
     let mut unwrapper = Unwrapper::with_options(&UnwrapOptions::new().pack_splits(20.0)).unwrap();
     let summary = unwrapper.unwrap(&surface).unwrap().packing().unwrap().summary();
     assert!(summary.splits > 0 && summary.charts == 1 + summary.splits);
