@@ -14,8 +14,7 @@ import re
 import subprocess
 import sys
 
-# What is precompiled stands for the headers in it, which are named where it is made.
-OBJECTS = re.compile(r"src/CMakeFiles/beltrami_\w+\.dir/\S+\.(o|gch):")
+OBJECTS = re.compile(r"src/CMakeFiles/beltrami_\w+\.dir/\S+\.o:")
 # What a library without GPL code may need at run time: what every C++ program needs.
 ALLOWED = re.compile(r"lib(stdc\+\+|m|gcc_s|c|pthread)\.so\.\d+|ld-linux\S*")
 # And what it may need where it says "simplifier openmesh", and nowhere else.
@@ -29,7 +28,7 @@ def headers_of(build):
     for line in text.splitlines():
         if not line.startswith(" "):
             ours = bool(OBJECTS.match(line))
-        elif ours and not line.endswith(".gch"):
+        elif ours:
             headers.add((build / line.strip()).resolve())
     return headers
 
