@@ -28,7 +28,7 @@ from groups import groups_of, unit_of
 from includes import Project, check
 
 TIDY = Path(sys.executable).parent / "clang-tidy"
-UNKNOWN_TO_CLANG = {"-fcx-limited-range", "-fno-gnu-unique", "-Winvalid-pch"}  # GCC's
+UNKNOWN_TO_CLANG = {"-fcx-limited-range", "-fno-gnu-unique"}  # GCC's
 # GCC looks for shadows, of which a group has others; and libstdc++ calls what it calls deprecated.
 NO_WARNINGS = ["-Wno-shadow", "-Wno-deprecated-declarations"]
 
@@ -39,10 +39,6 @@ def arguments(entry: dict) -> list[str]:
     if not Path(words[0]).suffix and not words[0].startswith("-"):  # after a launcher
         words = words[1:]
     known = [word for word in words[: words.index("-o")] if word not in UNKNOWN_TO_CLANG]
-    # Nor GCC's precompiled headers; and without them it is seen that a source has its own includes.
-    while "-include" in known:
-        at = known.index("-include")
-        del known[at : at + 2]
     return known + NO_WARNINGS
 
 
