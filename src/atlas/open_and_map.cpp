@@ -8,7 +8,6 @@
 #include "atlas/pin_conflicts.h"
 #include "cut/search.h"
 #include "cut/search_level.h"
-#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {
@@ -53,7 +52,7 @@ void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& a
       "place without folding a face");
 }
 
-/// Once.
+/// One try, at one target; `begun` as open_surface has it.
 Mapped open_and_map_for(const AtlasInput& input, const Admitted& admitted, int exponent,
                         const std::optional<SeamTarget>& target, const AtlasOptions& options,
                         const AnchoredSeams& begun, const Work& work,
@@ -155,24 +154,13 @@ std::optional<SeamTarget> aimed_again(const SeamTarget& target, const SeamTarget
   return is_small ? aimed_higher(target, mapped) : std::nullopt;
 }
 
-/// Of the boundaries of charts, without virtual faces: seams count twice.
-double length_of_boundaries(const std::vector<AtlasChart>& charts) {
-  double sum = 0;
-  for (const AtlasChart& atlas_chart : charts) {
-    const DiskMesh& mesh = atlas_chart.chart.mesh;
-    for (Index h = 0; h < 3 * atlas_chart.real_faces; ++h) {
-      if (mesh.twin[h] != kNone) continue;
-      sum += (mesh.positions[mesh.target(h)] - mesh.positions[mesh.origin(h)]).norm();
-    }
-  }
-  return sum;
-}
-
-bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target) {
+/// `vertex`: as seam_length has it.
+bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
+               const std::vector<Index>& vertex) {
   if (misses(a, target) || misses(b, target)) {
     return excess_of(a.energy, target) < excess_of(b.energy, target);
   }
-  return length_of_boundaries(a.opened.charts) < length_of_boundaries(b.opened.charts);
+  return seam_length(a.opened.charts, vertex) < seam_length(b.opened.charts, vertex);
 }
 
 }  // namespace
@@ -199,7 +187,7 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
     begun = mapped.opened.coarse_seams;
     tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
     aim = aimed_again(target, *aim, mapped, tries, faces);
-    if (!best || is_better(mapped, *best, target)) best = std::move(mapped);
+    if (!best || is_better(mapped, *best, target, admitted.input_vertex)) best = std::move(mapped);
   }
   return std::move(*best);
 }

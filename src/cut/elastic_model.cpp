@@ -37,7 +37,7 @@ double corner_angle(const RestTriangle& rest, int k) {
 
 double ModelChange::energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const {
   const auto load = load_.segment(first, count);
-  const auto factor = compliance_.block(first, first, count, count).ldlt();
+  const auto factor = matrix_.block(first, first, count, count).ldlt();
   return std::max(energy_ + sign_ * 2 * std::max(load.dot(factor.solve(load)), 0.0), 2.0);
 }
 

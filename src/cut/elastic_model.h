@@ -21,15 +21,17 @@
 
 namespace beltrami {
 
-/// What the energy of a model becomes where vertices, or a run of them, are pinned or let go.
+/// What the energy of a model becomes where `count` vertices, or a run of them, are pinned or let
+/// go, in the order that they were given in.
 class ModelChange {
  public:
-  /// The energy of the model as it is; per vertex, what is let go or held there; what each of them
-  /// yields to the others, with a minus where that is gained.
-  ModelChange(double energy, Eigen::VectorXd load, DenseMatrix compliance, double sign)
-      : energy_(energy), load_(std::move(load)), compliance_(std::move(compliance)), sign_(sign) {}
+  /// `energy`: of the model as it is. `load`, (count), and `matrix`, (count, count), symmetric and
+  /// positive: the stress at the vertices and their compliance where they are pinned, `sign` -1;
+  /// the force on them and their stiffness where they are let go, `sign` 1.
+  ModelChange(double energy, Eigen::VectorXd load, DenseMatrix matrix, double sign)
+      : energy_(energy), load_(std::move(load)), matrix_(std::move(matrix)), sign_(sign) {}
 
-  /// Where all are.
+  /// Symmetric Dirichlet, at least 2, where all are.
   double energy() const { return energy_of(0, load_.size()); }
   /// Where `count` vertices from the one with the number `first` are.
   double energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const;
@@ -37,7 +39,7 @@ class ModelChange {
  private:
   double energy_;
   Eigen::VectorXd load_;
-  DenseMatrix compliance_;
+  DenseMatrix matrix_;
   double sign_;
 };
 

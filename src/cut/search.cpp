@@ -99,9 +99,8 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
     const bool is_open = level.locked.empty() ||
                          cut_into_charts(level.surface, carried.seams, part).non_disks.empty();
-    if (!is_open)
-      return LevelSearch(level, opened(level, part), starts[i], target, part).run(false);
-    return LevelSearch(level, std::move(carried), starts[i], target, part).run(true);
+    if (!is_open) carried = opened(level, part);
+    return LevelSearch(level, std::move(carried), starts[i], target, part).run(is_open);
   }));
 }
 
