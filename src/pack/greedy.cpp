@@ -97,6 +97,22 @@ Candidate best_place(const Page& page, const std::vector<Mask>& masks, Index ind
   return best;
 }
 
+/// Per chart of an order what the masks of those after it ask of a page; first what all do.
+std::vector<Needs> later_needs(const std::vector<std::vector<Mask>>& masks,
+                               const std::vector<Index>& order) {
+  std::vector<Needs> later(order.size() + 1);
+  Needs needs{0, 0};
+  later.back() = needs;
+  for (std::size_t i = order.size(); i-- > 0;) {
+    for (const Mask& mask : masks[order[i]]) {
+      needs.run_level = std::max(needs.run_level, mask.needs.run_level);
+      needs.square_level = std::max(needs.square_level, mask.needs.square_level);
+    }
+    later[i] = needs;
+  }
+  return later;
+}
+
 }  // namespace
 
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
@@ -107,7 +123,9 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
   const bool many = plan.order.size() >= kManyCharts;
   std::vector<Floor> floors(pages.size());
   double size = 0;  // of the charts that the floors are about
-  for (const Index chart : plan.order) {
+  const std::vector<Needs> later = later_needs(masks, plan.order);
+  for (std::size_t i = 0; i < plan.order.size(); ++i) {
+    const Index chart = plan.order[i];
     poll_interrupt();
     Spot& spot = layout.spots[chart];
     if (masks[chart].empty() || masks[chart][0].cells == 0) {
@@ -121,7 +139,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
     }
     for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
       if (p == size_of(pages)) {
-        pages.push_back(empty);
+        pages.emplace_back(empty, later[i]);
         floors.emplace_back();
       }
       const int forced = plan.turns.empty() ? kNone : plan.turns[chart];
@@ -136,7 +154,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
       return layout;
     }
     const Mask& mask = masks[chart][spot.turn];
-    pages[spot.page].take(mask, spot.x, spot.y);
+    pages[spot.page].take(mask, spot.x, spot.y, later[i + 1]);
     layout.steps += mask.height * kStepsPerRow;
     layout.width = std::max(layout.width, spot.x + mask.width);
     layout.height = std::max(layout.height, spot.y + mask.height);

@@ -157,32 +157,39 @@ void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2
 
 /// The longest run first; then rows far from those before them, where the next obstacle may be: in
 /// the sequence of van der Corput, by their bits reversed. Longer runs of a row come first.
-std::vector<int> probes_of(const Mask& mask) {
+void find_probes(Mask& mask) {
   const auto length = [&](int r) { return mask.runs[r].end - mask.runs[r].begin; };
   const int count = static_cast<int>(mask.runs.size());
-  std::vector<int> start(static_cast<std::size_t>(mask.height) + 1, 0), order;
+  if (count == 0) return;
+  std::vector<int> start(static_cast<std::size_t>(mask.height) + 1, 0);
   int longest = 0;
   for (int r = 0; r < count; ++r) {
     ++start[mask.runs[r].row + 1];
     if (length(r) > length(longest)) longest = r;
   }
-  if (count == 0) return order;
   for (int row = 0; row < mask.height; ++row) start[row + 1] += start[row];
-  order.reserve(mask.runs.size());
-  order.push_back(longest);
+  mask.probes.reserve(mask.runs.size());
+  const auto add = [&](int r) {
+    const Run& run = mask.runs[r];
+    const int level = static_cast<int>(std::bit_width(static_cast<unsigned>(length(r)))) - 1;
+    mask.probes.push_back({run.row, run.begin, run.end - (1 << level), level});
+  };
+  add(longest);
+  mask.needs.run_level = mask.probes.front().level;
+  std::vector<int> of_row;
   const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(mask.height - 1)));
   for (int i = 0; i < 1 << bits; ++i) {
     int row = 0;
     for (int bit = 0; bit < bits; ++bit) row |= (i >> bit & 1) << (bits - 1 - bit);
     if (row >= mask.height) continue;
-    const std::size_t first = order.size();
+    of_row.clear();
     for (int r = start[row]; r < start[row + 1]; ++r) {
-      if (r != longest) order.push_back(r);
+      if (r != longest) of_row.push_back(r);
     }
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
+    std::sort(of_row.begin(), of_row.end(),
               [&](int a, int b) { return length(a) != length(b) ? length(a) > length(b) : a < b; });
+    for (const int r : of_row) add(r);
   }
-  return order;
 }
 
 constexpr int kSquareSamples = 48;  // per side of a mask, in the search for its largest square
@@ -330,8 +337,9 @@ Mask mask_of(const Outline& outline, const Vec2& turn, double density, double ra
   Mask mask =
       draw(std::move(places), outline, reach, origin, static_cast<int>(std::floor(extent.x())) + 1,
            static_cast<int>(std::floor(extent.y())) + 1);
-  mask.probes = probes_of(mask);
+  find_probes(mask);
   mask.squares = squares_of(mask);
+  if (!mask.squares.empty()) mask.needs.square_level = mask.squares.front().level;
   return mask;
 }
 
@@ -347,7 +355,8 @@ Mask quarter_turned(const Mask& mask) {
   turned.cells = 0;
   read_runs(transposed(bits), turned);
   mirror_runs(turned);
-  turned.probes = probes_of(turned);
+  find_probes(turned);
+  turned.needs.square_level = mask.needs.square_level;
   for (const Square& square : mask.squares) {
     turned.squares.push_back(
         {mask.height - square.y - (1 << square.level), square.x, square.level});

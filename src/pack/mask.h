@@ -21,13 +21,25 @@ struct Square {
   int x = 0, y = 0, level = 0;
 };
 
+/// A run as it is tested: two of 2^level cells, from the cells `left` and `right` on, are all of
+/// it.
+struct Probe {
+  int row = 0, left = 0, right = 0, level = 0;
+};
+
+/// The largest of what masks ask of a page; by default anything.
+struct Needs {
+  int run_level = 31, square_level = kSquareLevels;
+};
+
 struct Mask {
   int width = 0, height = 0;    ///< of the box of its cells
   std::vector<Run> runs;        ///< by row, then by place
-  std::vector<int> probes;      ///< the runs in the order in which to test them
+  std::vector<Probe> probes;    ///< the runs in the order in which to test them
   std::vector<Square> squares;  ///< together about the largest square in it
   std::int64_t cells = 0;
   Vec2 origin{0, 0};  ///< the place on the mask, in cells, of the chart's origin
+  Needs needs{0, 0};
 };
 
 /// All cells that are less than `radius` from what the outline covers once it is turned by `turn`

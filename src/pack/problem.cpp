@@ -17,10 +17,14 @@ namespace {
 /// Rounding to single precision moves a place by up to 2^-25 of the page per coordinate.
 constexpr double kRoundingOfPage = 0x1p-22;
 
-/// Cells per side of a page: with more of them masks are tighter and all is slower. Tiny charts
-/// need more, as half a cell is much to them; with few there is time for more orders on fewer.
-constexpr int kCellsOfFew = 512, kCells = 1024, kCellsOfMany = 2048;
-constexpr Index kFew = 20, kMany = 20000;
+/// Cells per side of a page: with more of them masks are tighter and all is slower. With few charts
+/// there is time for more orders on fewer cells; of many, thin or tiny ones need more, as half a
+/// cell is much to them.
+constexpr int kCellsOfFew = 512, kCells = 1024, kMostCells = 2048;
+constexpr Index kFew = 20;
+
+/// The share by which charts with their margins are to take less room on the finer grid.
+constexpr double kWorthFiner = 0.05;
 
 /// Up to so many charts each turn counts.
 constexpr Index kFewForTurns = 6;
@@ -63,18 +67,77 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
     cells_ = options.resolution / options.block;
     cell_ = options.block;
   } else {
-    cells_ = size() < kFew ? kCellsOfFew : size() >= kMany ? kCellsOfMany : kCells;
-    cell_ = static_cast<double>(options.resolution) / cells_;
+    set_cells(size() < kFew ? kCellsOfFew : kCells);
+    if (!few_to_order() && gains_from(kMostCells)) set_cells(kMostCells);
   }
-  double sum = 0;
-  for (Index c = 0; c < size(); ++c) sum += area(c);
+  thin_outlines();
+}
+
+void Problem::thin_outlines() {
+  const double sum = sums().area;
   thinned_ = outlines_;
-  if (sum > 0) {
-    const double width = kThin * cell_ / greatest_density(options, sum);
-    parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t c = begin; c < end; ++c) thin(thinned_[c], width / charts_[c].scale);
-    });
+  if (!(sum > 0)) return;
+  const double width = kThin * cell_ / greatest_density(options_, sum);
+  parallel_for(work_, size(), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) thin(thinned_[c], width / charts_[c].scale);
+  });
+}
+
+bool Problem::can_be_finer() const {
+  return options_.block == 1 && cells_ < kMostCells;
+}
+
+Problem Problem::on_finest_grid() const {
+  Problem finer = *this;
+  finer.set_cells(kMostCells);
+  finer.thin_outlines();
+  return finer;
+}
+
+void Problem::set_cells(int cells) {
+  cells_ = cells;
+  cell_ = static_cast<double>(options_.resolution) / cells;
+}
+
+Problem::Sums Problem::sums() const {
+  Sums sums;
+  for (Index c = 0; c < size(); ++c) {
+    sums.area += area(c);
+    sums.length += length(c);
   }
+  return sums;
+}
+
+double Problem::density_for(double share) const {
+  const Sums all = sums();
+  const double half_margin = radius() + cell_ / 2;
+  const double side = options_.resolution;
+  const double room = share * options_.max_pages * side * side;
+  // area d^2 + length r d + n pi r^2 = room, in texels, with r about half the margin and half a
+  // cell.
+  const double rest =
+      std::max(0.02 * room, room - size() * std::numbers::pi * half_margin * half_margin);
+  if (all.area > 0) {
+    const double half = all.length * half_margin / 2;
+    return (std::sqrt(half * half + all.area * rest) - half) / all.area;
+  }
+  return side / all.length;
+}
+
+/// Whether with so many cells to a page the charts take that much less room.
+bool Problem::gains_from(int cells) const {
+  constexpr double kFull = 0.85;  // of a page
+  const Sums all = sums();
+  if (!(all.length > 0)) return false;
+  const double density =
+      options_.texels_per_unit > 0 ? options_.texels_per_unit : density_for(kFull);
+  const auto room = [&](double cell) {
+    const double half_margin = radius() + cell / 2;
+    return all.area * density * density + all.length * half_margin * density +
+           size() * std::numbers::pi * half_margin * half_margin;
+  };
+  const double finer = static_cast<double>(options_.resolution) / cells;
+  return room(cell_) > (1 + kWorthFiner) * room(finer);
 }
 
 double Problem::radius() const {

@@ -37,6 +37,17 @@ class Problem {
   /// Half the margin, with what rounding takes, in texels.
   double radius() const;
 
+  /// Whether there is time to look for a better order.
+  bool few_to_order() const { return size() < kMostToOrder; }
+
+  /// The density at which the charts with their margins would fill a share of the pages.
+  /// Precondition: one has a length.
+  double density_for(double share) const;
+
+  /// The same charts on a grid of more cells to a page, where there is one.
+  bool can_be_finer() const;
+  Problem on_finest_grid() const;
+
   int turns() const { return turns_; }
   Vec2 turn(Index c, int k) const;
 
@@ -56,6 +67,18 @@ class Problem {
   Packing packing(std::vector<Placement> placements, double texels_per_unit) const;
 
  private:
+  /// Charts up to which orders are searched for.
+  static constexpr Index kMostToOrder = 600;
+
+  /// Of all charts at a density of one.
+  struct Sums {
+    double area = 0, length = 0;
+  };
+  Sums sums() const;
+  void set_cells(int cells);
+  void thin_outlines();
+  bool gains_from(int cells) const;
+
   std::span<const PackChart> charts_;
   const PackOptions& options_;
   const Work& work_;

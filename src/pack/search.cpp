@@ -20,35 +20,15 @@ namespace {
 /// about half a second.
 constexpr double kSteps = 1.6e8;
 
-/// Charts up to which orders are searched for.
-constexpr Index kMostToOrder = 600;
-
 /// Room beyond the page in which layouts are made that then are brought to its size.
 constexpr double kStrip = 1.4;
 
 /// Densities that are tried, each lower than the one before, until margins are all that counts.
 constexpr int kMostStepsDown = 60;
 
-/// The density at which the charts with their margins would fill a share of the pages.
-double density_for(const Problem& problem, double share) {
-  double area = 0, length = 0;
-  for (Index c = 0; c < problem.size(); ++c) {
-    area += problem.area(c);
-    length += problem.length(c);
-  }
-  // area d^2 + length r d + n pi r^2 = share pages side^2, in texels, with r about half the margin
-  // and half a cell.
-  const double radius = problem.radius() + problem.cell() / 2;
-  const double side = problem.options().resolution;
-  const double room = share * problem.options().max_pages * side * side;
-  const double rest =
-      std::max(0.02 * room, room - problem.size() * std::numbers::pi * radius * radius);
-  if (area > 0) {
-    const double half = length * radius / 2;
-    return (std::sqrt(half * half + area * rest) - half) / area;
-  }
-  return side / length;
-}
+/// Many charts that with their margins fill less of a page than this are packed on the finest grid:
+/// a few long ones among them have not found the gaps that there are.
+constexpr double kPoorShare = 0.75;
 
 /// Disks of half the margin fill no more of a plane than this.
 constexpr double kDensestDisks = 0.9069;
@@ -89,7 +69,7 @@ class OnePage {
 
   Packed run() {
     start();
-    if (problem_.size() < kMostToOrder) improve();
+    if (problem_.few_to_order()) improve();
     return std::move(best_);
   }
 
@@ -142,7 +122,7 @@ class OnePage {
     constexpr double kEnough = 0.985;  // of the side
     constexpr int kMostTries = 12;
     double low = 0, high = 0;
-    set_density(density_for(problem_, kFirstShare));
+    set_density(problem_.density_for(problem_.few_to_order() ? kFirstShare : kFirstShareOfMany));
     for (int tries = 0;; ++tries) {
       const Layout layout = lay(first_, Rule::kLowest);
       const bool whole = layout.failed == kNone;
@@ -222,7 +202,9 @@ class OnePage {
   }
 
   static constexpr std::int64_t kPlansOfFew = 100;
-  static constexpr double kFirstShare = 0.75, kStepDown = 0.8;
+  /// What charts with their margins mostly fill; of many it is the more, and each layout counts.
+  static constexpr double kFirstShare = 0.75, kFirstShareOfMany = 0.84;
+  static constexpr double kStepDown = 0.8;
 
   const Problem& problem_;
   int cells_;
@@ -239,7 +221,7 @@ Packed pack_on_pages(const Problem& problem) {
   constexpr double kEnough = 1.005;
   const Page empty(problem.cells(), problem.cells());
   const Plan plan{problem.order(), {}};
-  double density = density_for(problem, 0.75), low = 0, high = 0;
+  double density = problem.density_for(0.75), low = 0, high = 0;
   Packed best;
   for (int step = 0; step < kMostStepsDown; ++step) {
     const Masks masks = problem.masks(density);
@@ -268,9 +250,18 @@ Packed pack_at_largest(const Problem& problem) {
   const double side = problem.options().resolution + 2 * problem.radius();
   const double disks = problem.size() * std::numbers::pi * problem.radius() * problem.radius();
   if (disks > kDensestDisks * problem.options().max_pages * side * side) refuse_margins(problem);
-  Packed packed =
-      problem.options().max_pages == 1 ? OnePage(problem).run() : pack_on_pages(problem);
-  return problem.size() < kMostToOrder ? grow(problem, std::move(packed)) : packed;
+  if (problem.options().max_pages > 1) {
+    Packed packed = pack_on_pages(problem);
+    return problem.few_to_order() ? grow(problem, std::move(packed)) : packed;
+  }
+  Packed packed = OnePage(problem).run();
+  if (!problem.few_to_order() && problem.can_be_finer() &&
+      packed.texels_per_unit < problem.density_for(kPoorShare)) {
+    const Problem finer = problem.on_finest_grid();
+    Packed again = OnePage(finer).run();
+    if (again.texels_per_unit > packed.texels_per_unit) packed = std::move(again);
+  }
+  return problem.few_to_order() ? grow(problem, std::move(packed)) : packed;
 }
 
 Packed pack_at_density(const Problem& problem, double density) {

@@ -124,8 +124,20 @@ TEST(Pack, ManyChartsKeepTheirMargins) {
   expect_sound(charts, options, pack_charts(charts, options, Work()));
 }
 
+TEST(Pack, ManyTinyChartsLieAsNearAsTheirMarginsAllow) {
+  // Squares of some texels: a grid of texels would leave half a one more around each.
+  const std::vector<PackChart> charts(2000, rectangle(1, 1));
+  PackOptions options;
+  options.turns = 4;
+  options.resolution = 256;
+  const Packing packing = pack_charts(charts, options, Work());
+  expect_sound(charts, options, packing);
+  // 45 to a row: 256 / 45 is 5.68, of which the margin takes 2.
+  EXPECT_GT(packing.texels_per_unit, 0.9 * 3.68);
+}
+
 TEST(Pack, TheSameBitsAtAnyNumberOfThreads) {
-  for (const int count : {12, 700}) {
+  for (const int count : {12, 700, 2500}) {
     PackOptions options;
     options.effort = 0.1;
     const std::vector<PackChart> charts = shards(count);

@@ -53,21 +53,30 @@ class Cells {
   std::vector<char> taken_;
 };
 
-TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
-  Page page(150, 90);
-  Cells cells(150, 90);
-  std::uint32_t state = 7;
-  const auto below = [&](std::uint32_t count) {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<int>((state >> 8) % count);
-  };
+/// Numbers that are the same everywhere.
+class Numbers {
+ public:
+  int below(std::uint32_t count) {
+    state_ = state_ * 1664525u + 1013904223u;
+    return static_cast<int>((state_ >> 8) % count);
+  }
+
+ private:
+  std::uint32_t state_ = 7;
+};
+
+/// Fills a page with triangles up to a size, each at the first place that cells one by one find.
+void expect_places_of_cells(Page page, Numbers& numbers, int rounds, std::uint32_t size) {
+  Cells cells(page.width(), page.height());
   std::int64_t steps = 0;
-  for (int round = 0; round < 60; ++round) {
-    const Mask mask = triangle(1 + below(40), 1 + below(30), 0.3 * below(5));
+  for (int round = 0; round < rounds; ++round) {
+    const double width = 1 + numbers.below(size), height = 1 + numbers.below(30);
+    const Mask mask = triangle(width, height, 0.3 * numbers.below(5));
     ASSERT_LE(mask.height, page.height());
+    const int last = page.height() - mask.height, to = page.width() - mask.width;
     int found = -1, row = -1;
-    for (int y = 0; y + mask.height <= page.height(); ++y) {
-      const int x = page.first_free(mask, y, page.width() - mask.width, steps);
+    for (int y = 0; y <= last; ++y) {
+      const int x = page.first_free(mask, y, to, steps);
       ASSERT_EQ(x, cells.first_free(mask, y));
       if (x >= 0 && found < 0) {
         found = x;
@@ -75,18 +84,47 @@ TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
       }
     }
     // What is skipped has no place.
-    int y = 0;
-    const int last = page.height() - mask.height, to = page.width() - mask.width;
-    while (y <= last) {
+    for (int y = 0; y <= last; ++y) {
       const int next = page.skip_full_rows(mask, y, last, to, steps);
       for (; y < std::min(next, last + 1); ++y) ASSERT_EQ(cells.first_free(mask, y), -1);
-      ++y;
     }
     if (found < 0) continue;
     page.take(mask, found, row);
     cells.take(mask, found, row);
     ASSERT_EQ(page.free_cells(), cells.free_cells());
   }
+  EXPECT_GT(steps, 0);
+}
+
+TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
+  // Parts of a row are 1, 4, 64 and 128 cells here.
+  const std::vector<int> widths{60, 150, 4096, 4500};
+  Numbers numbers;
+  for (const int width : widths) {
+    SCOPED_TRACE(width);
+    expect_places_of_cells(Page(width, 90), numbers, 60, 40);
+  }
+  expect_places_of_cells(Page(4500, 40), numbers, 80, 900);
+}
+
+TEST(Page, ForSmallMasksIsSmallerAndTheSame) {
+  Page page(300, 80);
+  page.take(triangle(70, 50, 1), 40, 3);
+  const Mask largest = triangle(12, 9, 1), small = triangle(5, 4, 1);
+  Page copy(page, largest.needs);
+  EXPECT_EQ(copy.free_cells(), page.free_cells());
+  std::int64_t steps = 0;
+  const auto expect_same = [&](const Mask& mask) {
+    for (int y = 0; y + mask.height <= page.height(); ++y) {
+      const int to = page.width() - mask.width;
+      EXPECT_EQ(copy.first_free(mask, y, to, steps), page.first_free(mask, y, to, steps));
+    }
+  };
+  expect_same(largest);
+  const int x = page.first_free(largest, 5, page.width() - largest.width, steps);
+  page.take(largest, x, 5);
+  copy.take(largest, x, 5, small.needs);  // from now on for the small one alone
+  expect_same(small);
 }
 
 /// That a mask of the frame below, turned so, has the cells that it is to have.
