@@ -77,6 +77,7 @@ bool any_on_another(const std::vector<PlacedOutline>& charts) {
       poll();
       const Index a = order[i], b = order[j];
       if (boxes[b].min().x() > boxes[a].max().x()) break;
+      if (charts[a].stays && charts[b].stays) continue;
       if (charts[a].page != charts[b].page || !boxes[a].intersects(boxes[b])) continue;
       const auto lies_on = [&](Index upper, Index lower) {
         return std::any_of(parts[upper].begin(), parts[upper].end(), [&](const Vec2& p) {
@@ -102,7 +103,7 @@ Clearance clearance(const std::vector<PlacedOutline>& charts, double side, doubl
   Clearance least{reach, reach};
   for (const PlacedOutline& chart : charts) {
     const Eigen::AlignedBox2d box = box_of(chart);
-    if (box.isEmpty()) continue;
+    if (box.isEmpty() || chart.stays) continue;
     least.page = std::min({least.page, box.min().minCoeff(), side - box.max().maxCoeff()});
   }
   // A walk along an edge passes within half a step of its point that is nearest to the other.
@@ -119,6 +120,7 @@ Clearance clearance(const std::vector<PlacedOutline>& charts, double side, doubl
           poll();
           if (other.chart <= c) continue;
           const PlacedOutline& chart = charts[other.chart];
+          if (chart.stays && charts[c].stays) continue;
           const auto& [start, end] = chart.edges[other.edge];
           least.charts =
               std::min(least.charts, distance(p, q, chart.points[start], chart.points[end]));

@@ -14,13 +14,15 @@ struct PlacedOutline {
   Index page = 0;
   std::vector<Vec2> points;                 ///< in texels
   std::vector<std::array<Index, 2>> edges;  ///< as of an Outline
+  bool stays = false;                       ///< it lies where it has to
 };
 
 PlacedOutline placed(const Outline& outline, const Placement& placement, double density);
 
 /// The least distance between the borders of two charts of one page, 0 where they cross or one
 /// lies on the other; `reach` where none is that near. The same for that to the edges of the page,
-/// of `side` texels, negative outside of it. Precondition: reach > 0, finite points.
+/// of `side` texels, negative outside of it. What stays is compared with neither its like nor the
+/// page. Precondition: reach > 0, finite points.
 struct Clearance {
   double charts = 0, page = 0;
 };

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "pack/blocks.h"
 #include "pack/clearance.h"
 #include "pack/edge_grid.h"
 #include "pack/outline.h"
@@ -18,8 +20,11 @@ namespace {
 /// Points of borders that may be moved in steps, at an effort of one: about a second.
 constexpr double kPointSteps = 2e6;
 
-/// What a step costs beside, in points.
-constexpr double kPointsOfStep = 200;
+/// What a step costs beside, in points; and what an edge does beside each block that is near.
+constexpr double kPointsOfStep = 200, kPointsOfBlock = 0.1;
+
+/// Blocks of all pages up to which they are followed: some ten megabytes.
+constexpr std::int64_t kMostBlocks = 1 << 22;
 
 /// Margins below this many texels leave no room for the steps to err.
 constexpr double kLeastMargin = 1;
@@ -27,6 +32,9 @@ constexpr double kLeastMargin = 1;
 /// Texels: borders are thinned by so much, distances held to so much; how far contacts are looked
 /// for beyond the margin, and how far a point may move in a step.
 constexpr double kThin = 0.02, kHeld = 0.01, kAhead = 0.75, kFurthest = 0.5;
+
+/// Of the margin: by how much two charts come nearer when they are scaled.
+constexpr double kNearer = 0.5;
 
 /// Where a chart is: the place of its middle, and how it is turned.
 struct Pose {
@@ -37,6 +45,7 @@ struct Pose {
 struct Body {
   Index chart = kNone, page = 0;
   Outline outline;
+  double density = 0;                   // that of a chart that is kept; 0: that of all
   double lightness = 0, slackness = 0;  // inverses of mass and moment of inertia
 };
 
@@ -61,26 +70,33 @@ struct Contact {
 
 class Growth {
  public:
-  Growth(const Problem& problem, const Packed& packed)
-      : side_(problem.options().resolution),
+  Growth(const Problem& problem, const Packed& packed, double limit)
+      : limit_(limit),
+        side_(problem.options().resolution),
         margin_(2 * problem.radius() + 2 * (kThin + kHeld)),
         turns_(problem.options().turns > 4) {
+    if (problem.options().block > 1) {
+      blocks_.emplace(problem.cells(), problem.cell(), margin_ / 2 - kHeld);
+    }
     for (Index c = 0; c < problem.size(); ++c) {
       const Outline& outline = problem.outline(c);
       if (outline.edges.empty()) continue;
-      const double density = packed.texels_per_unit * problem.chart(c).scale;
-      Body body{c, packed.placements[c].page, outline};
+      const bool stays = problem.chart(c).kept.has_value();
+      const double texels_per_unit = stays ? limit : packed.texels_per_unit;
+      const double density = texels_per_unit * problem.chart(c).scale;
+      Body body{c, packed.placements[c].page, outline, stays ? limit : 0};
       Eigen::AlignedBox2d box;
       for (const Vec2& p : outline.hull) box.extend(p);
       const Vec2 middle = box.center();
       for (Vec2& p : body.outline.points) p = problem.chart(c).scale * (p - middle);
-      thin(body.outline, kThin / packed.texels_per_unit);
+      thin(body.outline, kThin / texels_per_unit);
       double inertia = 0;
       for (const Vec2& p : body.outline.points) inertia += p.squaredNorm();
-      inertia *= packed.texels_per_unit * packed.texels_per_unit / size_of(body.outline.points);
+      inertia *= texels_per_unit * texels_per_unit / size_of(body.outline.points);
       const double mass = std::max(1.0, box.sizes().norm() * density);
-      body.lightness = 1 / mass;
-      body.slackness = turns_ ? 1 / (mass * std::max(inertia, 1.0)) : 0;
+      if (!stays) extent_ = std::max(extent_, box.sizes().norm() * density);
+      body.lightness = stays ? 0 : 1 / mass;
+      body.slackness = turns_ && !stays ? 1 / (mass * std::max(inertia, 1.0)) : 0;
       points_ += size_of(body.outline.points);
       poses_.push_back({packed.placements[c].place(middle, density), packed.placements[c].turn});
       middles_.push_back(problem.chart(c).scale * middle);
@@ -91,15 +107,21 @@ class Growth {
 
   void run(double effort) {
     constexpr double kFirstRate = 0.004, kGreatestRate = 0.01, kLeastRate = 0.0004;
+    // Borders that pass each other in a step are not seen to touch.
+    const double greatest = std::min(kGreatestRate, kNearer * margin_ / extent_);
+    const double least = std::min(kLeastRate, 0.1 * greatest);
     const double budget = effort * kPointSteps;
-    double rate = kFirstRate;
-    while (rate > kLeastRate && spent_ < budget) {
+    double rate = std::min(kFirstRate, greatest);
+    while (rate > least && spent_ < budget && density_ < limit_) {
       const std::vector<Pose> before = poses_;
-      if (settle(density_ * (1 + rate))) {
-        density_ *= 1 + rate;
-        rate = std::min(1.3 * rate, kGreatestRate);
+      const std::optional<Blocks> blocks_before = blocks_;
+      const double raised = std::min(density_ * (1 + rate), limit_);
+      if (settle(raised)) {
+        density_ = raised;
+        rate = std::min(1.3 * rate, greatest);
       } else {
         poses_ = before;
+        blocks_ = blocks_before;
         rate /= 2;
       }
     }
@@ -108,6 +130,7 @@ class Growth {
   Packed result(const Packed& packed) const {
     Packed grown{packed.placements, density_};
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b].density > 0) continue;
       Placement& placement = grown.placements[bodies_[b].chart];
       placement.turn = poses_[b].turn;
       placement.offset = poses_[b].middle - density_ * rotated(poses_[b].turn, middles_[b]);
@@ -121,8 +144,9 @@ class Growth {
     constexpr int kMostSteps = 30;
     double worst_before = HUGE_VAL;
     for (int step = 0; step < kMostSteps; ++step) {
-      find_contacts(density);
+      const bool apart = find_contacts(density);
       spent_ += static_cast<double>(points_) + kPointsOfStep;
+      if (!apart) return false;
       double worst = 0;
       for (const Contact& contact : contacts_) worst = std::max(worst, -contact.gap);
       if (worst <= kHeld) return true;
@@ -136,13 +160,17 @@ class Growth {
     return false;
   }
 
-  void find_contacts(double density) {
+  /// False where charts lie on blocks of others.
+  bool find_contacts(double density) {
     std::vector<PlacedOutline> placed(bodies_.size());
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      placed[b].page = bodies_[b].page;
-      placed[b].edges = bodies_[b].outline.edges;
-      for (const Vec2& p : bodies_[b].outline.points) {
-        placed[b].points.push_back(poses_[b].middle + density * rotated(poses_[b].turn, p));
+      const Body& body = bodies_[b];
+      const double own = body.density > 0 ? body.density : density;
+      placed[b].page = body.page;
+      placed[b].edges = body.outline.edges;
+      placed[b].stays = body.density > 0;
+      for (const Vec2& p : body.outline.points) {
+        placed[b].points.push_back(poses_[b].middle + own * rotated(poses_[b].turn, p));
       }
     }
     contacts_.clear();
@@ -151,10 +179,27 @@ class Growth {
     for (Index b = 0; b < size_of(bodies_); ++b) {
       for (const Vec2& p : placed[b].points) {
         poll();
-        add_walls(b, p);
+        if (!placed[b].stays) add_walls(b, p);
         add_nearest(grid, placed, b, p);
       }
     }
+    return !blocks_ || add_blocks(placed);
+  }
+
+  /// Between a chart and the blocks of others.
+  bool add_blocks(const std::vector<PlacedOutline>& placed) {
+    blocks_->take(placed);
+    for (Index b = 0; b < size_of(bodies_); ++b) {
+      if (placed[b].stays) continue;
+      const std::vector<NearBlock> found = blocks_->near(placed, b, margin_ / 2 + kAhead);
+      spent_ += kPointsOfBlock * static_cast<double>(found.size() * placed[b].edges.size());
+      for (const NearBlock& near : found) {
+        if (!(near.distance > 0)) return false;
+        const Vec2 normal = (near.on_chart - near.on_block) / near.distance;
+        add(b, kNone, near.on_chart, near.on_block, normal, near.distance - margin_ / 2);
+      }
+    }
+    return true;
   }
 
   /// Between a point and the edges of the page.
@@ -181,7 +226,7 @@ class Growth {
       }
     };
     for (const ChartEdge& near : grid.near(placed[body].page, p)) {  // chart by chart
-      if (near.chart == body) continue;
+      if (near.chart == body || (placed[near.chart].stays && placed[body].stays)) continue;
       if (near.chart != other) {
         flush();
         other = near.chart;
@@ -252,8 +297,10 @@ class Growth {
     if (turns_) poses_[b].turn = turn / portable::hypot(turn.x(), turn.y());
   }
 
-  double side_, margin_;
+  double limit_, side_, margin_;
+  double extent_ = 1;  // texels from end to end of the largest chart that grows
   bool turns_;
+  std::optional<Blocks> blocks_;
   double density_ = 0, spent_ = 0;
   Index points_ = 0;
   std::vector<Body> bodies_;
@@ -262,26 +309,39 @@ class Growth {
   std::vector<Contact> contacts_;
 };
 
-/// Whether all charts keep the margin, by the distances of their whole borders.
-bool holds(const Problem& problem, const Packed& packed) {
+/// Whether all charts keep the margin, by the distances of their whole borders, and share no block.
+bool holds(const Problem& problem, const Packed& packed, double limit) {
   std::vector<PlacedOutline> charts;
   for (Index c = 0; c < problem.size(); ++c) {
-    charts.push_back(placed(problem.outline(c), packed.placements[c],
-                            packed.texels_per_unit * problem.chart(c).scale));
+    const bool stays = problem.chart(c).kept.has_value();
+    const double density = stays ? limit : packed.texels_per_unit;
+    charts.push_back(
+        placed(problem.outline(c), packed.placements[c], density * problem.chart(c).scale));
+    charts.back().stays = stays;
   }
   const double margin = 2 * problem.radius();
   const Clearance least = clearance(charts, problem.options().resolution, margin);
-  return least.charts >= margin && least.page >= margin / 2;
+  if (least.charts < margin || least.page < margin / 2) return false;
+  if (problem.options().block == 1) return true;
+  Blocks blocks(problem.cells(), problem.cell(), problem.radius());
+  return blocks.take(charts);
 }
 
 }  // namespace
 
-Packed grow(const Problem& problem, Packed packed) {
-  if (problem.options().margin < kLeastMargin || problem.options().block > 1) return packed;
-  Growth growth(problem, packed);
+Packed grow(const Problem& problem, Packed packed, double limit) {
+  if (problem.options().margin < kLeastMargin) return packed;
+  if (problem.options().block > 1) {
+    std::int64_t pages = 1;
+    for (const Placement& placement : packed.placements) {
+      pages = std::max<std::int64_t>(pages, placement.page + 1);
+    }
+    if (pages * problem.cells() * problem.cells() > kMostBlocks) return packed;
+  }
+  Growth growth(problem, packed, limit);
   growth.run(problem.options().effort);
   Packed grown = growth.result(packed);
-  return grown.texels_per_unit > packed.texels_per_unit && holds(problem, grown)
+  return grown.texels_per_unit > packed.texels_per_unit && holds(problem, grown, limit)
              ? std::move(grown)
              : std::move(packed);
 }

@@ -265,21 +265,32 @@ Packed pack_at_largest(const Problem& problem) {
 }
 
 Packed pack_at_density(const Problem& problem, double density) {
-  const Masks masks = problem.masks(density);
   const Page empty(problem.cells(), problem.cells());
   const Plan plan{problem.order(), {}};
+  Index failed = kNone;
+  const auto lay = [&](const Masks& masks, Rule rule) {
+    Layout layout = place_in_order(masks, plan, rule, problem.kept_pages(density), empty,
+                                   problem.options().max_pages);
+    if (failed == kNone) failed = layout.failed;
+    return layout;
+  };
+  const Masks masks = problem.masks(density);
   for (const Rule rule : {Rule::kLowest, Rule::kCorner}) {
-    const Layout layout = place_in_order(masks, plan, rule, problem.kept_pages(density), empty,
-                                         problem.options().max_pages);
+    const Layout layout = lay(masks, rule);
     if (layout.failed == kNone) return {problem.placements(masks, layout), density};
-    if (rule == Rule::kCorner) {
-      throw Error(Fault::kInvalidArgument,
-                  "chart " + std::to_string(layout.failed) +
-                      " finds no room at these texels per unit: lower them, or raise the "
-                      "resolution or the number of pages");
-    }
   }
-  return {};
+  // Charts that fit at a lower density may grow to that asked for, and push one another aside.
+  for (const double share : {0.98, 0.96, 0.94, 0.92}) {
+    const Masks lower = problem.masks(share * density);
+    const Layout layout = lay(lower, Rule::kLowest);
+    if (layout.failed != kNone) continue;
+    Packed grown = grow(problem, {problem.placements(lower, layout), share * density}, density);
+    if (grown.texels_per_unit >= density) return grown;
+  }
+  throw Error(Fault::kInvalidArgument,
+              "chart " + std::to_string(failed) +
+                  " finds no room at these texels per unit: lower them, or raise the "
+                  "resolution or the number of pages");
 }
 
 }  // namespace beltrami

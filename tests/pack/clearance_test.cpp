@@ -25,6 +25,14 @@ TEST(Clearance, IsNoneAcrossPages) {
   EXPECT_EQ(clearance({square(10, 10, 5), other}, 100, 3).charts, 3);
 }
 
+TEST(Clearance, IsNoneBetweenThoseThatStay) {
+  PlacedOutline one = square(10, 10, 5), other = square(12, 12, 5), beyond = square(-3, 50, 5);
+  one.stays = other.stays = beyond.stays = true;
+  EXPECT_EQ(clearance({one, other, beyond}, 100, 3).charts, 3);
+  EXPECT_EQ(clearance({one, other, beyond}, 100, 3).page, 3);
+  EXPECT_EQ(clearance({one, other, square(18, 12, 5)}, 100, 3).charts, 1);
+}
+
 TEST(Clearance, IsZeroWhereChartsCrossFarFromTheirVertices) {
   PlacedOutline bar = square(10, 10, 0);
   bar.points = {{10, 48}, {90, 48}, {90, 52}, {10, 52}};

@@ -250,28 +250,98 @@ TEST(Pack, ChartsThatAreKeptStay) {
   }
 }
 
-TEST(Pack, BlocksAreOfOneChart) {
-  const std::vector<PackChart> charts = shards(20);
+/// Nine squares on a page of 1,024 texels, as large as their margins allow but for half a texel
+/// each, of which the cells of the grid, two texels, take more; and the place of the first.
+struct NineSquares {
+  std::vector<PackChart> charts = std::vector<PackChart>(9, rectangle(1, 1));
   PackOptions options;
-  options.resolution = 256;
-  options.block = 4;
-  options.effort = 0.1;
-  const Packing packing = pack_charts(charts, options, Work());
-  expect_sound(charts, options, packing);
-  // Nothing but a chart's own border, sampled densely, lies in its blocks.
-  std::vector<Index> owner(64 * 64, kNone);
+  Placement first{0, Vec2(1, 0), Vec2(1.01, 1.01)};
+
+  NineSquares() {
+    options.turns = 1;
+    options.texels_per_unit = 338.8;
+  }
+};
+
+TEST(Pack, ChartsGrowToTheDensityThatIsAskedFor) {
+  NineSquares nine;
+  const Packing packing = pack_charts(nine.charts, nine.options, Work());
+  expect_sound(nine.charts, nine.options, packing);
+  EXPECT_EQ(packing.texels_per_unit, nine.options.texels_per_unit);
+  nine.options.effort = 0;  // without growth
+  EXPECT_THROW(pack_charts(nine.charts, nine.options, Work()), Error);
+}
+
+TEST(Pack, ChartsGrowBesideThoseThatStay) {
+  NineSquares nine;
+  nine.charts[0].kept = nine.first;
+  const Packing packing = pack_charts(nine.charts, nine.options, Work());
+  expect_sound(nine.charts, nine.options, packing);
+  EXPECT_EQ(packing.placements[0].offset, nine.first.offset);
+  EXPECT_EQ(packing.placements[0].turn, nine.first.turn);
+  EXPECT_EQ(packing.texels_per_unit, nine.options.texels_per_unit);
+  nine.options.effort = 0;
+  EXPECT_THROW(pack_charts(nine.charts, nine.options, Work()), Error);
+}
+
+TEST(Pack, ChartsThatStayMayLieOnEachOtherAndBeyondThePage) {
+  NineSquares nine;
+  nine.charts[0].kept = nine.first;
+  nine.charts.push_back(nine.charts[0]);
+  nine.charts.back().kept->offset = {-4, 1};
+  const Packing packing = pack_charts(nine.charts, nine.options, Work());
+  EXPECT_EQ(packing.placements.back().offset, nine.charts.back().kept->offset);
+  EXPECT_EQ(packing.texels_per_unit, nine.options.texels_per_unit);
+}
+
+/// That nothing but a chart's own border, sampled densely, lies in its blocks.
+void expect_blocks_of_one(const std::vector<PackChart>& charts, const PackOptions& options,
+                          const Packing& packing) {
+  const int count = options.resolution / options.block;
+  std::vector<Index> owner(static_cast<std::size_t>(count) * count * packing.pages, kNone);
   const std::vector<PlacedOutline> placed = delivered(charts, options, packing);
   for (Index c = 0; c < size_of(placed); ++c) {
     for (const auto& [from, to] : placed[c].edges) {
       for (int k = 0; k <= 1000; ++k) {
         const Vec2 p =
             placed[c].points[from] + k / 1000.0 * (placed[c].points[to] - placed[c].points[from]);
-        Index& block = owner[static_cast<int>(p.y() / 4) * 64 + static_cast<int>(p.x() / 4)];
+        const int row = placed[c].page * count + static_cast<int>(p.y() / options.block);
+        Index& block = owner[row * count + static_cast<int>(p.x() / options.block)];
         EXPECT_TRUE(block == kNone || block == c);
         block = c;
       }
     }
   }
+}
+
+TEST(Pack, BlocksAreOfOneChart) {
+  const std::vector<PackChart> charts = shards(20);
+  for (const int pages : {1, 2}) {
+    PackOptions options;
+    options.resolution = 256;
+    options.block = 4;
+    options.effort = 0.1;
+    options.max_pages = pages;
+    const Packing packing = pack_charts(charts, options, Work());
+    expect_sound(charts, options, packing);
+    expect_blocks_of_one(charts, options, packing);
+    options.effort = 0;
+    EXPECT_GE(packing.utilisation, pack_charts(charts, options, Work()).utilisation);
+  }
+}
+
+TEST(Pack, ChartsGrowWithinTheirBlocks) {
+  // Some blocks beside a square are free, but never one to each side of it.
+  const std::vector<PackChart> charts{rectangle(1, 1), rectangle(1, 0.2)};
+  PackOptions options;
+  options.resolution = 256;
+  options.block = 32;
+  options.turns = 1;
+  const Packing packing = pack_charts(charts, options, Work());
+  expect_sound(charts, options, packing);
+  expect_blocks_of_one(charts, options, packing);
+  // Six rows of blocks for the square and two for the bar: the square fills its rows.
+  EXPECT_GT(packing.texels_per_unit, 6 * 32 - 2.3);
 }
 
 TEST(Pack, FoldedChartsCoverWhatTheirFacesDo) {
