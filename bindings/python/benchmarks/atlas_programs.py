@@ -88,28 +88,13 @@ def uvatlas(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -
 def blender(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -> Call:
     """Prepare Blender's Smart UV Project."""
     import bpy
+    from blender_mesh import edited, uvs_of
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    mesh = bpy.data.meshes.new("mesh")
-    mesh.from_pydata(vertices.tolist(), [], faces.tolist())
-    mesh.uv_layers.new()
-    thing = bpy.data.objects.new("mesh", mesh)
-    bpy.context.collection.objects.link(thing)
-    bpy.context.view_layer.objects.active = thing
-    thing.select_set(True)
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
+    mesh = edited(vertices, faces)
 
     def call() -> tuple[np.ndarray, tuple[float, float]]:
         bpy.ops.uv.smart_project()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        corners = np.zeros(len(mesh.loops), np.int32)
-        mesh.loops.foreach_get("vertex_index", corners)
-        if not np.array_equal(corners, faces.ravel()):
-            raise ValueError("Blender changed the triangles")
-        uvs = np.zeros(2 * len(corners), np.float32)
-        mesh.uv_layers.active.uv.foreach_get("vector", uvs)
-        return uvs.astype(float), SQUARE
+        return uvs_of(mesh, faces), SQUARE
 
     return call
 

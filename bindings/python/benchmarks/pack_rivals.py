@@ -23,22 +23,9 @@ Packed = tuple[np.ndarray, float]
 def blender(uvs: np.ndarray, faces: np.ndarray, resolution: int, margin: float) -> Packed:
     """Pack by Blender's exact shapes, at any angle: each chart has half the margin about it."""
     import bpy
+    from blender_mesh import edited, uvs_of
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    mesh = bpy.data.meshes.new("mesh")
-    mesh.from_pydata(np.pad(uvs, ((0, 0), (0, 1))).tolist(), [], faces.tolist())
-    layer = mesh.uv_layers.new()
-    corners = np.zeros(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    if not np.array_equal(corners, faces.ravel()):
-        raise ValueError("Blender changed the triangles")
-    layer.uv.foreach_set("vector", uvs[corners].astype(np.float32).ravel())
-    thing = bpy.data.objects.new("mesh", mesh)
-    bpy.context.collection.objects.link(thing)
-    bpy.context.view_layer.objects.active = thing
-    thing.select_set(True)
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
+    mesh = edited(np.pad(uvs, ((0, 0), (0, 1))), faces, uvs)
     bpy.ops.uv.select_all(action="SELECT")
     start = time.process_time()
     bpy.ops.uv.pack_islands(
@@ -51,10 +38,7 @@ def blender(uvs: np.ndarray, faces: np.ndarray, resolution: int, margin: float) 
         margin=margin / 2 / resolution,
     )
     seconds = time.process_time() - start
-    bpy.ops.object.mode_set(mode="OBJECT")
-    packed = np.zeros(2 * len(corners), np.float32)
-    mesh.uv_layers.active.uv.foreach_get("vector", packed)
-    return packed.astype(float).reshape(-1, 3, 2), seconds
+    return uvs_of(mesh, faces), seconds
 
 
 def uvunwrap(uvs: np.ndarray, faces: np.ndarray, resolution: int, margin: float) -> Packed:
