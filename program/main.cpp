@@ -66,11 +66,19 @@ constexpr const char* kPack =
     "  beltrami pack town.obj out.obj --texels-per-unit 64 --masks masks/town";
 
 constexpr const char* kTransfer =
-    "OLD and NEW are one mesh with two layouts of UVs: the same faces in the same order. What\n"
-    "TEXTURE shows on OLD, OUT shows on NEW: each texel reads the old page between its texels, "
+    "OLD and NEW are one mesh with two layouts of UVs, or two meshes of one shape. What TEXTURE\n"
+    "shows on OLD, OUT shows on NEW: each texel reads the old page between its texels, and "
+    "gutters\n"
+    "are filled from their neighbours. Where NEW has the faces of OLD in the same order, a texel\n"
+    "shows what its place on the face did. Where it has others (cut into other triangles, "
+    "decimated,\n"
+    "in another order), a texel shows the nearest place of OLD within 2% of its size that looks "
+    "to\n"
+    "the same side, so that thin walls keep their two sides; how many texels find none is said, "
     "and\n"
-    "gutters are filled from their neighbours. Pages of OLD behind the first are name.1001.png,\n"
-    "name.1002.png and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
+    "it is refused where all do not. Pages of OLD behind the first are name.1001.png, "
+    "name.1002.png\n"
+    "and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
     "  beltrami unwrap painted.obj better.obj\n"
     "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
 
@@ -120,10 +128,11 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
 }
 
 CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
-  CLI::App* command =
-      app.add_subcommand("transfer", "Bake a texture of a mesh for other UVs of it");
+  CLI::App* command = app.add_subcommand(
+      "transfer", "Bake a texture of a mesh for other UVs or another mesh of it");
   command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
-  command->add_option("NEW", arguments.new_mesh, "The same mesh with other UVs")->required();
+  command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
+      ->required();
   command->add_option("TEXTURE", arguments.texture, "Texture to read: .png")->required();
   command->add_option("OUT", arguments.output, "Texture to write: .png")->required();
   command

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "picture/raster.h"
+#include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -61,35 +62,43 @@ void grow(Pixels& page, std::vector<bool>& filled) {
 
 }  // namespace
 
-Pixels bake(const std::vector<BakedTriangle>& triangles, const std::vector<Pixels>& pages, int side,
-            int margin) {
-  Pixels page;
+Baked bake(const std::vector<BakedTriangle>& triangles, const SourceOf& source_of,
+           const std::vector<Pixels>& pages, int side, int margin) {
+  Baked baked;
+  Pixels& page = baked.image;
   page.width = page.height = side;
   page.components = pages.front().components;
   page.values.assign(page.row_size() * static_cast<std::size_t>(side), 0);
   std::vector<bool> filled(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), false);
-  for (const BakedTriangle& triangle : triangles) {
+  std::vector<bool> covered = filled;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    throw_if_interrupted();
     std::array<Point, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = {triangle.to[k][0], side - triangle.to[k][1], 0};
+      corners[k] = {triangles[t][k][0], side - triangles[t][k][1], 0};
     }
-    const auto& from = triangle.from;
     visit_triangle(
         corners[0], corners[1], corners[2], side, side, [&](int column, int row, const Weights& w) {
-          const double u = w[0] * from[0][0] + w[1] * from[1][0] + w[2] * from[2][0];
-          const double v = w[0] * from[0][1] + w[1] * from[1][1] + w[2] * from[2][1];
           const std::size_t texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
                                     static_cast<std::size_t>(column);
+          covered[texel] = true;
+          const std::optional<Source> source = source_of(t, w);
+          if (!source) return;
           filled[texel] = true;
           for (int k = 0; k < page.components; ++k) {
             page.values[texel * static_cast<std::size_t>(page.components) +
                         static_cast<std::size_t>(k)] =
-                static_cast<std::uint8_t>(sample(pages[triangle.from_page], u, v, k) + 0.5);
+                static_cast<std::uint8_t>(sample(pages[source->page], source->u, source->v, k) +
+                                          0.5);
           }
         });
   }
+  for (std::size_t texel = 0; texel < filled.size(); ++texel) {
+    baked.covered += covered[texel] ? 1 : 0;
+    baked.without_source += covered[texel] && !filled[texel] ? 1 : 0;
+  }
   for (int step = 0; step < margin; ++step) grow(page, filled);
-  return page;
+  return baked;
 }
 
 }  // namespace beltrami::cli

@@ -2,24 +2,40 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "picture/stb_in_one_place.h"
 
 namespace beltrami::cli {
 
-/// A triangle in texels of the page that is baked and in [0, 1]^2 of the page that is read.
-struct BakedTriangle {
-  std::array<std::array<double, 2>, 3> to, from;
-  std::uint64_t from_page = 0;
+/// A triangle in texels of the page that is baked.
+using BakedTriangle = std::array<std::array<double, 2>, 3>;
+
+/// Where a texel is read: in [0, 1]^2 of a page.
+struct Source {
+  std::uint64_t page = 0;
+  double u = 0, v = 0;
+};
+
+/// The source of a point of a triangle, by the weights of its corners; none where there is none.
+using SourceOf = std::function<std::optional<Source>(std::size_t triangle,
+                                                     const std::array<double, 3>& weights)>;
+
+struct Baked {
+  Pixels image;
+  std::uint64_t covered = 0, without_source = 0;  ///< texels, each once
 };
 
 /// Bakes a square page of `side` texels: what has its centre in a triangle is read from `pages`
-/// between texels, bilinearly, and up to `margin` texels beside it have the mean of their nearest
-/// neighbours. The rest is 0. Rows are counted from the top, `to` from the bottom. Precondition:
-/// `pages` have as many components and are not empty, and `from_page` is one of them.
-Pixels bake(const std::vector<BakedTriangle>& triangles, const std::vector<Pixels>& pages, int side,
-            int margin);
+/// between texels, bilinearly, and up to `margin` texels beside what is read have the mean of their
+/// nearest neighbours; so have texels without a source. The rest is 0. Rows are counted from the
+/// top, `triangles` from the bottom. Precondition: `pages` have as many components and are not
+/// empty, and sources are on one of them.
+Baked bake(const std::vector<BakedTriangle>& triangles, const SourceOf& source_of,
+           const std::vector<Pixels>& pages, int side, int margin);
 
 }  // namespace beltrami::cli
