@@ -1,7 +1,6 @@
 #include "pack/page.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 namespace beltrami {
