@@ -27,6 +27,11 @@ int unit_of(double size) {
   return std::abs(exponent) > kModerate ? exponent : 0;
 }
 
+/// x * 2^exponent, which is nearly always x.
+double times_power(double x, int exponent) {
+  return exponent == 0 ? x : std::ldexp(x, exponent);
+}
+
 /// Times a power of two that need not be a double itself.
 template <class Vector>
 void scale(Vector& v, int exponent) {
@@ -82,9 +87,9 @@ FaceDistortion measure(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& 
   const double sum = a + b;
   // a - b would cancel on stretched faces; the quotient may round to more than the greater one.
   const double quotient = sum > 0 ? std::clamp(det / sum, -sum, sum) : 0;
-  const double s1 = std::ldexp(sum, plane.unit - space.unit),
-               s2 = std::ldexp(quotient, plane.unit - space.unit);
-  FaceDistortion result{std::ldexp(area, 2 * (space.unit - unit)), s1, s2, kInfinity, kInfinity};
+  const double s1 = times_power(sum, plane.unit - space.unit),
+               s2 = times_power(quotient, plane.unit - space.unit);
+  FaceDistortion result{times_power(area, 2 * (space.unit - unit)), s1, s2, kInfinity, kInfinity};
   if (!(det > 0)) return result;
   const double energy = 0.5 * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2));
   if (!std::isfinite(energy)) return result;

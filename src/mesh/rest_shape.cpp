@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -33,6 +34,30 @@ RestTriangle mollified(const std::array<Vec3, 3>& p, double mean_edge) {
   return {x1, turned.real(), turned.imag()};
 }
 
+double mean_edge(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                 const Work& work) {
+  const auto edge_sum = [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (int k = 0; k < 3; ++k) {
+        sum += (positions[faces[f][next_corner(k)]] - positions[faces[f][k]]).norm();
+      }
+    }
+    return sum;
+  };
+  return parallel_sum(work, size_of(faces), kGrain, edge_sum) / (3.0 * size_of(faces));
+}
+
+/// Gives the degenerate faces their shapes.
+void mollify_degenerate(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                        const Work& work, std::vector<RestTriangle>& rest) {
+  const double mean = mean_edge(positions, faces, work);
+  for (const Index f : degenerate_faces(positions, faces, work)) {
+    const auto [a, b, c] = faces[f];
+    rest[f] = mollified({positions[a], positions[b], positions[c]}, mean);
+  }
+}
+
 }  // namespace
 
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -51,32 +76,24 @@ std::vector<Index> degenerate_faces(const std::vector<Vec3>& positions,
 
 std::vector<RestTriangle> rest_triangles(const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& faces, const Work& work) {
-  const auto edge_sum = [&](std::int64_t begin, std::int64_t end) {
-    double sum = 0;
-    for (std::int64_t f = begin; f < end; ++f) {
-      for (int k = 0; k < 3; ++k) {
-        sum += (positions[faces[f][next_corner(k)]] - positions[faces[f][k]]).norm();
-      }
-    }
-    return sum;
-  };
-  const double mean_edge =
-      parallel_sum(work, size_of(faces), kGrain, edge_sum) / (3.0 * size_of(faces));
-
   std::vector<RestTriangle> rest;
   parallel_assign(work, rest, faces.size());
+  std::atomic<bool> all_good{true};
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    bool good = true;
     for (std::int64_t f = begin; f < end; ++f) {
-      const std::array<Vec3, 3> p = {positions[faces[f][0]], positions[faces[f][1]],
-                                     positions[faces[f][2]]};
-      const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
-      const double x1 = e1.norm();
-      const double double_area = e1.cross(e2).norm();
-      rest[f] = is_degenerate(p[0], p[1], p[2])
-                    ? mollified(p, mean_edge)
-                    : RestTriangle{x1, e1.dot(e2) / x1, double_area / x1};
+      const auto [a, b, c] = faces[f];
+      const Vec3 e1 = positions[b] - positions[a], e2 = positions[c] - positions[a];
+      const double sq1 = e1.squaredNorm();
+      const double longest_sq =
+          std::max({sq1, e2.squaredNorm(), (positions[c] - positions[b]).squaredNorm()});
+      const double x1 = std::sqrt(sq1), double_area = e1.cross(e2).norm();
+      good = good && double_area > kDegenerateHeight * longest_sq;
+      rest[f] = {x1, e1.dot(e2) / x1, double_area / x1};
     }
+    if (!good) all_good = false;
   });
+  if (!all_good) mollify_degenerate(positions, faces, work, rest);
   return rest;
 }
 
