@@ -26,4 +26,8 @@ CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
                        std::vector<Triangle> faces, std::vector<Index> collapsed_into,
                        const Work& work);
 
+/// The same where the adjacency of what is left is known.
+CoarseDisk coarse_disk(Surface left, std::vector<Index> fine_vertex,
+                       std::vector<Index> collapsed_into, const Work& work);
+
 }  // namespace beltrami

@@ -27,6 +27,23 @@ std::vector<Index> follow_collapses(std::vector<Index> into,
   return into;
 }
 
+/// With the mesh that `disk` returns, or throws Error without.
+template <class Disk>
+CoarseDisk proven(std::vector<Index> fine_vertex, std::vector<Index> collapsed_into,
+                  const Disk& disk) {
+  CoarseDisk coarse;
+  coarse.nearby = follow_collapses(std::move(collapsed_into), fine_vertex);
+  coarse.fine_vertex = std::move(fine_vertex);
+  try {
+    coarse.mesh = disk();
+  } catch (const Error& error) {
+    throw Error(
+        Fault::kInternal,
+        std::string("the simplified surface is not a disk, please report it: ") + error.what());
+  }
+  return coarse;
+}
+
 }  // namespace
 
 CoarseDisk whole_disk(const DiskMesh& fine) {
@@ -41,20 +58,17 @@ CoarseDisk whole_disk(const DiskMesh& fine) {
 CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
                        std::vector<Triangle> faces, std::vector<Index> collapsed_into,
                        const Work& work) {
-  CoarseDisk coarse;
   std::vector<Vec3> positions;
   positions.reserve(fine_vertex.size());
   for (const Index v : fine_vertex) positions.push_back(fine.positions[v]);
-  coarse.nearby = follow_collapses(std::move(collapsed_into), fine_vertex);
-  coarse.fine_vertex = std::move(fine_vertex);
-  try {
-    coarse.mesh = build_disk(std::move(positions), std::move(faces), work);
-  } catch (const Error& error) {
-    throw Error(
-        Fault::kInternal,
-        std::string("the simplified surface is not a disk, please report it: ") + error.what());
-  }
-  return coarse;
+  return proven(std::move(fine_vertex), std::move(collapsed_into),
+                [&] { return build_disk(std::move(positions), std::move(faces), work); });
+}
+
+CoarseDisk coarse_disk(Surface left, std::vector<Index> fine_vertex,
+                       std::vector<Index> collapsed_into, const Work& work) {
+  return proven(std::move(fine_vertex), std::move(collapsed_into),
+                [&] { return prove_disk(std::move(left), work); });
 }
 
 }  // namespace beltrami

@@ -17,15 +17,15 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "simplify/back_ends.h"
 #include "simplify/history.h"
-#include "simplify/quadric.h"
 #include "simplify/shape.h"
 
 namespace beltrami {
 namespace {
 
 /// Share of the squared edge length in the cost, as in the passes.
-constexpr double kEvenness = 1e-3;
+constexpr float kEvenness = 1e-3F;
 
 /// Vertices with more faces stay as they are, and so do their neighbours: one of them would cost as
 /// much as a sweep.
@@ -54,17 +54,30 @@ struct Range {
   bool has(Index v) const { return v >= begin && v < end; }
 };
 
-/// What is around a vertex.
+using Vec3f = Eigen::Vector3f;
+
+/// What is around a vertex. Face k lies between the half-edges k and k + 1.
 struct Star {
   int count = 0;  ///< faces
   bool inside = true;
   std::array<Index, kMostFaces> halfedge;  ///< outgoing, counter-clockwise
   std::array<Index, kMostFaces> ring;      ///< their targets
+  // Measured by costs_of.
+  std::array<Vec3f, kMostFaces> offset;  ///< of the ring from the vertex
+  std::array<Vec3f, kMostFaces> normal;  ///< of the faces, as long as twice the area
+  std::array<float, kMostFaces> twice_area;
+
+  int after(int k) const { return k + 1 == count ? 0 : k + 1; }
 
   bool has(Index v) const {
     return std::find(ring.begin(), ring.begin() + count, v) != ring.begin() + count;
   }
 };
+
+/// As shape_quality.
+float quality(float twice_area, float squared_lengths) {
+  return static_cast<float>(shape_quality(double{twice_area}, double{squared_lengths}));
+}
 
 struct Collapses {
   Index count = 0;
@@ -74,8 +87,14 @@ struct Collapses {
 
 class Sweeps {
  public:
-  explicit Sweeps(const Surface& fine)
-      : fine_(fine), faces_(fine.faces), twin_(fine.twin), outgoing_(fine.outgoing) {
+  Sweeps(const Surface& fine, bool keeps_history)
+      : fine_(fine),
+        keeps_history_(keeps_history),
+        faces_(fine.faces),
+        twin_(fine.twin),
+        outgoing_(fine.outgoing) {
+    into_.resize(outgoing_.size());
+    std::iota(into_.begin(), into_.end(), 0);
     locked_.resize(outgoing_.size());
     valence_.assign(outgoing_.size(), 0);
     for (const Triangle& face : faces_) {
@@ -86,15 +105,11 @@ class Sweeps {
   /// Returns how many collapses took place.
   Index sweep(const Work& work);
   CoarseSurface result(const Work& work);
-
-  // What keeps_shape asks for.
-  const Vec3& position(Index v) const { return fine_.positions[v]; }
-  template <class Visit>
-  void for_each_corner(Index v, Visit&& visit) const {
-    for_each_outgoing(v, [&](Index h) { visit(h / 3, h % 3, target(h), apex(h)); });
-  }
+  /// Per vertex the one it was collapsed onto, or itself.
+  std::vector<Index>& into() { return into_; }
 
  private:
+  const Vec3& position(Index v) const { return fine_.positions[v]; }
   Index target(Index h) const { return faces_[h / 3][next_corner(h % 3)]; }
   Index apex(Index h) const { return faces_[h / 3][previous_corner(h % 3)]; }
   bool may_go(Index v) const {
@@ -111,14 +126,17 @@ class Sweeps {
   }
 
   Star star_of(Index v, const Range& range) const;
-  std::array<double, kMostFaces> costs_of(Index v, const Star& star) const;
-  double cheap_enough() const;
-  bool keeps_topology(Index v, const Star& star, int k) const;
-  bool reaches_out(Index v, const Range& range) const;
+  std::array<float, kMostFaces> costs_of(Index v, Star& star) const;
+  float cheap_enough() const;
+  enum class Verdict { kGranted, kRefused, kReachesOut };
+  Verdict judge(Index v, const Star& star, int k, const Range& range) const;
+  bool keeps_shape(const Star& star, int target) const;
   void collapse(Index v, const Star& star, int k, CollapseHistory& history);
-  bool try_vertex(Index v, double max_cost, const Range& range, Collapses& done);
+  bool try_vertex(Index v, float max_cost, const Range& range, Collapses& done);
 
   const Surface& fine_;
+  const bool keeps_history_;
+  std::vector<Index> into_;
   std::vector<Triangle> faces_;  ///< one that is gone has kNone as its first corner
   std::vector<Index> twin_, outgoing_, valence_;
   std::vector<std::uint8_t> locked_;  ///< bytes, since blocks write side by side
@@ -137,30 +155,44 @@ Star Sweeps::star_of(Index v, const Range& range) const {
   return star;
 }
 
-/// Of the collapses onto each vertex of the ring.
-std::array<double, kMostFaces> Sweeps::costs_of(Index v, const Star& star) const {
-  std::array<Vec3, kMostFaces> offset;
-  for (int k = 0; k < star.count; ++k) offset[k] = position(star.ring[k]) - position(v);
-  Quadric quadric;
+/// Measures the star. Returns the costs of the collapses onto each vertex of the ring.
+std::array<float, kMostFaces> Sweeps::costs_of(Index v, Star& star) const {
+  const Vec3& origin = position(v);
   for (int k = 0; k < star.count; ++k) {
-    const Vec3 normal = offset[k].cross(offset[k + 1 == star.count ? 0 : k + 1]);
-    const double twice_area = normal.norm();
-    if (twice_area > 0) quadric.add_plane(normal / twice_area, 0.5 * twice_area);
+    star.offset[k] = (position(star.ring[k]) - origin).cast<float>();
   }
-  const double evenness = kEvenness * quadric.weight();
-  std::array<double, kMostFaces> costs;
+  // The planes go through the vertex: a quadratic form is all there is of the quadric.
+  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   for (int k = 0; k < star.count; ++k) {
-    costs[k] = std::max(0.0, quadric.change(offset[k])) + evenness * offset[k].squaredNorm();
+    const Vec3f n = star.offset[k].cross(star.offset[star.after(k)]);
+    star.normal[k] = n;
+    star.twice_area[k] = n.norm();
+    if (!(star.twice_area[k] > 0)) continue;
+    const Vec3f weighted = (0.5F / star.twice_area[k]) * n;
+    xx += weighted.x() * n.x();
+    xy += weighted.x() * n.y();
+    xz += weighted.x() * n.z();
+    yy += weighted.y() * n.y();
+    yz += weighted.y() * n.z();
+    zz += weighted.z() * n.z();
+  }
+  const float evenness = kEvenness * (xx + yy + zz);
+  std::array<float, kMostFaces> costs;
+  for (int k = 0; k < star.count; ++k) {
+    const Vec3f& d = star.offset[k];
+    const float change = d.x() * (xx * d.x() + 2 * (xy * d.y() + xz * d.z())) +
+                         d.y() * (yy * d.y() + 2 * yz * d.z()) + d.z() * zz * d.z();
+    costs[k] = std::max(0.0F, change) + evenness * d.squaredNorm();
   }
   return costs;
 }
 
-double Sweeps::cheap_enough() const {
+float Sweeps::cheap_enough() const {
   const Range all{0, size_of(outgoing_)};
-  std::vector<double> least;
+  std::vector<float> least;
   for (Index v = 0; v < all.end; v += 1 + all.end / kSample) {
     if (!may_go(v)) continue;
-    const Star star = star_of(v, all);
+    Star star = star_of(v, all);
     const auto costs = costs_of(v, star);
     least.push_back(*std::min_element(costs.begin(), costs.begin() + star.count));
   }
@@ -172,31 +204,65 @@ double Sweeps::cheap_enough() const {
 }
 
 /// The link condition, and no vertex of too few faces.
-bool Sweeps::keeps_topology(Index v, const Star& star, int k) const {
+Sweeps::Verdict Sweeps::judge(Index v, const Star& star, int k, const Range& range) const {
   const Index h = star.halfedge[k], w = star.ring[k];
-  for (const Index a : {apex(h), apex(twin_[h])}) {
-    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return false;
-  }
-  if (valence_[v] + valence_[w] - 4 < 3) return false;
   int common = 0;
-  for_each_outgoing(w, [&](Index g) { common += star.has(target(g)) ? 1 : 0; });
-  return common == 2;
+  bool inside = true;
+  for_each_outgoing(w, [&](Index g) {
+    const Index u = target(g);
+    inside = inside && range.has(u);
+    common += star.has(u) ? 1 : 0;
+  });
+  if (!inside) return Verdict::kReachesOut;
+  if (common != 2 || valence_[v] + valence_[w] - 4 < 3) return Verdict::kRefused;
+  for (const Index a : {apex(h), apex(twin_[h])}) {
+    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return Verdict::kRefused;
+  }
+  return keeps_shape(star, k) ? Verdict::kGranted : Verdict::kRefused;
 }
 
-bool Sweeps::reaches_out(Index v, const Range& range) const {
-  bool inside = true;
-  for_each_outgoing(v, [&](Index h) { inside = inside && range.has(target(h)); });
-  return !inside;
+/// Whether the faces left keep their shapes within the first limits of the passes (shape.h).
+bool Sweeps::keeps_shape(const Star& star, int target) const {
+  constexpr ShapeLimits kLimits = kShapeLimits[0];
+  const Vec3f& to = star.offset[target];
+  float worst_before = 1;
+  Vec3f fan_normal = Vec3f::Zero();
+  for (int k = 0; k < star.count; ++k) {
+    const Vec3f &u = star.offset[k], &w = star.offset[star.after(k)];
+    const float lengths = u.squaredNorm() + w.squaredNorm() + (w - u).squaredNorm();
+    worst_before = std::min(worst_before, quality(star.twice_area[k], lengths));
+    fan_normal += star.normal[k];
+  }
+  const auto least = static_cast<float>(kLimits.min_quality);
+  const float allowed =
+      std::min(least, static_cast<float>(kLimits.min_quality_ratio) * worst_before);
+  const int last = target == 0 ? star.count - 1 : target - 1;
+  for (int k = star.after(target); k != last; k = star.after(k)) {
+    const Vec3f u = star.offset[k] - to, w = star.offset[star.after(k)] - to;
+    const Vec3f after = u.cross(w);
+    const float twice_area = after.norm();
+    const float lengths = u.squaredNorm() + w.squaredNorm() + (w - u).squaredNorm();
+    if (!(quality(twice_area, lengths) >= allowed)) return false;
+    // A degenerate face has no normal of its own to keep.
+    const bool has_normal = star.twice_area[k] > 0;
+    const Vec3f& before = has_normal ? star.normal[k] : fan_normal;
+    const float before_norm = has_normal ? star.twice_area[k] : fan_normal.norm();
+    const auto turn = static_cast<float>(kLimits.min_turn_cosine);
+    if (!(before.dot(after) >= turn * before_norm * twice_area)) return false;
+  }
+  return true;
 }
 
 /// Onto ring[k] of the star of v.
 void Sweeps::collapse(Index v, const Star& star, int k, CollapseHistory& history) {
   const Index h = star.halfedge[k], t = twin_[h], w = star.ring[k];
   const std::array<Index, 2> apexes{apex(h), apex(t)};
-  history.steps.push_back({v, w, apexes, size_of(history.renamed)});
+  into_[v] = w;
+  if (keeps_history_) history.steps.push_back({v, w, apexes, size_of(history.renamed)});
   for (int i = 0; i < star.count; ++i) {
     const Index u = star.ring[i];
-    if (u != w && u != apexes[0] && u != apexes[1]) history.renamed.push_back(u);
+    const bool renamed = u != w && u != apexes[0] && u != apexes[1];
+    if (keeps_history_ && renamed) history.renamed.push_back(u);
     const Index g = star.halfedge[i];
     faces_[g / 3][g % 3] = w;
   }
@@ -218,8 +284,8 @@ void Sweeps::collapse(Index v, const Star& star, int k, CollapseHistory& history
 }
 
 /// Whether it has been dealt with: not so where it reaches out of the range.
-bool Sweeps::try_vertex(Index v, double max_cost, const Range& range, Collapses& done) {
-  const Star star = star_of(v, range);
+bool Sweeps::try_vertex(Index v, float max_cost, const Range& range, Collapses& done) {
+  Star star = star_of(v, range);
   // Not even a look at what another thread may be changing.
   if (!star.inside) return false;
   auto costs = costs_of(v, star);
@@ -233,20 +299,20 @@ bool Sweeps::try_vertex(Index v, double max_cost, const Range& range, Collapses&
       if (is_less) best = k;
     }
     if (best < 0) return true;
-    const Index w = star.ring[best];
-    if (reaches_out(w, range)) return false;
-    if (keeps_topology(v, star, best) && keeps_shape(*this, v, w, kShapeLimits[0])) {
+    const Verdict verdict = judge(v, star, best, range);
+    if (verdict == Verdict::kReachesOut) return false;
+    if (verdict == Verdict::kGranted) {
       collapse(v, star, best, done.history);
       ++done.count;
       return true;
     }
-    costs[best] = std::numeric_limits<double>::infinity();
+    costs[best] = std::numeric_limits<float>::infinity();
   }
   return true;
 }
 
 Index Sweeps::sweep(const Work& work) {
-  const double max_cost = cheap_enough();
+  const float max_cost = cheap_enough();
   std::fill(locked_.begin(), locked_.end(), false);
   const Index count = size_of(outgoing_), blocks = (count + kBlock - 1) / kBlock;
   std::vector<Collapses> of_block(blocks);
@@ -305,18 +371,30 @@ CoarseSurface Sweeps::result(const Work& work) {
   return coarse;
 }
 
-}  // namespace
-
-CoarseSurface sweep_surface(const Surface& fine, Index target_faces, const Work& work) {
-  Sweeps sweeps(fine);
-  Index faces = fine.face_count();
+void run_sweeps(Index faces, Index target_faces, const Work& work, Sweeps& sweeps) {
+  const Index start = faces;
   while (faces > target_faces) {
-    work.report(double(fine.face_count() - faces) / double(fine.face_count() - target_faces));
+    work.report(double(start - faces) / double(start - target_faces));
     const Index gone = 2 * sweeps.sweep(work);
     faces -= gone;
     if (gone < kWorthSweep * faces) break;
   }
+}
+
+}  // namespace
+
+CoarseSurface sweep_surface(const Surface& fine, Index target_faces, const Work& work) {
+  Sweeps sweeps(fine, true);
+  run_sweeps(fine.face_count(), target_faces, work, sweeps);
   return sweeps.result(work);
+}
+
+CoarseDisk sweep_disk(const DiskMesh& fine, Index target_faces, const Work& work) {
+  Sweeps sweeps(fine, false);
+  run_sweeps(fine.face_count(), target_faces, work, sweeps);
+  CoarseSurface left = sweeps.result(work);
+  return coarse_disk(std::move(left.mesh), std::move(left.fine_vertex), std::move(sweeps.into()),
+                     work);
 }
 
 }  // namespace beltrami

@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
 #include "simplify/simplify.h"
 
@@ -14,5 +15,8 @@ namespace beltrami {
 /// should lie close in memory (mesh/locality.h). Precondition: every vertex is used by a face. The
 /// same bits at any number of threads.
 CoarseSurface sweep_surface(const Surface& fine, Index target_faces, const Work& work);
+
+/// The same of a disk.
+CoarseDisk sweep_disk(const DiskMesh& fine, Index target_faces, const Work& work);
 
 }  // namespace beltrami
