@@ -249,6 +249,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     const double slope = dot(gradient, direction, work);
     result.predicted = -slope;
     result.converged = settling.settled && 0.5 * result.predicted <= options.stationary * scale;
+    const bool enough = options.enough > 0 && 0.5 * result.predicted < options.enough * scale;
+    result.converged = result.converged || enough;
     if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;

@@ -16,6 +16,7 @@ struct PolishOptions {
   Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-5;   ///< relative energy decrease of a step after which it may end, if
   double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
+  double enough = 0;  ///< it ends as soon as a step is predicted to decrease it by less than that
   int max_iterations = 20;
   bool force_first = true;  ///< whether the first step is taken however short it has to be
   /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before

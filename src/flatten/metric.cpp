@@ -7,6 +7,7 @@
 #include "base/portable_math.h"
 #include "energy/density.h"
 #include "flatten/laplacian.h"
+#include "flatten/principal_stiffness.h"
 #include "mesh/vertex_sums.h"
 
 namespace beltrami {
@@ -19,14 +20,10 @@ constexpr std::int64_t kGrain = 8192;
 constexpr double kSpring = 10;
 
 /// The stiffness of a face whose singular values are a + b and a - b, the greater one along
-/// `direction`, a unit complex twice as far from the real axis. Along each the mean of the
-/// density's radial curvature there and of its angular ones.
+/// `direction`, a unit complex twice as far from the real axis.
 template <class Density>
 EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex direction) {
-  const DensityModel model = Density::model(a + b, a - b);
-  // Beside a ridge of the density the angular curvature is without bounds.
-  const double angular = std::min(0.5 * (model.twist + model.flip), model.h11 + model.h22);
-  const double along = 0.5 * (model.h11 + angular), across = 0.5 * (model.h22 + angular);
+  const auto [along, across] = principal_stiffness<Density>(a, b);
   // The metric whose Laplacian has this stiffness: lengths go with the inverse roots.
   const double ratio = std::sqrt(across / along), signed_mu = (ratio - 1) / (ratio + 1);
   return edge_weights(modified_cotangents(rest, signed_mu * direction),
@@ -129,23 +126,23 @@ std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWe
 MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                  const std::vector<bool>& held, const SolverOptions& options,
                                  const std::vector<double>& springs, const Work& work)
-    : matrix_(mesh.vertex_count(), mesh.faces, held, 1, work), work_(work) {
-  assemble(mesh, stiffness, springs);
+    : faces_(mesh.faces), matrix_(mesh.vertex_count(), mesh.faces, held, 1, work), work_(work) {
+  assemble(stiffness, springs);
   if (matrix_.free_count() > 0)
     solver_ = factorize_laplacian(matrix_, mesh.positions, options, work);
 }
 
-void MetricLaplacian::refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+void MetricLaplacian::refit(const std::vector<EdgeWeights>& stiffness,
                             const std::vector<double>& springs) {
   if (matrix_.free_count() == 0) return;
   matrix_.set_zero(work_);
-  assemble(mesh, stiffness, springs);
+  assemble(stiffness, springs);
   refactorize_laplacian(*solver_, matrix_);
 }
 
-void MetricLaplacian::assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+void MetricLaplacian::assemble(const std::vector<EdgeWeights>& stiffness,
                                const std::vector<double>& springs) {
-  matrix_.add_up(work_, mesh.faces,
+  matrix_.add_up(work_, faces_,
                  [&](Index f, const auto& add) { add_stiffness(stiffness[f], add); });
   SparseMatrix& matrix = matrix_.matrix();
   for (Index v = 0; v < size_of(springs); ++v) {
@@ -188,7 +185,7 @@ void MetricLaplacian::solve(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) 
   if (solver_) unpack(solver_->solve(packed(as_rows(rhs))), as_rows(x));
 }
 
-void MetricLaplacian::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {
+void MetricLaplacian::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
   x.assign(rhs.size(), Vec2::Zero());
   if (solver_) unpack(solver_->precondition(packed(as_rows(rhs))), as_rows(x));
 }

@@ -10,6 +10,7 @@
 #include "base/work.h"
 #include "energy/energy.h"
 #include "flatten/laplacian.h"
+#include "flatten/stiffness_inverse.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
@@ -40,8 +41,8 @@ std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWe
                                   const std::vector<bool>& vertices);
 
 /// A Laplacian of the mesh with given stiffness, springs at vertices and some vertices held, and
-/// its factor.
-class MetricLaplacian {
+/// its factor. Keeps a reference to the faces of the mesh.
+class MetricLaplacian final : public StiffnessInverse {
  public:
   /// `held`: per vertex; at least one must be. `springs`: per vertex, or empty. Throws Error
   /// SOLVER.
@@ -50,23 +51,23 @@ class MetricLaplacian {
                   const std::vector<double>& springs, const Work& work);
 
   /// Factorizes anew. Throws Error SOLVER.
-  void refit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
-             const std::vector<double>& springs = {});
+  void refit(const std::vector<EdgeWeights>& stiffness,
+             const std::vector<double>& springs) override;
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;
   void solve(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
   /// The same roughly, at half the cost: see SpdSolver::precondition.
-  void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
+  void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) override;
 
  private:
-  void assemble(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
-                const std::vector<double>& springs);
+  void assemble(const std::vector<EdgeWeights>& stiffness, const std::vector<double>& springs);
   template <class Rows>
   DenseMatrix packed(const Rows& rhs) const;
   template <class Rows>
   void unpack(const DenseMatrix& x, Rows&& result) const;
 
+  const std::vector<Triangle>& faces_;
   MeshMatrix matrix_;
   const Work work_;
   std::unique_ptr<SpdSolver> solver_;

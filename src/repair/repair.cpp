@@ -23,8 +23,7 @@ namespace {
 /// positive areas pass the exact test and give energies of 1e25.
 constexpr double kLeastAreaShare = 1e-3;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
-constexpr std::size_t kMostPatches = 1000;  // beyond, the global fix is cheaper
-constexpr double kLocalShare = 0.6;         // of the work, if the global fix is needed
+constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
 
 double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -71,7 +70,7 @@ class Repair {
       bad = find_bad();
       if (bad.empty()) return true;
     }
-    if (bad.size() > kMostPatches) return false;
+    if (bad.size() > options_.most_patches) return false;
     PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       std::size_t done = 0;

@@ -1,6 +1,7 @@
 // Mending fold-overs: kernel fix, patch fix, global fix (paper section 3.5.1).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace beltrami {
 struct RepairOptions {
   /// Whether a boundary that crosses itself is to be mended too.
   bool simple_boundary = false;
+  /// Of so many faces left by rung 1, more are left to rung 3: where that is done, it is cheaper.
+  std::size_t most_patches = 1000;
   bool global_fix = true;  ///< rung 3; it takes more memory than the others
 };
 

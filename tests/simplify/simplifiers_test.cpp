@@ -114,7 +114,7 @@ double final_energy(const DiskMesh& fine, const CoarseDisk& coarse) {
       coarse.nearby, Work(1));
   const auto rest = disks::rest_of(fine);
   const auto stiffness = energy_stiffness(Energy::kSymmetricDirichlet, rest, metric, Work(1));
-  const MetricLaplacian laplacian(fine, stiffness, held(fine), {Precision::kSingle}, {}, Work(1));
+  MetricLaplacian laplacian(fine, stiffness, held(fine), {Precision::kSingle}, {}, Work(1));
   std::vector<Vec2> uvs = carry_boundary(fine, coarse, coarse_uvs);
   solve_metric(fine, rest, metric, stiffness, laplacian, {}, false, uvs, Work(1));
   EXPECT_TRUE(non_positive_faces(fine.faces, uvs, Work(1)).empty());

@@ -1,0 +1,178 @@
+#include "flatten/v_cycle.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+#include "mesh/boundary.h"
+
+namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 16384;
+/// Parts of the fine vertices whose shares of a coarse field are summed apart, then together.
+constexpr std::int64_t kParts = 8;
+
+double dot(const SingleField& a, const SingleField& b, const Work& work) {
+  return parallel_sum(work, size_of(a), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (std::int64_t i = begin; i < end; ++i) sum += double{a[i].dot(b[i])};
+    return sum;
+  });
+}
+
+/// Sets coarse = P^T fine, where P interpolates.
+template <class Value>
+void restrict_to(const std::vector<Footpoint>& points, const std::vector<Value>& fine,
+                 const Value& zero, std::vector<Value>& coarse, const Work& work) {
+  const auto count = static_cast<std::int64_t>(points.size());
+  const std::int64_t grain = (count + kParts - 1) / kParts;
+  std::vector<std::vector<Value>> parts(kParts);
+  parallel_for(work, count, grain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Value>& part = parts[begin / grain];
+    part.assign(coarse.size(), zero);
+    for (std::int64_t v = begin; v < end; ++v) {
+      const Footpoint& at = points[v];
+      part[at.corners[0]] += at.first_share() * fine[v];
+      part[at.corners[1]] += at.shares[0] * fine[v];
+      part[at.corners[2]] += at.shares[1] * fine[v];
+    }
+  });
+  parallel_for(work, size_of(coarse), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) {
+      Value sum = zero;
+      for (const std::vector<Value>& part : parts) {
+        if (!part.empty()) sum += part[c];
+      }
+      coarse[c] = sum;
+    }
+  });
+}
+
+}  // namespace
+
+struct VCycle::Level {
+  Level(const DiskMesh& disk, std::vector<Footpoint> on_coarser, Index coarser_vertices,
+        const Work& work)
+      : mesh(disk),
+        points(std::move(on_coarser)),
+        smoother(disk, work),
+        coarse_rhs(coarser_vertices),
+        coarse_x(coarser_vertices) {}
+
+  const DiskMesh& mesh;
+  std::vector<Footpoint> points;
+  Smoother smoother;
+  SingleField spare;
+  SingleField coarse_rhs, coarse_x;  ///< of the level below
+};
+
+VCycle::VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, const Work& work)
+    : work_(work),
+      coarsest_(mesh),
+      coarsest_stiffness_(stiffness),
+      factor_(mesh, stiffness, only_first_of_boundary(mesh), {.precision = Precision::kSingle}, {},
+              work) {}
+
+VCycle::~VCycle() = default;
+
+void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
+  const DiskMesh& below = levels_.empty() ? coarsest_ : levels_.back()->mesh;
+  levels_.push_back(std::make_unique<Level>(mesh, std::move(points), below.vertex_count(), work_));
+}
+
+void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<double>& springs) {
+  std::vector<float> single;
+  for (const double spring : springs) single.push_back(static_cast<float>(spring));
+  Level& finest = *levels_.back();
+  finest.smoother.set(finest.mesh, weights, single);
+  if (!single.empty()) set_springs_below(levels_.size() - 1, std::move(single));
+}
+
+/// The springs of a level, and what they are on those below it.
+void VCycle::set_springs_below(std::size_t level, std::vector<float> springs) {
+  std::vector<float> below(levels_[level]->coarse_rhs.size());
+  restrict_to(levels_[level]->points, springs, 0.0F, below, work_);
+  if (level > 0) {
+    levels_[level - 1]->smoother.set_springs(below);
+    set_springs_below(level - 1, std::move(below));
+    return;
+  }
+  factor_.refit(coarsest_stiffness_, {below.begin(), below.end()});
+}
+
+void VCycle::refit(const std::vector<EdgeWeights>& stiffness, const std::vector<double>& springs) {
+  std::vector<SingleWeights> weights;
+  parallel_assign(work_, weights, stiffness.size());
+  parallel_for(work_, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      for (int k = 0; k < 3; ++k) weights[f][k] = static_cast<float>(stiffness[f][k]);
+    }
+  });
+  set(weights, springs);
+}
+
+/// x = about the inverse of a level's Laplacian times rhs; level 0 is the coarsest.
+void VCycle::apply(std::size_t level, const SingleField& rhs, SingleField& x) {
+  if (level == 0) {
+    coarsest_rhs_.resize(rhs.size());
+    for (std::size_t v = 0; v < rhs.size(); ++v) coarsest_rhs_[v] = rhs[v].cast<double>();
+    factor_.precondition(coarsest_rhs_, coarsest_x_);
+    x.resize(rhs.size());
+    for (std::size_t v = 0; v < rhs.size(); ++v) x[v] = coarsest_x_[v].cast<float>();
+    return;
+  }
+  Level& l = *levels_[level - 1];
+  l.smoother.sweep_forward(rhs, x);
+  l.smoother.residual_after_forward(x, l.spare);
+  restrict_to(l.points, l.spare, Eigen::Vector2f(0, 0), l.coarse_rhs, work_);
+  apply(level - 1, l.coarse_rhs, l.coarse_x);
+  parallel_for(work_, size_of(x), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) x[v] += interpolated(l.points[v], l.coarse_x);
+  });
+  l.smoother.sweep_backward(rhs, x, l.spare);
+}
+
+void VCycle::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
+  SingleField single(rhs.size()), result;
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) single[v] = rhs[v].cast<float>();
+  });
+  apply(levels_.size(), single, result);
+  x.resize(rhs.size());
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) x[v] = result[v].cast<double>();
+  });
+}
+
+void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
+  const Level& finest = *levels_.back();
+  const auto add_up = [&](auto&& body) {
+    parallel_for(work_, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t v = begin; v < end; ++v) body(v);
+    });
+  };
+  SingleField z, direction, product;
+  double before = 0;
+  for (int step = 0; step < steps; ++step) {
+    apply(levels_.size(), residual, z);
+    const double now = dot(residual, z, work_);
+    if (step == 0) {
+      direction = z;
+    } else {
+      const auto beta = static_cast<float>(now / before);
+      add_up([&](std::int64_t v) { direction[v] = z[v] + beta * direction[v]; });
+    }
+    before = now;
+    finest.smoother.multiply(direction, product);
+    const double curvature = dot(direction, product, work_);
+    if (!(now > 0) || !(curvature > 0)) return;
+    const double length = now / curvature;
+    add_up([&](std::int64_t v) {
+      uvs[v] += length * direction[v].cast<double>();
+      residual[v] -= static_cast<float>(length) * product[v];
+    });
+  }
+}
+
+}  // namespace beltrami

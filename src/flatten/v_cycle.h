@@ -1,0 +1,57 @@
+// A V-cycle over levels of a disk: from each level to the next finer one by interpolation, a factor
+// on the coarsest, half a symmetric Gauss-Seidel step before and after on the others (Brandt 1977,
+// "Multi-level adaptive solutions to boundary-value problems"; Hackbusch 1985, chapter 4).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "flatten/carried_target.h"
+#include "flatten/metric.h"
+#include "flatten/stiffness_inverse.h"
+#include "linear/smoother.h"
+#include "mesh/disk_mesh.h"
+#include "prolong/interpolation.h"
+
+namespace beltrami {
+
+/// Levels are added from coarse to fine, each with the stiffness of its own map: what a stiffness
+/// is like on a finer mesh, the coarser one knows well enough.
+class VCycle final : public StiffnessInverse {
+ public:
+  /// The coarsest level, with its factor. Keeps references to the meshes. Throws Error SOLVER.
+  VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, const Work& work);
+  ~VCycle() override;
+
+  /// Adds the next finer level, without weights yet; `points`: of its vertices on the one before.
+  void add(const DiskMesh& mesh, std::vector<Footpoint> points);
+
+  /// Gives the finest level its stiffness, and all of them springs, per vertex of the finest or
+  /// none.
+  void set(const std::vector<SingleWeights>& weights, const std::vector<double>& springs);
+  void refit(const std::vector<EdgeWeights>& stiffness,
+             const std::vector<double>& springs) override;
+
+  void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) override;
+
+  /// Adds to `uvs` what `steps` steps of conjugate gradients with this preconditioner make of the
+  /// residual, on the finest level, and leaves what is left of it.
+  void improve(int steps, SingleField& residual, std::vector<Vec2>& uvs);
+
+ private:
+  struct Level;
+
+  void apply(std::size_t level, const SingleField& rhs, SingleField& x);
+  void set_springs_below(std::size_t level, std::vector<float> springs);
+
+  Work work_;
+  const DiskMesh& coarsest_;
+  std::vector<EdgeWeights> coarsest_stiffness_;
+  MetricLaplacian factor_;
+  std::vector<std::unique_ptr<Level>> levels_;  ///< from the coarsest that has no factor
+  std::vector<Vec2> coarsest_rhs_, coarsest_x_;
+};
+
+}  // namespace beltrami

@@ -1,0 +1,140 @@
+#include "linear/smoother.h"
+
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace beltrami {
+namespace {
+
+/// Calls visit(neighbour, half-edge at that side or kNone, half-edge at the other one or kNone) for
+/// the ring of a vertex.
+template <class Visit>
+void for_each_edge(const Surface& mesh, Index v, const Visit& visit) {
+  const Index first = mesh.outgoing[v];
+  Index h = first, last = first;
+  do {
+    visit(mesh.target(h), h, mesh.twin[h]);
+    last = h;
+    h = mesh.rotate(h);
+  } while (h != kNone && h != first);
+  if (h == kNone) visit(mesh.origin(Surface::previous(last)), Surface::previous(last), kNone);
+}
+
+}  // namespace
+
+Smoother::Smoother(const Surface& mesh, const Work& work) : work_(work) {
+  const Index count = mesh.vertex_count();
+  parallel_assign(work, rows_, static_cast<std::size_t>(count) + 1);
+  for (const Triangle& face : mesh.faces) {
+    for (const Index v : face) ++rows_[v].begin;
+  }
+  Index total = 0;
+  for (Index v = 0; v <= count; ++v) {
+    // The ring of a vertex on the boundary has one more than it has faces.
+    const Index size = rows_[v].begin + (v < count && mesh.on_boundary[v] ? 1 : 0);
+    rows_[v].begin = total;
+    total += size;
+  }
+  parallel_assign(work, column_, static_cast<std::size_t>(total));
+  parallel_assign(work, weight_, static_cast<std::size_t>(total));
+  parallel_assign(work, inverse_diagonal_, static_cast<std::size_t>(count));
+}
+
+void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>& weights,
+                   const std::vector<float>& springs) {
+  const auto weight_of = [&](Index h) {
+    return h == kNone ? 0.0F : weights[h / 3][previous_corner(h % 3)];
+  };
+  parallel_for(work_, mesh.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::pair<Index, float>> ring;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      ring.clear();
+      for_each_edge(mesh, v, [&](Index u, Index h, Index other) {
+        ring.emplace_back(u, weight_of(h) + weight_of(other));
+      });
+      Row& row = rows_[v];
+      Index at = row.begin;
+      const auto put = [&](auto&& belongs) {
+        for (const auto& [u, weight] : ring) {
+          if (!belongs(u)) continue;
+          column_[at] = u;
+          weight_[at++] = weight;
+        }
+        return at;
+      };
+      const auto inside = [&](Index u) { return u >= begin && u < end; };
+      row.upper = put([&](Index u) { return inside(u) && u < v; });
+      row.outside = put([&](Index u) { return inside(u) && u > v; });
+      put([&](Index u) { return !inside(u); });
+    }
+  });
+  set_springs(springs);
+}
+
+void Smoother::set_springs(const std::vector<float>& springs) {
+  springs_ = springs;
+  parallel_for(work_, size_of(inverse_diagonal_), kBlock,
+               [&](std::int64_t begin, std::int64_t end) {
+                 for (std::int64_t v = begin; v < end; ++v) {
+                   float diagonal = springs_.empty() ? 0 : springs_[v];
+                   for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i)
+                     diagonal += weight_[i];
+                   inverse_diagonal_[v] = diagonal > 0 ? 1 / diagonal : 0;
+                 }
+               });
+}
+
+void Smoother::multiply(const SingleField& x, SingleField& product) const {
+  product.resize(x.size());
+  parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      const Eigen::Vector2f here = x[v];
+      Eigen::Vector2f sum(0, 0);
+      for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i) {
+        sum += weight_[i] * (here - x[column_[i]]);
+      }
+      if (!springs_.empty()) sum += springs_[v] * here;
+      product[v] = sum;
+    }
+  });
+}
+
+void Smoother::sweep_forward(const SingleField& rhs, SingleField& x) const {
+  x.resize(rhs.size());
+  parallel_for(work_, size_of(rhs), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      Eigen::Vector2f sum = rhs[v];
+      for (Index i = rows_[v].begin; i < rows_[v].upper; ++i) sum += weight_[i] * x[column_[i]];
+      x[v] = inverse_diagonal_[v] * sum;
+    }
+  });
+}
+
+void Smoother::residual_after_forward(const SingleField& x, SingleField& residual) const {
+  residual.resize(x.size());
+  parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      Eigen::Vector2f sum(0, 0);
+      for (Index i = rows_[v].upper; i < rows_[v + 1].begin; ++i) sum += weight_[i] * x[column_[i]];
+      residual[v] = sum;
+    }
+  });
+}
+
+void Smoother::sweep_backward(const SingleField& rhs, SingleField& x, SingleField& before) const {
+  before = x;
+  parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = end; v-- > begin;) {
+      const Row& row = rows_[v];
+      Eigen::Vector2f sum = rhs[v];
+      for (Index i = row.begin; i < row.outside; ++i) sum += weight_[i] * x[column_[i]];
+      for (Index i = row.outside; i < rows_[v + 1].begin; ++i) {
+        sum += weight_[i] * before[column_[i]];
+      }
+      x[v] = inverse_diagonal_[v] * sum;
+    }
+  });
+}
+
+}  // namespace beltrami

@@ -1,0 +1,39 @@
+// Values at the vertices of a coarse disk, carried to a finer one and back.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+
+/// Where a fine vertex lies on the coarse disk. The share of the first corner is what the two
+/// others leave of 1.
+struct Footpoint {
+  std::array<Index, 3> corners;   ///< coarse vertices; one may occur twice
+  std::array<float, 2> shares{};  ///< of corners 1 and 2, >= 0
+
+  float first_share() const { return 1 - shares[0] - shares[1]; }
+};
+
+/// Per vertex of `fine` its point of `coarse`: the closest one near the coarse vertex that it was
+/// collapsed into, so that none is sought across a seam; on the boundary by arc length along the
+/// coarse edge that replaced its part of the loop; of what is a coarse vertex itself that vertex.
+/// `fine_vertex`: per coarse vertex the fine one that it is; `nearby`: per fine vertex the coarse
+/// one that it was collapsed into.
+std::vector<Footpoint> footpoints(const DiskMesh& coarse, const std::vector<Index>& fine_vertex,
+                                  const std::vector<Index>& nearby, const DiskMesh& fine,
+                                  const Work& work);
+
+/// What `values` at the coarse vertices are at a footpoint.
+template <class Value>
+Value interpolated(const Footpoint& at, const std::vector<Value>& values) {
+  const Value& first = values[at.corners[0]];
+  return first + at.shares[0] * (values[at.corners[1]] - first) +
+         at.shares[1] * (values[at.corners[2]] - first);
+}
+
+}  // namespace beltrami
