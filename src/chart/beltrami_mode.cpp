@@ -42,6 +42,11 @@ ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited
     return cm_mode(mesh, "coarse", inherited.start, options, work);
   }
   FineProblem fine{.mesh = &mesh};
+  if (is_nested(mesh.face_count(), coarse_faces, options)) {
+    ChartMap map = nested_mode(mesh, inherited, options, work);
+    if (!map.uvs.empty()) return map;
+    fine.statistics.stages.push_back(given_up(map.statistics.stages));
+  }
   simplify_fine(coarse_faces, inherited.level, work.part(0, kSimplified), fine);
   if (fine.coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) {
     return joined(std::move(fine), cm_mode(mesh, "coarse", {}, options, work.part(kSimplified, 1)));

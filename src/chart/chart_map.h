@@ -34,8 +34,9 @@ struct ChartStatistics {
 };
 
 struct ChartMap {
-  std::vector<Vec2> uvs;  ///< one per vertex
-  bool converged = true;  ///< no optimisation was cut short
+  std::vector<Vec2> uvs;    ///< one per vertex
+  bool converged = true;    ///< no optimisation was cut short
+  bool in_contact = false;  ///< parts of the boundary press on each other
   ChartStatistics statistics;
   /// The disk whose faces the map has, where they are not those of the disk that it is of.
   std::unique_ptr<DiskMesh> retriangulated;

@@ -120,7 +120,7 @@ std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh, const std::vector<R
     still.report(0);
     const Anchors anchors{stiff_springs(mesh, stiffness, anchored), carried};
     if (laplacian) {
-      laplacian->refit(mesh, stiffness, anchors.springs);
+      laplacian->refit(stiffness, anchors.springs);
     } else {
       laplacian = std::make_unique<MetricLaplacian>(mesh, stiffness, only_first_of_boundary(mesh),
                                                     SolverOptions{.precision = Precision::kSingle},

@@ -86,6 +86,7 @@ ChartMap cm_mode(const DiskMesh& mesh, const char* name, const std::vector<Vec2>
     stage.iterations = done.iterations;
     map.uvs = std::move(done.uvs);
     map.converged = done.converged;
+    map.in_contact = done.in_contact;
     map.statistics.coarse_energy = done.energy;
   });
   map.statistics.coarse_faces = mesh.face_count();

@@ -29,7 +29,8 @@ ChartMap dirichlet_mode(const FineProblem& fine, const std::vector<Cotangents>& 
               map.uvs = carry_boundary(*fine.mesh, fine.coarse, fine.coarse_uvs);
               solve_harmonic(*fine.mesh, cotangents, map.uvs, inner);
             });
-  mend(fine, keeps_boundary_simple(options), options, work.part(0.8, 1), map);
+  mend(fine, whole_repair(fine, keeps_boundary_simple(options), options, work), options,
+       work.part(0.8, 1), map);
   return map;
 }
 

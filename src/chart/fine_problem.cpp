@@ -8,7 +8,6 @@
 #include "chart/modes.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "repair/outliers.h"
-#include "repair/repair.h"
 #include "simplify/replay.h"
 
 namespace beltrami {
@@ -96,13 +95,17 @@ void measure_fine(const char* name, bool harmonic, const ChartOptions& options, 
   });
 }
 
-bool mend(const FineProblem& fine, bool simple_boundary, const ChartOptions& options,
+RepairOptions whole_repair(const FineProblem& fine, bool simple_boundary,
+                           const ChartOptions& options, const Work& work) {
+  return {.simple_boundary = simple_boundary,
+          .global_fix = affords(*fine.mesh, options, Extra::kGlobalFix, work)};
+}
+
+bool mend(const FineProblem& fine, const RepairOptions& how, const ChartOptions& options,
           const Work& work, ChartMap& map) {
   ChartStatistics& all = map.statistics;
   bool positive = false;
   run_stage("repair", work, all.stages, [&](StageStatistics& stage, const Work& inner) {
-    const RepairOptions how{.simple_boundary = simple_boundary,
-                            .global_fix = affords(*fine.mesh, options, Extra::kGlobalFix, inner)};
     const RepairResult repaired = repair(*fine.mesh, fine.rest, map.uvs, how, inner);
     all.flips_before_repair = repaired.flips_before;
     all.kernel_fixes += repaired.kernel_fixes;

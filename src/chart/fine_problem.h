@@ -16,6 +16,7 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
+#include "repair/repair.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {
@@ -51,10 +52,14 @@ void solve_coarse(const ChartOptions& options, const Work& work, FineProblem& fi
 void measure_fine(const char* name, bool harmonic, const ChartOptions& options, const Work& work,
                   FineProblem& fine);
 
-/// The stage "repair": mends flips and, on demand, crossings of the boundary; where that succeeds,
-/// cleans outliers. Returns whether all faces are positive.
-bool mend(const FineProblem& fine, bool simple_boundary, const ChartOptions& options,
+/// The stage "repair": mends flips and, on demand, crossings of the boundary, by `how`; where that
+/// succeeds, cleans outliers. Returns whether all faces are positive.
+bool mend(const FineProblem& fine, const RepairOptions& how, const ChartOptions& options,
           const Work& work, ChartMap& map);
+
+/// With all that the memory of the run allows.
+RepairOptions whole_repair(const FineProblem& fine, bool simple_boundary,
+                           const ChartOptions& options, const Work& work);
 
 /// The whole: `map` after what led to its problem.
 ChartMap joined(FineProblem fine, ChartMap map);

@@ -42,7 +42,9 @@ double flatten_bytes(const MeshCounts& n, Flatten flatten, int threads) {
 /// Meshes that are not simplified are left to composite majorization.
 double beltrami_bytes(const MeshCounts& n, const ChartOptions& options, int threads) {
   const auto faces = static_cast<Index>(n.faces);
-  if (coarse_faces(faces, options.coarse_faces) >= faces) return cm_bytes(n, true, threads);
+  const Index coarse = coarse_faces(faces, options.coarse_faces);
+  if (coarse >= faces) return cm_bytes(n, true, threads);
+  if (is_nested(faces, coarse, options)) return nested_bytes(n, threads);
   return std::max(coarse_bytes(n, options.coarse_faces, threads),
                   flatten_bytes(n, options.flatten, threads));
 }

@@ -50,7 +50,7 @@ void fit(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
          const std::vector<double>& springs, const Work& work,
          std::unique_ptr<MetricLaplacian>& laplacian) {
   if (laplacian) {
-    laplacian->refit(mesh, stiffness, springs);
+    laplacian->refit(stiffness, springs);
     return;
   }
   const SolverOptions options{.precision = Precision::kSingle, .residual = kRoughly};
@@ -123,7 +123,8 @@ ChartMap metric_mode(const FineProblem& fine, const ChartOptions& options, const
   bool positive = false;
   const auto solve = [&] {
     solve_flat(fine, carried, anchored, options, work.part(0, kSolved), laplacian, solved);
-    positive = mend(fine, false, options, work.part(kSolved, kMended), solved);
+    positive = mend(fine, whole_repair(fine, false, options, work), options,
+                    work.part(kSolved, kMended), solved);
     return true;
   };
   if (!global) {
@@ -138,13 +139,17 @@ ChartMap metric_mode(const FineProblem& fine, const ChartOptions& options, const
   if (!positive) return solved;
   const Work rest = work.part(kMended, 1);
   const bool pressed = !anchored.empty();
-  ChartMap polished =
-      polish_map(fine, pressed ? &contact : nullptr, options, rest, *laplacian, solved.uvs);
+  ChartMap polished = polish_map(fine, pressed ? &contact : nullptr, PolishLength::kWhole, options,
+                                 rest, *laplacian, solved.uvs);
+  bool in_contact = pressed;
   if (global && !pressed && !contact.is_simple(polished.uvs)) {
+    in_contact = true;
     const StageStatistics free = given_up(polished.statistics.stages);
-    polished = polish_map(fine, &contact, options, rest, *laplacian, std::move(solved.uvs));
+    polished = polish_map(fine, &contact, PolishLength::kWhole, options, rest, *laplacian,
+                          std::move(solved.uvs));
     solved.statistics.stages.push_back(free);
   }
+  polished.in_contact = in_contact;
   solved.statistics.append(polished.statistics);
   polished.statistics = std::move(solved.statistics);
   return polished;

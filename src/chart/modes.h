@@ -29,6 +29,17 @@ namespace beltrami {
 ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited& inherited,
                        const ChartOptions& options, const Work& work);
 
+/// Whether a disk of so many faces is flattened in levels (nested_mode): a large one, in the metric
+/// way, with the `coarse` faces that the options ask for. What is tried where a map broke its
+/// promise is not.
+bool is_nested(Index faces, Index coarse, const ChartOptions& options);
+
+/// The method beltrami in levels: the mesh simplified in steps, the coarsest flattened by the
+/// method itself, and from each level to the next finer one its derivative carried, solved for by a
+/// V-cycle, mended and polished. Without UVs where no level leads to an injective map.
+ChartMap nested_mode(const DiskMesh& mesh, const Inherited& inherited, const ChartOptions& options,
+                     const Work& work);
+
 /// Composite majorization on the whole mesh, as the stage `name`; from `start` where that serves,
 /// see Inherited.
 ChartMap cm_mode(const DiskMesh& mesh, const char* name, const std::vector<Vec2>& start,
@@ -79,6 +90,8 @@ double metric_bytes(const MeshCounts& n, int threads);
 double metric_factor_bytes(const MeshCounts& n, int threads);
 /// The harmonic map beside another.
 double harmonic_bytes(const MeshCounts& n, int threads);
+/// Of a mode in levels that need not be begun anew.
+double nested_bytes(const MeshCounts& n, int threads);
 double dirichlet_bytes(const MeshCounts& n, int threads);
 double reduced_bytes(const MeshCounts& n, int threads);
 double boundary_first_bytes(const MeshCounts& n, int threads);

@@ -20,6 +20,7 @@
 #include "descend/newton.h"
 #include "descend/polish.h"
 #include "energy/energy.h"
+#include "flatten/metric.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
 #include "repair/outliers.h"
@@ -27,13 +28,31 @@
 namespace beltrami {
 namespace {
 
-constexpr double kTolerance = 3e-4;   // relative decrease: leaves the energy 0.1% too high
-constexpr double kStationary = 1e-4;  // predicted relative decrease that is none
+constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kMostSteps = 30;
-constexpr double kLittleGain = 1e-3;  // of a round of steps that ends blocked: it is the last one
-constexpr double kMuchLeft = 1e-2;    // predicted relative decrease that is then worth Newton steps
+constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
+
+/// What a length of the polish means.
+struct Bounds {
+  double enough;       ///< predicted relative decrease at which it ends
+  double little_gain;  ///< of a round of steps that ends blocked: it is the last one
+  int most_steps;
+  double stationary;  ///< predicted relative decrease that is none
+  bool newton;        ///< may end with Newton steps
+};
+
+Bounds bounds_of(PolishLength length) {
+  switch (length) {
+    case PolishLength::kShort:
+      return {4e-4, 1e-4, 8, 1e-3, false};
+    case PolishLength::kMiddling:
+      return {1e-4, 2e-4, 20, 1e-3, false};
+    default:
+      return {0, 1e-3, kMostSteps, 1e-4, true};
+  }
+}
 
 /// What all steps have in common.
 struct Setting {
@@ -42,7 +61,8 @@ struct Setting {
   const ChartOptions& options;
   const Work& work;
   double area;  ///< of the surface
-  MetricLaplacian& laplacian;
+  Bounds bounds;
+  StiffnessInverse& inverse;
 
   double comparable(double energy) const { return comparable_energy(options.energy, energy); }
 };
@@ -70,7 +90,7 @@ void clean(const Setting& setting, const std::vector<Index>& also, State& state)
 void take_steps(const Setting& setting, int steps, bool force_first, State& state) {
   // The objective is a mean, the stiffness that of a sum.
   const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
-    setting.laplacian.precondition(in, out);
+    setting.inverse.precondition(in, out);
     for (Vec2& w : out) w *= setting.area;
   };
   PolishOptions options;
@@ -78,6 +98,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.tolerance = kTolerance;
   options.max_iterations = steps;
   options.force_first = force_first;
+  options.enough = setting.bounds.enough;
   options.contact = setting.contact;
   const int before = state.iterations;
   state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
@@ -94,26 +115,25 @@ void fit_factor(const Setting& setting, const State& state) {
     for (double& spring : springs) spring *= setting.contact->strength();
   }
   const DiskMesh& mesh = *setting.fine.mesh;
-  setting.laplacian.refit(mesh,
-                          energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
-                                           state.uvs, setting.work),
-                          springs);
+  setting.inverse.refit(energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
+                                         state.uvs, setting.work),
+                        springs);
 }
 
 void take_rounds(const Setting& setting, State& state) {
   double before_last_round = std::numeric_limits<double>::infinity();
   // Rounds of cleaning alone, without a step, are bounded too.
   for (int round = 0; round < kMostSteps; ++round) {
-    if (state.last.converged || state.iterations >= kMostSteps) return;
+    if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     fit_factor(setting, state);
-    take_steps(setting, kMostSteps - state.iterations, true, state);
+    take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
     if (!state.last.blocked) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.
     const double energy = state.last.energies.back();
     const double gained = before_last_round - energy;
     before_last_round = state.last.energies.front();
-    if (gained <= kLittleGain * setting.comparable(energy)) return;
+    if (gained <= setting.bounds.little_gain * setting.comparable(energy)) return;
   }
 }
 
@@ -138,16 +158,16 @@ void end_with_newton(const Setting& setting, State& state) {
   const double energy = setting.comparable(state.last.energies.back());
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
-  state.converged = 0.5 * state.last.predicted <= kStationary * energy;
-  if (!(state.last.predicted > kMuchLeft * energy)) return;
+  state.converged = 0.5 * state.last.predicted <= setting.bounds.stationary * energy;
+  if (!setting.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);
 }
 
 }  // namespace
 
-ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact,
-                    const ChartOptions& options, const Work& work, MetricLaplacian& laplacian,
+ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, PolishLength length,
+                    const ChartOptions& options, const Work& work, StiffnessInverse& inverse,
                     std::vector<Vec2> start) {
   ChartMap map;
   run_stage("polish", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
@@ -156,13 +176,15 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact,
       fitted.emplace(*contact).fit(
           start, comparable_energy(options.energy, fine.statistics.coarse_energy));
     }
-    const Setting setting{fine,  fitted ? &*fitted : nullptr,     options,
-                          inner, surface_area(*fine.mesh, inner), laplacian};
+    const Setting setting{fine,   fitted ? &*fitted : nullptr,     options,
+                          inner,  surface_area(*fine.mesh, inner), bounds_of(length),
+                          inverse};
     State state{.uvs = std::move(start)};
     take_steps(setting, 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
-    clean(setting, {}, state);
+    // A map that no step has changed was cleaned when it was mended.
+    if (state.iterations > 0) clean(setting, {}, state);
     if (contact) scale_best(*fine.mesh, fine.rest, options, state.uvs);
     stage.iterations = state.iterations;
     map.uvs = std::move(state.uvs);

@@ -9,16 +9,24 @@
 #include "chart/fine_problem.h"
 #include "chart/options.h"
 #include "descend/contact.h"
-#include "flatten/metric.h"
+#include "flatten/stiffness_inverse.h"
 
 namespace beltrami {
 
+/// How long a polish may get.
+enum class PolishLength {
+  kWhole,     ///< to a stationary point
+  kMiddling,  ///< of a map that a finer mesh starts from
+  kShort,  ///< of a map that came from a polished one of a coarser mesh: ends where a step promises
+           ///< little
+};
+
 /// Descends from `start`, whose faces are all positive, on the schedule at the top of
 /// polish_schedule.cpp. With `contact`, which is copied, the boundary stays simple; null: it may
-/// cross itself. `laplacian` is that of the solve, and is fitted anew on the way. Converged: ended
+/// cross itself. `inverse` is that of the solve, and is fitted anew on the way. Converged: ended
 /// stationary. Throws Error SOLVER.
-ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact,
-                    const ChartOptions& options, const Work& work, MetricLaplacian& laplacian,
+ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, PolishLength length,
+                    const ChartOptions& options, const Work& work, StiffnessInverse& inverse,
                     std::vector<Vec2> start);
 
 }  // namespace beltrami

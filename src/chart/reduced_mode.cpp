@@ -80,7 +80,7 @@ ChartMap reduced_mode(const FineProblem& fine, bool scaffold, const ChartOptions
     map.uvs = std::move(done.uvs);
   };
   run_stage("flatten", work.part(0, 0.8), map.statistics.stages, flatten);
-  mend(fine, scaffold, options, work.part(0.8, 1), map);
+  mend(fine, whole_repair(fine, scaffold, options, work), options, work.part(0.8, 1), map);
   return map;
 }
 

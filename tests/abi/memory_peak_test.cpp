@@ -64,9 +64,10 @@ INSTANTIATE_TEST_SUITE_P(
                     std::vector<Setting>{{BELTRAMI_OPTION_METHOD, BELTRAMI_METHOD_CM},
                                          {BELTRAMI_OPTION_MAX_ITERATIONS, 1}}));
 
-// The least limit, which has no room for what few meshes need.
+// In levels, of which the coarsest may need the room of a whole smaller disk. The least limit,
+// which has no room for what few meshes need.
 TEST(MemoryOfLimitedRun, StaysWithinItsLimit) {
-  const meshes::TriangleList mesh = meshes::bumps(230, 230);
+  const meshes::TriangleList mesh = meshes::bumps(400, 400);
   malloc_trim(0);
   const double before = memory_of_process("VmRSS");
   const Context context = create();

@@ -242,6 +242,12 @@ std::vector<std::string> small_rows() {
       rows.push_back(row(name, mesh, options));
     }
   }
+  // In levels.
+  const TriangleList large = meshes::bumps(230, 230);
+  for (const char* options : {"", "energy=symmetric-arap", "float32"}) {
+    rows.push_back(row("large bumps", large, options));
+  }
+  rows.push_back(row("large ramp", disks::ramp(760, 72), ""));
   return rows;
 }
 
