@@ -7,7 +7,8 @@ be about are looked at one by one.
 
 BUILD has compile_commands.json. A source is looked at again only if it, a header of the project
 that it includes, its command, the configuration or a tool has changed: CACHE keeps an empty file
-by the hash of all that for each that was clean. Prints what is found; exits with 1 if there is any.
+by the hash of all that for each that was clean. Prints how far it is and what is found, as it is
+found; exits with 1 if there is any.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 
 import clang_tidy
@@ -80,23 +81,36 @@ def suspects(group: list[str], found: list[str], project: Project) -> list[str]:
     ]
 
 
+def tidied_and_checked(unit: str, words: list[str], resources: str, project: Project) -> list[str]:
+    """Return what both have to say about a source, or about all of a group."""
+    return tidy(unit, words) + check(unit, words, resources, project)
+
+
 def verdicts_on(
     groups: list[list[str]], commands: dict[str, list[str]], project: Project, units: Path
-) -> Iterator[tuple[list[str], list[str]]]:
-    """Yield each group with what is found in it; the files of the larger ones go into `units`."""
-    resources = next(Path(clang_tidy.__file__).parent.glob("data/lib/clang/*"))
+) -> Iterator[tuple[list[str], list[str], list[str]]]:
+    """Yield each group, as they are done, with what is found and those it may be about.
+
+    Those of a group of several come up again, one by one. The files of such groups go into `units`.
+    """
+    resources = str(next(Path(clang_tidy.__file__).parent.glob("data/lib/clang/*")))
     with ProcessPoolExecutor() as pool:
-        verdicts = []
+        running: dict[Future[list[str]], list[str]] = {}
+
+        def start(group: list[str]) -> None:
+            words, unit = commands[group[0]], unit_of(group, units)
+            running[pool.submit(tidied_and_checked, unit, words, resources, project)] = group
+
         for group in groups:
-            unit, words = unit_of(group, units), commands[group[0]]
-            verdicts.append(
-                (
-                    pool.submit(tidy, unit, words),
-                    pool.submit(check, unit, words, str(resources), project),
-                )
-            )
-        for group, (tidied, checked) in zip(groups, verdicts, strict=True):
-            yield group, tidied.result() + checked.result()
+            start(group)
+        while running:
+            for verdict in wait(running, return_when=FIRST_COMPLETED).done:
+                group, found = running.pop(verdict), verdict.result()
+                unclear = suspects(group, found, project) if found else []
+                if len(group) > 1:
+                    for name in unclear:
+                        start([name])
+                yield group, found, unclear
 
 
 def main() -> int:
@@ -121,22 +135,19 @@ def main() -> int:
     os.chdir(build)  # the flags are relative to it
     units = cache / "groups"
     units.mkdir(parents=True, exist_ok=True)
-    todo = groups_of(commands)
-    complaints: dict[str, None] = {}
-    while todo:
-        again = []
-        for group, found in verdicts_on(todo, commands, project, units):
-            unclear = suspects(group, found, project) if found else []
-            for name in group:
-                if name not in unclear:
-                    marks[name].touch()
-            if len(group) > 1:
-                again += [[name] for name in unclear]
-            else:
-                complaints |= dict.fromkeys(found)
-        todo = again
-    for complaint in complaints:
-        print(complaint)
+    complaints: set[str] = set()
+    clean = 0
+    for group, found, unclear in verdicts_on(groups_of(commands), commands, project, units):
+        for name in group:
+            if name not in unclear:
+                marks[name].touch()
+        clean += len(group) - len(unclear)
+        if len(group) == 1:
+            for complaint in found:
+                if complaint not in complaints:  # of a header, which comes with several sources
+                    print(complaint)
+            complaints.update(found)
+        print(f"lint: {clean} of {len(commands)} sources are clean", flush=True)
     return 1 if complaints else 0
 
 
