@@ -6,6 +6,8 @@
 
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
+#include "base/types.h"
+#include "cut/edge_marks.h"
 #include "cut/search.h"
 #include "cut/search_level.h"
 

@@ -15,6 +15,8 @@
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/necks.h"
+#include "mesh/chart.h"
+#include "mesh/disk_mesh.h"
 #include "pack/outline.h"
 
 namespace beltrami {

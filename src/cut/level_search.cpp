@@ -9,9 +9,12 @@
 
 #include "base/portable_math.h"
 #include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
 #include "cut/split_overlaps.h"
 #include "cut/straighten.h"
 #include "mesh/chart.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {
