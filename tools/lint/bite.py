@@ -43,8 +43,9 @@ APART = {
     "one.cpp": HELPER.format(1, "one"),
     "two.cpp": HELPER.format(2, "two"),
     "three.cpp": "struct Three {\n  Three(int x);\n};\nint helper_of_three();\n",
+    "four.cpp": "namespace {\nconstexpr int kFour = 4, helper = kFour;\n}\nint four = helper;\n",
 }
-GROUPS = [["one.cpp", "three.cpp"], ["two.cpp"]]
+GROUPS = [["one.cpp", "three.cpp"], ["two.cpp"], ["four.cpp"]]
 DEFECT = "three.cpp:2:3: error: single-argument constructors must be marked explicit"
 
 
