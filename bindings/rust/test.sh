@@ -87,13 +87,15 @@ documentation() {
 # a change; so what was built from others goes.
 package() {
   say "packages"
-  local new=$PLACE/new
+  local new=$PLACE/new part
   cargo package --locked --quiet --workspace --no-verify --allow-dirty \
     --target-dir "$TARGET" 2>"$PLACE/package.log" || { cat "$PLACE/package.log" >&2; return 1; }
   mkdir "$new"
   for crate in "$TARGET"/package/*.crate; do tar -xzf "$crate" -C "$new"; done
   if grep -rlF "$ROOT" "$new"; then fail "these name folders of this machine"; fi
-  cmp "$ROOT/src/abi/option_table.cpp" "$new"/beltrami-sys-*/vendor/src/abi/option_table.cpp
+  for part in src include; do
+    diff -r "$ROOT/$part" "$new"/beltrami-sys-*/vendor/"$part" || fail "packaged is another $part/"
+  done
   if ! diff -rq --exclude=.cargo_vcs_info.json "$new" "$PACKAGES" >/dev/null 2>&1; then
     rm -rf "$PACKAGES" "$TARGET"/consumer-*
     mv "$new" "$PACKAGES"
@@ -125,6 +127,16 @@ with_installed() (
   "$@"
 )
 
+# Runs a command that compiles what is packaged. The stages are taken from the build, being of the
+# same sources: what is compiled are the entry points, which include most of their headers.
+with_built_objects() (
+  mkdir -p "$PLACE/built/CMakeFiles"
+  ln -sfn "$BUILD/src/CMakeFiles/beltrami_stages.dir" "$PLACE/built/CMakeFiles/beltrami_stages.dir"
+  export BELTRAMI_BUILT=$PLACE/built
+  export CMAKE_CXX_COMPILER_LAUNCHER=$ROOT/tests/install/reuse_object.sh
+  "$@"
+)
+
 # Every way to the library, each with the packages and the consumer only.
 consumers() {
   cp -r tests/consumer "$PLACE"
@@ -148,7 +160,7 @@ consumers() {
   if links_the_shared_library installed-static; then fail "it is not the static library"; fi
 
   say "a program with the packages: vendored"
-  consumer vendored --features vendored
+  with_built_objects consumer vendored --features vendored
   if links_the_shared_library vendored; then fail "it is not the static library"; fi
 
   say "a program with the packages: no library"
@@ -158,16 +170,12 @@ consumers() {
   grep -q 'Choose one of' "$PLACE/nowhere.log"
 }
 
-# The features with another solver, whose UVs have other bits. The stages that all solvers share are
-# taken from the build: that the package compiles is seen with the feature vendored.
+# The features with another solver, whose UVs have other bits.
 solvers() {
   local feature
-  mkdir -p "$PLACE/built/CMakeFiles"
-  ln -s "$BUILD/src/CMakeFiles/beltrami_stages.dir" "$PLACE/built/CMakeFiles"
   for feature in cholmod supernodal; do
     say "a program with the packages: $feature"
-    BELTRAMI_BUILT=$PLACE/built CMAKE_CXX_COMPILER_LAUNCHER=$ROOT/tests/install/reuse_object.sh \
-      build_consumer "$feature" --features "$feature"
+    with_built_objects build_consumer "$feature" --features "$feature"
     "$TARGET/consumer-$feature/debug/consumer" "$MESH" | tee "$PLACE/$feature.txt"
   done
   grep -q 'solver cholmod-simplicial,.*no GPL code' "$PLACE/cholmod.txt"
