@@ -6,9 +6,10 @@ prints groups of several with a line for each, parted by tabs; a build with BELT
 them so. For clang they are put together by lint.py.
 
 What is declared in one file only, its tests and the helpers in anonymous namespaces, meets the
-other files of its group; so no two files of a group have a name in common. Where that does not do,
-the group does not compile, and lint.py looks at its files one by one; in a build such a file is
-given SKIP_UNITY_BUILD_INCLUSION.
+other files of its group and the headers of these; so no two files of a group have a name in common,
+and none has a name of its own that a header of another declares. Where that does not do, the group
+does not compile, and lint.py looks at its files one by one; in a build such a file is given
+SKIP_UNITY_BUILD_INCLUSION.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from pathlib import Path
 
 # So that every core gets some, and that none takes more memory than a gigabyte or so.
 MOST = 12
+ROOT = Path(__file__).parents[2]
+FOLDERS = [ROOT / folder for folder in ("include", "src", "program", "tests", "")]
 
 # What is declared at the beginning of a line, which is to say in no block, and is no macro's.
 NAMES = re.compile(
@@ -39,25 +42,51 @@ def names_of(text: str) -> set[str]:
     return names
 
 
+def headers_of(path: Path) -> set[Path]:
+    """Return the headers of the project that a file includes, and those that they include."""
+    seen, todo = set(), [path]
+    while todo:
+        file = todo.pop()
+        for name in re.findall(r'^#include ["<]([^">]+)', file.read_text(), re.M):
+            for folder in (file.parent, *FOLDERS):
+                if (header := folder / name).is_file():
+                    if header not in seen:
+                        seen.add(header)
+                        todo.append(header)
+                    break
+    return seen
+
+
 def groups_of(sources: dict[str, list[str]]) -> list[list[str]]:
     """Part sources, given with their compiler's arguments, into groups that may be read together.
 
     Files of a group have the same arguments; the language of C has no namespaces, and no groups.
     """
-    groups: list[tuple[object, set[str], list[str]]] = []
+    groups: list[tuple[object, set[str], set[str], list[str]]] = []
+    declared: dict[Path, set[str]] = {}
     for name, words in sources.items():
         path = Path(name)
         kind = (words, path if path.suffix == ".c" else None)
-        names = names_of(path.read_text())
-        for other, taken, members in groups:
-            if other == kind and len(members) < MOST and not taken & names:
+        shared: set[str] = set()  # what headers declare, it may mean
+        for header in headers_of(path):
+            if header not in declared:
+                declared[header] = names_of(header.read_text())
+            shared |= declared[header]
+        own = names_of(path.read_text()) - shared
+        for other, taken, meant, members in groups:
+            if (
+                other == kind
+                and len(members) < MOST
+                and not (taken & (own | shared) or meant & own)
+            ):
                 break
         else:
-            taken, members = set(), []
-            groups.append((kind, taken, members))
-        taken |= names
+            taken, meant, members = set(), set(), []
+            groups.append((kind, taken, meant, members))
+        taken |= own
+        meant |= shared
         members.append(name)
-    return [members for _, _, members in groups]
+    return [members for *_, members in groups]
 
 
 def unit_of(group: list[str], folder: Path) -> str:
