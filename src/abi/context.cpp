@@ -168,7 +168,7 @@ beltrami_status beltrami_context::pack(const beltrami_uv_mesh* const* meshes,
   const beltrami::InterruptScope interruptible({&cancelled, headers.front().cancel, {}});
   beltrami::HostProgress host(progress, user);
   const beltrami::Work work(beltrami::limits(options), host.watched());
-  beltrami::Packed result =
+  beltrami::PackedMeshes result =
       beltrami::pack_meshes(headers, beltrami::pack_options(options), options.float32, work);
   if (mark.take_request() || host.cancelled()) {
     throw beltrami::Cancelled();
@@ -178,7 +178,7 @@ beltrami_status beltrami_context::pack(const beltrami_uv_mesh* const* meshes,
   return beltrami::status_of(packed->result.outcome);
 }
 
-const beltrami::Packed& beltrami_context::packing() const {
+const beltrami::PackedMeshes& beltrami_context::packing() const {
   if (!packed) {
     throw beltrami::Error(beltrami::Fault::kInvalidState,
                           "there is no packing yet: call beltrami_pack");

@@ -41,7 +41,7 @@ struct beltrami_context {
   std::optional<beltrami::LoadedMesh> mesh;
   std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
   std::optional<beltrami::Unwrapped> unwrapped;    ///< of the last surface
-  std::optional<beltrami::Packed> packed;          ///< of the last UV meshes
+  std::optional<beltrami::PackedMeshes> packed;    ///< of the last UV meshes
   enum class Packer { kNone, kUnwrap, kPack } last_packer = Packer::kNone;
   beltrami::Failure failure;
   std::atomic<bool> cancelled{false};
@@ -67,7 +67,7 @@ struct beltrami_context {
   /// The results. Throws Error INVALID_STATE where there are none.
   const beltrami::Flattening& results() const;
   const beltrami::Unwrapped& atlas() const;
-  const beltrami::Packed& packing() const;
+  const beltrami::PackedMeshes& packing() const;
   beltrami::OnPages on_pages() const;  ///< of what was packed last
 };
 

@@ -37,7 +37,7 @@ class Reader {
   Reader(const std::vector<beltrami_uv_mesh>& headers, const Work& work)
       : headers_(headers), work_(work) {}
 
-  UvMesh read(Packed& packed) {
+  UvMesh read(PackedMeshes& packed) {
     UvMesh all;
     for (std::size_t m = 0; m < headers_.size(); ++m) {
       packed.first_uv.push_back(size_of(all.uvs));
@@ -155,7 +155,7 @@ class Reader {
 
 }  // namespace
 
-OnPages on_pages(const Packed& packed) {
+OnPages on_pages(const PackedMeshes& packed) {
   const PackedUvs& result = packed.result;
   return {result.pages,
           result.outcome,
@@ -208,10 +208,10 @@ std::vector<beltrami_uv_mesh> read_uv_headers(const beltrami_uv_mesh* const* mes
   return headers;
 }
 
-Packed pack_meshes(const std::vector<beltrami_uv_mesh>& headers, const PackOptions& options,
-                   bool float32, const Work& work) {
+PackedMeshes pack_meshes(const std::vector<beltrami_uv_mesh>& headers, const PackOptions& options,
+                         bool float32, const Work& work) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  Packed packed;
+  PackedMeshes packed;
   UvMesh mesh = Reader(headers, work.named("read")).read(packed);
   packed.result = pack_uvs(mesh, options, float32, work);
   packed.faces = std::move(mesh.faces);

@@ -18,7 +18,7 @@
 namespace beltrami {
 
 /// What beltrami_pack leaves behind: all meshes in one list.
-struct Packed {
+struct PackedMeshes {
   PackedUvs result;
   std::vector<Triangle> faces;
   std::vector<Index> first_uv, first_face;  ///< per mesh, and the count of all
@@ -36,7 +36,7 @@ struct OnPages {
   const AtlasCertificate& single_certificate;
   double seconds, cpu_seconds;
 };
-OnPages on_pages(const Packed& packed);
+OnPages on_pages(const PackedMeshes& packed);
 /// Precondition: the atlas is packed.
 OnPages on_pages(const Unwrapped& unwrapped);
 
@@ -48,7 +48,7 @@ std::vector<beltrami_uv_mesh> read_uv_headers(const beltrami_uv_mesh* const* mes
 /// Reads meshes that have passed read_uv_headers, and packs them. Throws Error INVALID_ARGUMENT,
 /// INDEX_OUT_OF_RANGE or NON_FINITE with the element and a sentence that names the mesh where there
 /// are several, NO_ROOM, or Cancelled.
-Packed pack_meshes(const std::vector<beltrami_uv_mesh>& headers, const PackOptions& options,
-                   bool float32, const Work& work);
+PackedMeshes pack_meshes(const std::vector<beltrami_uv_mesh>& headers, const PackOptions& options,
+                         bool float32, const Work& work);
 
 }  // namespace beltrami

@@ -49,12 +49,12 @@ beltrami_status get(beltrami_context* context, const Body& body) noexcept {
   });
 }
 
-/// The body of a getter of beltrami_pack: body(const Packed&, mesh).
+/// The body of a getter of beltrami_pack: body(const PackedMeshes&, mesh).
 template <class Body>
 beltrami_status get_of_mesh(beltrami_context* context, std::uint64_t mesh,
                             const Body& body) noexcept {
   return enter(context, [&](beltrami_context& self) {
-    const Packed& packed = self.packing();
+    const PackedMeshes& packed = self.packing();
     const std::size_t meshes = packed.first_uv.size() - 1;
     if (mesh >= meshes) {
       throw Error(Fault::kInvalidArgument, "there is no mesh " + std::to_string(mesh) +
@@ -153,7 +153,7 @@ beltrami_status beltrami_get_page_mask(beltrami_context* context, uint64_t page,
 
 beltrami_status beltrami_get_packed_uvs(beltrami_context* context, uint64_t mesh, void* out,
                                         int32_t type, uint64_t stride) {
-  return get_of_mesh(context, mesh, [&](const beltrami::Packed& packed, std::size_t m) {
+  return get_of_mesh(context, mesh, [&](const beltrami::PackedMeshes& packed, std::size_t m) {
     const beltrami::Index first = packed.first_uv[m], end = packed.first_uv[m + 1];
     beltrami::Writer writer(out, type, stride, static_cast<std::uint64_t>(end - first), 2);
     for (beltrami::Index v = first; v < end; ++v) {
@@ -166,7 +166,7 @@ beltrami_status beltrami_get_packed_uvs(beltrami_context* context, uint64_t mesh
 
 beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh, void* out,
                                            int32_t type, uint64_t stride) {
-  return get_of_mesh(context, mesh, [&](const beltrami::Packed& packed, std::size_t m) {
+  return get_of_mesh(context, mesh, [&](const beltrami::PackedMeshes& packed, std::size_t m) {
     const auto& all = packed.result.chart_of_face;
     const std::vector<beltrami::Index> own(all.begin() + packed.first_face[m],
                                            all.begin() + packed.first_face[m + 1]);

@@ -73,8 +73,8 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
       for (Vec2& w : placed) {
         w = place_on_page(packing, parts[i], placement, options.resolution, w);
       }
-      const Delivery delivery{.float32 = float32, .single_first = placement.page > 0};
-      round_chart(charts[c].chart.mesh, placed, delivery, of_chart, maps[c]);
+      const NumberFormat numbers{.float32 = float32, .single_first = placement.page > 0};
+      round_chart(charts[c].chart.mesh, placed, numbers, of_chart, maps[c]);
     });
     pages.margin = margin_of(charts, maps, pages.page_of_chart, options.resolution, own);
     return pages.margin;

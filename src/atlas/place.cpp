@@ -64,17 +64,17 @@ std::vector<Vec2> shifts_of(const std::vector<MappedChart>& maps, bool unit_squa
 int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_square, bool float32,
                std::vector<MappedChart>& maps, const Work& work) {
   const std::vector<Vec2> shifts = shifts_of(maps, unit_square, exponent);
-  const Delivery delivery{.exponent = exponent, .float32 = float32};
+  const NumberFormat numbers{.exponent = exponent, .float32 = float32};
   const Work of_chart = maps.size() == 1 ? work : work.aside();
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].error) {
       for (Vec2& w : maps[c].uvs) w += shifts[c];
     } else if (maps[c].pinned()) {
-      round_pinned(charts[c], delivery, of_chart, maps[c]);
+      round_pinned(charts[c], numbers, of_chart, maps[c]);
     } else {
       std::vector<Vec2> placed = maps[c].uvs;
       for (Vec2& w : placed) w += shifts[c];
-      round_chart(charts[c].chart.mesh, placed, delivery, of_chart, maps[c]);
+      round_chart(charts[c].chart.mesh, placed, numbers, of_chart, maps[c]);
     }
   });
   return exponent;

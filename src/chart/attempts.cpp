@@ -66,10 +66,10 @@ std::vector<Way> embeddings(const DiskMesh& mesh, const ChartOptions& options) {
 
 }  // namespace
 
-Attempt attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way,
-                const ChartOptions& options, const Work& work) {
+JudgedMap attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way,
+                  const ChartOptions& options, const Work& work) {
   const double method_done = options.refine ? kMethodToRefine : kMethod;
-  Attempt made;
+  JudgedMap made;
   made.map = way.run(work.part(0, method_done));
   const DiskMesh& disk = made.map.retriangulated ? *made.map.retriangulated : mesh;
   if (options.refine) refine(disk, options, work.part(method_done, kMethod), made.map);
@@ -86,7 +86,7 @@ Attempt attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way
 
 Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std::vector<Way>& ways,
                      const ChartOptions& options, const Work& work) {
-  std::optional<Attempt> best;
+  std::optional<JudgedMap> best;
   std::optional<Error> failure;
   StageStatistics of_best{"given-up"}, lost = of_best;
   const auto add = [](StageStatistics& sum, const StageStatistics& spent) {
@@ -99,7 +99,7 @@ Attempts try_in_turn(const DiskMesh& mesh, const Normalisation& frame, const std
     if (tried > 0 && way.needs_time && work.out_of_time()) continue;
     ++tried;
     StageStatistics spent{"given-up", 0, wall_seconds(), cpu_seconds()};
-    std::optional<Attempt> made;
+    std::optional<JudgedMap> made;
     try {
       made = attempt(mesh, frame, way, options, work);
     } catch (const Error& error) {

@@ -15,14 +15,14 @@
 
 namespace beltrami {
 
-struct Attempt {
+struct JudgedMap {
   ChartMap map;  ///< but for its UVs, which are those of `delivery`
   Delivery delivery;
   std::int64_t broken = 0;  ///< see broken_promises; 0 of modes that promise nothing
 };
 
 struct Attempts {
-  Attempt best;
+  JudgedMap best;
   std::int64_t restarts = 0;  ///< attempts after the first
 };
 
@@ -34,8 +34,8 @@ struct Way {
 
 /// One way, refined where the options say so, and judged in the numbers that it would be delivered
 /// in. Throws as the way does.
-Attempt attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way,
-                const ChartOptions& options, const Work& work);
+JudgedMap attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& way,
+                  const ChartOptions& options, const Work& work);
 
 /// The ways one after the other, until one breaks no promise; of several that do the first with the
 /// fewest faults. Ways that throw Error SOLVER are passed over; where all do, the last error is

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks copies of the sources to see layers.py and lengths.py refuse them.
+"""Breaks copies of the sources to see the other scripts of this folder refuse them.
 
     bite.py ROOT
 """
@@ -58,6 +58,11 @@ BREAKS = [
     (
         "lengths.py", "src/energy/measure.cpp", f"int g(int a = f({{}})) {{\n{LONG_BODY}}}",
         ": g has",
+    ),
+    (
+        "namesakes.py", "src/ring/ring_faces.h", "namespace beltrami {\nstruct DiskMesh {};\n"
+        "struct DiskMesh2 final : A<B::C> {\n};\nenum class Fault : int {\n};\n}  // namespace",
+        "faces.h:5: beltrami::Fault is the name of another type, at src/base/error.h:",
     ),
 ]
 
