@@ -72,7 +72,8 @@ MeshFile read(const std::string& bytes, const std::string& path = "a.glb") {
 /// UVs that tell corners apart: (number, 1/4) for UV vertex `number`.
 GltfOutput write(MeshFile file, const Corners& uv_vertices, std::uint32_t uv_set = 0,
                  const std::string& path = "b.glb") {
-  for (std::uint32_t i = 0; i <= *std::max_element(uv_vertices.begin(), uv_vertices.end()); ++i) {
+  const std::uint32_t last = *std::max_element(uv_vertices.begin(), uv_vertices.end());
+  for (std::uint32_t i = 0; i <= last; ++i) {
     file.corner_uvs.values.insert(file.corner_uvs.values.end(), {double(i), 0.25});
   }
   file.corner_uvs.of_corner = uv_vertices;
