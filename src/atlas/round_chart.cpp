@@ -19,10 +19,10 @@ bool is_sound(const AtlasChart& part, const std::vector<Vec2>& uvs, const Work& 
 
 }  // namespace
 
-void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const NumberFormat& numbers,
+void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const NumberFormat& format,
                  const Work& work, MappedChart& map) {
-  const Numbers doubles{.single = false, .exponent = numbers.exponent};
-  const Numbers floats{.single = true, .exponent = numbers.exponent};
+  const Numbers doubles{.single = false, .exponent = format.exponent};
+  const Numbers floats{.single = true, .exponent = format.exponent};
   const bool was_injective = map.outcome <= Outcome::kNotConverged;
   const auto note = [&](const Numbers& numbers, const Certificate& certificate, Outcome outcome) {
     if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) {
@@ -33,21 +33,21 @@ void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const Nu
   map.uvs = std::move(rounded.uvs);
   note(doubles, rounded.certificate, Outcome::kNotInjective);
   Rounded single = round_map(mesh, map.uvs, map.uvs, floats, work);
-  if (numbers.float32) {
+  if (format.float32) {
     if (map.outcome != Outcome::kNotInjective) {
       note(floats, single.certificate, Outcome::kNotInjectiveFloat32);
     }
     map.uvs = std::move(single.uvs);
-  } else if ((single.moved > 0 || numbers.single_first) && single.certificate.injective()) {
+  } else if ((single.moved > 0 || format.single_first) && single.certificate.injective()) {
     map.uvs = std::move(single.uvs);
   }
 }
 
-void round_pinned(const AtlasChart& part, const NumberFormat& numbers, const Work& work,
+void round_pinned(const AtlasChart& part, const NumberFormat& format, const Work& work,
                   MappedChart& map) {
   const DiskMesh& mesh = part.chart.mesh;
-  const Numbers doubles{.single = false, .exponent = numbers.exponent};
-  const Numbers floats{.single = true, .exponent = numbers.exponent};
+  const Numbers doubles{.single = false, .exponent = format.exponent};
+  const Numbers floats{.single = true, .exponent = format.exponent};
   map.uvs = round_map(mesh, map.uvs, map.uvs, map.held, doubles, work).uvs;
   Rounded single = round_map(mesh, map.uvs, map.uvs, map.held, floats, work);
   bool pins_stay = true;
@@ -60,9 +60,9 @@ void round_pinned(const AtlasChart& part, const NumberFormat& numbers, const Wor
     map.outcome = Outcome::kOk;
   }
   const bool mended = single.moved > 0 && single.certificate.injective() && pins_stay;
-  if (!numbers.float32 && !mended) return;
+  if (!format.float32 && !mended) return;
   map.uvs = std::move(single.uvs);
-  if (numbers.float32 && map.outcome != Outcome::kNotInjective && !is_sound(part, map.uvs, work)) {
+  if (format.float32 && map.outcome != Outcome::kNotInjective && !is_sound(part, map.uvs, work)) {
     map.outcome = Outcome::kNotInjectiveFloat32;
   }
 }

@@ -21,12 +21,12 @@ struct NumberFormat {
 /// Rounds a map that was moved to `placed` (one per vertex), to doubles that rounded to nearest
 /// stay injective in single precision; or to single-precision numbers at once. The outcome of the
 /// map says where it does not stay injective.
-void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const NumberFormat& numbers,
+void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const NumberFormat& format,
                  const Work& work, MappedChart& map);
 
 /// The same for a map with pins, which is and stays where they put it; its outcome is judged anew,
 /// as its boundary may touch itself.
-void round_pinned(const AtlasChart& part, const NumberFormat& numbers, const Work& work,
+void round_pinned(const AtlasChart& part, const NumberFormat& format, const Work& work,
                   MappedChart& map);
 
 }  // namespace beltrami
