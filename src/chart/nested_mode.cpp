@@ -1,8 +1,6 @@
 // The method beltrami in levels: no factorization but that of the coarsest.
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,15 +17,20 @@
 #include "descend/contact.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
+#include "exact/crossings.h"
 #include "flatten/carried_target.h"
 #include "flatten/dirichlet.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/v_cycle.h"
+#include "linear/smoother.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
 #include "prolong/interpolation.h"
 #include "simplify/levels.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

@@ -1,6 +1,7 @@
 #include "flatten/carried_target.h"
 
 #include "base/parallel.h"
+#include "flatten/laplacian.h"
 #include "flatten/principal_stiffness.h"
 #include "mesh/vertex_sums.h"
 

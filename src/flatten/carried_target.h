@@ -8,7 +8,6 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "energy/energy.h"
-#include "flatten/laplacian.h"
 #include "linear/smoother.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"

@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "base/portable_math.h"
-#include "energy/density.h"
 #include "flatten/laplacian.h"
 #include "flatten/principal_stiffness.h"
 #include "mesh/vertex_sums.h"

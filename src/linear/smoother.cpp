@@ -89,7 +89,7 @@ void Smoother::multiply(const SingleField& x, SingleField& product) const {
   product.resize(x.size());
   parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
-      const Eigen::Vector2f here = x[v];
+      const Eigen::Vector2f& here = x[v];
       Eigen::Vector2f sum(0, 0);
       for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i) {
         sum += weight_[i] * (here - x[column_[i]]);

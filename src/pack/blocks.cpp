@@ -86,8 +86,8 @@ std::vector<NearBlock> Blocks::near(const std::vector<PlacedOutline>& charts, In
   for_each_within(outline, reach, [&](std::size_t block) {
     if (owner_[block] == kNone || owner_[block] == chart) return;
     const std::size_t at = block % of_page;
-    const Vec2 corner =
-        cell_ * Vec2(static_cast<double>(at % cells_), static_cast<double>(at / cells_));
+    const std::size_t column = at % cells_, row = at / cells_;
+    const Vec2 corner = cell_ * Vec2(static_cast<double>(column), static_cast<double>(row));
     const Box box(corner, Vec2(corner + Vec2::Constant(cell_)));
     NearBlock best{Vec2::Zero(), Vec2::Zero(), HUGE_VAL};
     for (const auto& [from, to] : outline.edges) {

@@ -1,8 +1,5 @@
 #include "prolong/derivative.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "prolong/frame.h"
@@ -11,11 +8,8 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
-constexpr double kMostStretched =
-    0.98;                           // |fzbar|^2 over |fz|^2: averages may come near to flipping
-constexpr double kOpposite = 1e-3;  // 1 + cosine below which two normals have no turn between
 
-/// The derivative of a linear map, times `weight`; `up` is what the face has of it already.
+/// The derivative of a linear map, with the logarithm of its area factor in the place of the scale.
 VertexDerivative derivative_in_space(const Frame& frame, const LinearMap& map, double log_area) {
   const Complex by_x = map.fz + map.fzbar, by_y = Complex(0, 1) * (map.fz - map.fzbar);
   const Vec3 y = frame.n.cross(frame.x);

@@ -6,6 +6,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

@@ -13,7 +13,7 @@
 #include "chart/flattening.h"
 #include "chart/modes.h"
 #include "chart/options.h"
-#include "mesh/disk_mesh.h"
+#include "energy/energy.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 #include "support/run.h"

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "energy/energy.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
-#include "mesh/boundary.h"
 #include "prolong/interpolation.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
