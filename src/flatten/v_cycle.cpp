@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
 
 namespace beltrami {
@@ -86,16 +87,16 @@ void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<do
   for (const double spring : springs) single.push_back(static_cast<float>(spring));
   Level& finest = *levels_.back();
   finest.smoother.set(finest.mesh, weights, single);
-  if (!single.empty()) set_springs_below(levels_.size() - 1, std::move(single));
+  if (!single.empty()) set_springs_below(levels_.size() - 1, single);
 }
 
 /// The springs of a level, and what they are on those below it.
-void VCycle::set_springs_below(std::size_t level, std::vector<float> springs) {
+void VCycle::set_springs_below(std::size_t level, const std::vector<float>& springs) {
   std::vector<float> below(levels_[level]->coarse_rhs.size());
   restrict_to(levels_[level]->points, springs, 0.0F, below, work_);
   if (level > 0) {
     levels_[level - 1]->smoother.set_springs(below);
-    set_springs_below(level - 1, std::move(below));
+    set_springs_below(level - 1, below);
     return;
   }
   factor_.refit(coarsest_stiffness_, {below.begin(), below.end()});

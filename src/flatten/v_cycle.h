@@ -45,7 +45,7 @@ class VCycle final : public StiffnessInverse {
   struct Level;
 
   void apply(std::size_t level, const SingleField& rhs, SingleField& x);
-  void set_springs_below(std::size_t level, std::vector<float> springs);
+  void set_springs_below(std::size_t level, const std::vector<float>& springs);
 
   Work work_;
   const DiskMesh& coarsest_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
