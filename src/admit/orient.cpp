@@ -63,18 +63,18 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
   };
   std::atomic<Index> crowded{0};
   std::atomic<bool> joined{false};
-  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
-  for_each_edge(work, buckets, faces, [&](std::span<const Spoke> edge) {
+  HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
+  for_each_edge(work, buckets, [&](std::span<const Spoke> edge) {
     if (edge.size() < 2) return;
     if (edge.size() == 2) {
-      const Index one = edge[0].halfedge, other = edge[1].halfedge;
+      const Index one = edge[0].halfedge(), other = edge[1].halfedge();
       if (layers[one / 3] == layers[other / 3]) join(one, other);
       return;
     }
     Crowd crowd;
     for (const Spoke& spoke : edge) {
-      const Index face = spoke.halfedge / 3;
-      crowd.push_back({layers[face], polygons.empty() ? face : polygons[face], spoke.halfedge});
+      const Index face = spoke.halfedge() / 3;
+      crowd.push_back({layers[face], polygons.empty() ? face : polygons[face], spoke.halfedge()});
     }
     sort_interruptibly(crowd.begin(), crowd.end(), std::less<>());
     for (std::size_t first = 0, last = 0; first < crowd.size(); first = last) {

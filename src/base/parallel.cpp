@@ -15,6 +15,7 @@
 
 #include "base/floating_point.h"
 #include "base/interrupt.h"
+#include "base/loop_trace.h"
 #include "base/pool.h"
 
 namespace beltrami {
@@ -22,7 +23,16 @@ namespace beltrami {
 void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
                   const std::function<void(std::int64_t, std::int64_t)>& body) {
   const std::int64_t chunks = (count + grain - 1) / grain;
-  const int workers = static_cast<int>(std::min<std::int64_t>(work.threads(), chunks));
+  LoopTrace* const trace = work.trace();
+  if (trace && work.threads() > 1 && !trace->is_inside()) {
+    trace->run(work.name(), chunks, [&](std::int64_t chunk) {
+      poll_interrupt();
+      body(chunk * grain, std::min((chunk + 1) * grain, count));
+    });
+    return;
+  }
+  const int threads = trace ? 1 : work.threads();
+  const int workers = static_cast<int>(std::min<std::int64_t>(threads, chunks));
   if (workers <= 1) {
     for (std::int64_t begin = 0; begin < count; begin += grain) {
       poll_interrupt();

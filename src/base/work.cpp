@@ -33,6 +33,10 @@ Pool& Work::pool() const {
   return run_->pool;
 }
 
+LoopTrace* Work::trace() const {
+  return run_->limits.trace;
+}
+
 std::int64_t Work::memory_limit() const {
   return run_->limits.memory_bytes;
 }

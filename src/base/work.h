@@ -7,6 +7,7 @@
 
 namespace beltrami {
 
+class LoopTrace;
 class Pool;
 
 /// Called on the thread that runs the work; `fraction` in [0, 1] never decreases. Returns true to
@@ -18,6 +19,7 @@ struct Limits {
   int threads = 1;                ///< the caller's included
   std::int64_t memory_bytes = 0;  ///< that its estimate is to stay within; 0: any number
   double seconds = 0;             ///< of wall time from its start; 0: any number
+  LoopTrace* trace = nullptr;     ///< loops are watched instead of shared; outlives the run
 };
 
 /// A share of a run: the part of the progress bar that it fills, and the limits of the whole.
@@ -32,8 +34,10 @@ class Work {
   explicit Work(int threads = 1);
   Work(const Limits& limits, Progress progress);
 
-  int threads() const;                ///< for a loop of this share, the caller's included
-  Pool& pool() const;                 ///< the threads of the run; parallel_for lends them
+  int threads() const;       ///< for a loop of this share, the caller's included
+  Pool& pool() const;        ///< the threads of the run; parallel_for lends them
+  LoopTrace* trace() const;  ///< or null
+  const char* name() const { return name_; }
   std::int64_t memory_limit() const;  ///< bytes; 0: none
 
   /// Whether the time is up. Work that improves on what it has ends then, and keeps the best.

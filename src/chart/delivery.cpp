@@ -1,12 +1,15 @@
 #include "chart/delivery.h"
 
-#include <cmath>
 #include <utility>
 
+#include "base/parallel.h"
+#include "base/portable_math.h"
 #include "energy/measure.h"
 
 namespace beltrami {
 namespace {
+
+constexpr std::int64_t kGrain = 16384;
 
 std::int64_t faults(const Certificate& certificate, bool crossings_too) {
   return certificate.orientations.negative + certificate.orientations.degenerate +
@@ -47,9 +50,12 @@ void measure(const DiskMesh& mesh, const std::vector<Vec2>& uvs, int exponent, c
   std::vector<Vec2> in_mesh_unit;
   if (exponent != 0) {
     in_mesh_unit = uvs;
-    for (Vec2& w : in_mesh_unit) w = {std::ldexp(w.x(), exponent), std::ldexp(w.y(), exponent)};
+    for (Vec2& w : in_mesh_unit) {
+      w = {portable::times_power_of_two(w.x(), exponent),
+           portable::times_power_of_two(w.y(), exponent)};
+    }
   }
-  result.face_energies.resize(mesh.faces.size());
+  parallel_assign(work, result.face_energies, mesh.faces.size());
   result.distortion =
       measure_distortion(mesh.positions, mesh.faces, exponent != 0 ? in_mesh_unit : uvs,
                          result.face_energies.data(), work);
@@ -117,7 +123,9 @@ Flattening deliver(const DiskMesh& mesh, const Normalisation& frame, Delivery ma
     }
     inner.report(0.8);
     measure(mesh, made.uvs, frame.exponent - asked.exponent, inner, result);
-    for (Vec2& w : made.uvs) w = asked.delivered(w);
+    parallel_for(inner, size_of(made.uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t v = begin; v < end; ++v) made.uvs[v] = asked.delivered(made.uvs[v]);
+    });
   });
   if (!(held && result.certificate.injective()) && result.status != Outcome::kNotInjectiveFloat32) {
     result.status = Outcome::kNotInjective;

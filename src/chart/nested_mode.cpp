@@ -40,14 +40,14 @@ constexpr Index kLeastFaces = 100000;
 /// Times the coarse faces, at least.
 constexpr Index kLeastRatio = 8;
 /// Faces of the coarsest level: usually, and where that turned out to be a hard one.
-constexpr std::array<Index, 2> kCoarsestFaces = {16000, 70000};
+constexpr std::array<Index, 2> kCoarsestFaces = {10000, 70000};
 constexpr int kSteps = 2;                 // of conjugate gradients from an interpolated map
 constexpr int kRounds = 3;                // of so many steps, while more than
-constexpr double kFewFlips = 2e-5;        // of the faces are flipped
+constexpr double kFewFlips = 5e-5;        // of the faces are flipped
 constexpr double kManyFlips = 1e-3;       // are those of a hard level, of which
 constexpr double kTooManyFlips = 2e-3;    // are more than is worth mending
 constexpr std::size_t kMostPatches = 30;  // beyond, a finer coarsest level is cheaper
-/// Times the energy of the coarsest level, beyond which a map that is not stationary is useless.
+/// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
 // Shares of the progress.
 constexpr double kSimplified = 0.25, kStarted = 0.4;
@@ -64,9 +64,9 @@ constexpr double kLevels = 1.0 / 7;
 /// A map on the way up, with what it took.
 struct Climb {
   ChartMap map;        ///< of the level reached
-  double energy = 0;   ///< mean, of the coarsest level
+  double energy = 0;   ///< mean, of that level
   bool hard = false;   ///< the polish of a level did not end stationary
-  bool failed = true;  ///< without an injective map, or far from the coarsest level's energy
+  bool failed = true;  ///< without an injective map, or far from the energy of the level below
 };
 
 bool is_injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs, bool simple,
@@ -194,10 +194,13 @@ void climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest, bo
                               : is_finest && !last ? PolishLength::kShort
                                                    : PolishLength::kMiddling;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
-  if (climb.map.converged) return;
+  const bool converged = climb.map.converged;
+  if (converged && is_finest) return;
+  const double below = climb.energy;
+  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
+  if (converged) return;
   climb.hard = true;
-  climb.failed = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs) >
-                 kHopelessly * climb.energy;
+  climb.failed = climb.energy > kHopelessly * below;
 }
 
 /// From the coarsest level to the finest. Ends early where a level is hard, but for the `last` try,

@@ -32,6 +32,7 @@ constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1
 constexpr int kMostSteps = 30;
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
+constexpr double kNothingLost = 1.002;     // times the energy of a coarser mesh
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
 
 /// What a length of the polish means.
@@ -41,16 +42,17 @@ struct Bounds {
   int most_steps;
   double stationary;  ///< predicted relative decrease that is none
   bool newton;        ///< may end with Newton steps
+  bool in_haste;      ///< one factor will do, where nothing is lost since the coarser mesh
 };
 
 Bounds bounds_of(PolishLength length) {
   switch (length) {
     case PolishLength::kShort:
-      return {4e-4, 1e-4, 8, 1e-3, false};
+      return {4e-4, 1e-4, 8, 1e-3, false, true};
     case PolishLength::kMiddling:
-      return {1e-4, 2e-4, 20, 1e-3, false};
+      return {1e-4, 2e-4, 20, 1e-3, false, false};
     default:
-      return {0, 1e-3, kMostSteps, 1e-4, true};
+      return {0, 1e-3, kMostSteps, 1e-4, true, false};
   }
 }
 
@@ -120,12 +122,25 @@ void fit_factor(const Setting& setting, const State& state) {
                         springs);
 }
 
+/// Whether the last step looked at promises next to nothing.
+bool is_stationary(const Setting& setting, const State& state) {
+  const double energy = setting.comparable(state.last.energies.back());
+  return 0.5 * state.last.predicted <= setting.bounds.stationary * energy;
+}
+
+/// Whether the energy is that of the coarser mesh.
+bool is_kept(const Setting& setting, const State& state) {
+  return setting.comparable(state.last.energies.back()) <=
+         kNothingLost * setting.comparable(setting.fine.statistics.coarse_energy);
+}
+
 void take_rounds(const Setting& setting, State& state) {
   double before_last_round = std::numeric_limits<double>::infinity();
   // Rounds of cleaning alone, without a step, are bounded too.
   for (int round = 0; round < kMostSteps; ++round) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
+    if (setting.bounds.in_haste && is_stationary(setting, state) && is_kept(setting, state)) return;
     fit_factor(setting, state);
     take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
     if (!state.last.blocked) return;
@@ -158,7 +173,7 @@ void end_with_newton(const Setting& setting, State& state) {
   const double energy = setting.comparable(state.last.energies.back());
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
-  state.converged = 0.5 * state.last.predicted <= setting.bounds.stationary * energy;
+  state.converged = is_stationary(setting, state);
   if (!setting.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);
@@ -180,7 +195,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
                           inner,  surface_area(*fine.mesh, inner), bounds_of(length),
                           inverse};
     State state{.uvs = std::move(start)};
-    take_steps(setting, 1, false, state);
+    take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
     // A map that no step has changed was cleaned when it was mended.

@@ -16,15 +16,11 @@ constexpr std::int64_t kGrain = 8192;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Powers of two whose fourth powers, and those of their inverses, are far from the ends of the
-/// range of numbers.
-constexpr int kModerate = 200;
-
-/// The exponent of a size if it is not moderate; else 0: then nothing needs to be scaled.
+/// The exponent of a size if its fourth power, or the inverse of that, is near the ends of the
+/// range of numbers; else 0: then nothing needs to be scaled.
 int unit_of(double size) {
-  if (!(size > 0 && std::isfinite(size))) return 0;
-  const int exponent = std::ilogb(size);
-  return std::abs(exponent) > kModerate ? exponent : 0;
+  if (size >= 0x1p-200 && size < 0x1p201) return 0;
+  return size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
 }
 
 /// x * 2^exponent, which is nearly always x.

@@ -1,6 +1,3 @@
-// The filter and what follows it are those of Shewchuk 1997, "Adaptive precision floating-point
-// arithmetic and fast robust geometric predicates": stage A, then stage B where that is exact, then
-// numbers of any length.
 #include "exact/orientation.h"
 
 #include <cmath>
@@ -11,9 +8,6 @@
 namespace beltrami {
 namespace {
 
-constexpr double kRoundoff = 0x1p-53;
-constexpr double kErrorBound = (3 + 16 * kRoundoff) * kRoundoff;
-constexpr double kLeastSum = 0x1p-960;  // products that underflow are far below its roundoff
 /// Of factors between these no part of an exact product leaves the range of numbers.
 constexpr double kLeastFactor = 0x1p-450, kGreatestFactor = 0x1p450;
 
@@ -83,12 +77,7 @@ int exact_orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 }  // namespace
 
-int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const double left = (a.x() - c.x()) * (b.y() - c.y());
-  const double right = (a.y() - c.y()) * (b.x() - c.x());
-  const double area = left - right, sum = std::abs(left) + std::abs(right);
-  // Written so that what overflows is left to the exact numbers.
-  if (sum > kLeastSum && std::abs(area) > kErrorBound * sum) return area > 0 ? 1 : -1;
+int orientation_beyond_filter(const Vec2& a, const Vec2& b, const Vec2& c) {
   if (a == b || b == c || c == a) return 0;  // common where UVs are unset
   if (const auto sign = orientation_of_exact_edges(a, b, c)) return *sign;
   return exact_orientation(a, b, c);

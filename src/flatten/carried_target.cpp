@@ -1,7 +1,9 @@
 #include "flatten/carried_target.h"
 
+#include <cmath>
+
+#include "base/lanes.h"
 #include "base/parallel.h"
-#include "flatten/laplacian.h"
 #include "flatten/principal_stiffness.h"
 #include "mesh/vertex_sums.h"
 
@@ -10,34 +12,60 @@ namespace {
 
 constexpr std::int64_t kGrain = 16384;
 
-/// The edges opposite to each corner, from the corner after it to the one before.
-std::array<Complex, 3> edges(Complex p0, Complex p1, Complex p2) {
-  return {p2 - p1, p0 - p2, p1 - p0};
+/// The edges opposite to each corner, from the corner after it to the one before, of triangles with
+/// the first corner at the origin.
+std::array<LanesComplex, 3> edges(const LanesComplex& p1, const LanesComplex& p2) {
+  return {p2 - p1, {-p2.real, -p2.imag}, p1};
 }
 
-Complex to_complex(const Vec2& v) {
-  return {v.x(), v.y()};
-}
-
-/// The weights w_k = -(m e_i . e_j - d Re(conj(c) e_i e_j)) / 4A of a tensor with the mean m of its
-/// eigenvalues, half their difference d and the greater one along the root of c: the entries of its
-/// stiffness matrix, with the opposite sign.
+/// The entries of the stiffness matrices, with the opposite sign, of tensors with the mean m of
+/// their eigenvalues, half their difference d and the greater one along the root of c:
+/// w_k = -(m e_i . e_j - d Re(conj(c) e_i e_j)) / 4A.
 template <class Density>
-EdgeWeights weights_at(const RestTriangle& rest, const LinearMap& map) {
-  const double a = modulus(map.fz), b = modulus(map.fzbar);
-  const auto [along, across] = principal_stiffness<Density>(a, b);
-  const double mean = 0.5 * (along + across);
-  const Complex anisotropy =
-      b > 0 ? 0.5 * (along - across) / (a * b) * (std::conj(map.fzbar) * map.fz) : Complex(0);
-  const auto e = edges(0, rest.x1, rest.corner(2));
-  const double scale = -0.5 / (rest.x1 * rest.y2);
-  EdgeWeights weights;
+std::array<Lanes, 3> weights_at(const CarriedMaps& maps) {
+  Lanes mean, half_over_norms;
+  for (int i = 0; i < kLanes; ++i) {
+    const bool known = maps.fz_norm[i] > 0;
+    const double a = known ? std::sqrt(double{maps.fz_norm[i]}) : 1;
+    const double b = std::sqrt(double{maps.fzbar_norm[i]});
+    const auto [along, across] = principal_stiffness<Density>(a, b);
+    mean[i] = static_cast<float>(0.5 * (along + across));
+    half_over_norms[i] = b > 0 ? static_cast<float>(0.5 * (along - across) / (a * b)) : 0;
+  }
+  const LanesComplex anisotropy = half_over_norms * (conj(maps.fzbar) * maps.fz);
+  const auto e = edges({Lanes::Ones(), Lanes::Zero()}, maps.corner);
+  const Lanes scale = -0.5F / maps.corner.imag;
+  std::array<Lanes, 3> weights;
   for (int k = 0; k < 3; ++k) {
-    const Complex p = e[next_corner(k)], q = e[previous_corner(k)];
-    const double isotropic = p.real() * q.real() + p.imag() * q.imag();
-    weights[k] = scale * (mean * isotropic - (anisotropy * (p * q)).real());
+    const LanesComplex &p = e[next_corner(k)], &q = e[previous_corner(k)];
+    const Lanes isotropic = p.real * q.real + p.imag * q.imag;
+    weights[k] = scale * (mean * isotropic - (anisotropy * (p * q)).real);
   }
   return weights;
+}
+
+/// The corners of the faces after the first one, from there, as far as they are from the targets.
+struct Differences {
+  LanesComplex second, third;
+};
+
+Differences differences(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
+                        const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                        const CarriedMaps& maps) {
+  Lanes length;
+  Differences present;
+  for (int i = 0; i < kLanes; ++i) {
+    const Triangle& t = mesh.faces[faces[i]];
+    const Vec2 second = uvs[t[1]] - uvs[t[0]], third = uvs[t[2]] - uvs[t[0]];
+    length[i] = static_cast<float>(rest[faces[i]].x1);
+    present.second.real[i] = static_cast<float>(second.x());
+    present.second.imag[i] = static_cast<float>(second.y());
+    present.third.real[i] = static_cast<float>(third.x());
+    present.third.imag[i] = static_cast<float>(third.y());
+  }
+  const LanesComplex second = maps.fz + maps.fzbar;
+  const LanesComplex third = maps.fz * maps.corner + maps.fzbar * conj(maps.corner);
+  return {length * second - present.second, length * third - present.third};
 }
 
 }  // namespace
@@ -50,28 +78,20 @@ TargetEquations target_equations(Energy energy, const DiskMesh& mesh,
   parallel_assign(work, equations.weights, mesh.faces.size());
   std::vector<Vec2> residual;
   with_density(energy, [&]<class Density>(Density) {
-    const auto give = [&](Index f, VertexSums::Terms& terms) {
-      const Triangle& t = mesh.faces[f];
-      const LinearMap map = derivative_of_face(mesh, f, rest[f], derivatives);
-      const bool known = map.fz != Complex(0);
-      const EdgeWeights weights = weights_at<Density>(rest[f], known ? map : LinearMap{1, 0});
-      for (int k = 0; k < 3; ++k) equations.weights[f][k] = static_cast<float>(weights[k]);
-      terms = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
-      if (!known) return 0.0;
-      const Complex z = rest[f].corner(2);
-      const auto target =
-          edges(0, (map.fz + map.fzbar) * rest[f].x1, map.fz * z + map.fzbar * std::conj(z));
-      const auto present =
-          edges(to_complex(uvs[t[0]]), to_complex(uvs[t[1]]), to_complex(uvs[t[2]]));
-      std::array<Complex, 3> pull;  // of each edge on its first end
-      for (int k = 0; k < 3; ++k) pull[k] = weights[k] * (target[k] - present[k]);
-      for (int k = 0; k < 3; ++k) {
-        const Complex term = pull[next_corner(k)] - pull[previous_corner(k)];
-        terms[k] = {term.real(), term.imag()};
+    const auto give = [&](const std::array<Index, kLanes>& faces, VertexSums::LaneTerms& terms) {
+      const CarriedMaps maps = carried_maps(mesh, faces, rest, derivatives);
+      const std::array<Lanes, 3> weights = weights_at<Density>(maps);
+      const Differences to_go = differences(mesh, faces, rest, uvs, maps);
+      auto pull = edges(to_go.second, to_go.third);  // of each edge on its first end
+      for (int k = 0; k < 3; ++k) pull[k] = weights[k] * pull[k];
+      for (int k = 0; k < 3; ++k) terms[k] = pull[next_corner(k)] - pull[previous_corner(k)];
+      for (int i = 0; i < kLanes; ++i) {
+        for (int k = 0; k < 3; ++k) equations.weights[faces[i]][k] = weights[k][i];
+        if (maps.fz_norm[i] > 0) continue;
+        for (LanesComplex& term : terms) term.real[i] = term.imag[i] = 0;
       }
-      return 0.0;
     };
-    VertexSums(mesh.vertex_count(), mesh.faces, work).add_up(give, residual);
+    VertexSums(mesh.vertex_count(), mesh.faces, work).add_up_lanes(give, residual);
   });
   equations.residual.resize(residual.size());
   parallel_for(work, size_of(residual), kGrain, [&](std::int64_t begin, std::int64_t end) {

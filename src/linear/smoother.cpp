@@ -47,26 +47,30 @@ void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>&
     return h == kNone ? 0.0F : weights[h / 3][previous_corner(h % 3)];
   };
   parallel_for(work_, mesh.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::pair<Index, float>> ring;
+    std::vector<std::pair<Index, float>> upper, outside;  // to come after those put at once
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      ring.clear();
-      for_each_edge(mesh, v, [&](Index u, Index h, Index other) {
-        ring.emplace_back(u, weight_of(h) + weight_of(other));
-      });
+      upper.clear();
+      outside.clear();
       Row& row = rows_[v];
       Index at = row.begin;
-      const auto put = [&](auto&& belongs) {
-        for (const auto& [u, weight] : ring) {
-          if (!belongs(u)) continue;
-          column_[at] = u;
-          weight_[at++] = weight;
-        }
-        return at;
+      const auto put = [&](Index u, float weight) {
+        column_[at] = u;
+        weight_[at++] = weight;
       };
-      const auto inside = [&](Index u) { return u >= begin && u < end; };
-      row.upper = put([&](Index u) { return inside(u) && u < v; });
-      row.outside = put([&](Index u) { return inside(u) && u > v; });
-      put([&](Index u) { return !inside(u); });
+      for_each_edge(mesh, v, [&](Index u, Index h, Index other) {
+        const float weight = weight_of(h) + weight_of(other);
+        if (u < begin || u >= end) {
+          outside.emplace_back(u, weight);
+        } else if (u > v) {
+          upper.emplace_back(u, weight);
+        } else {
+          put(u, weight);
+        }
+      });
+      row.upper = at;
+      for (const auto& [u, weight] : upper) put(u, weight);
+      row.outside = at;
+      for (const auto& [u, weight] : outside) put(u, weight);
     }
   });
   set_springs(springs);

@@ -14,16 +14,24 @@
 
 namespace beltrami {
 
-/// Half-edges 3 * face + corner of a triangle list by the smaller of their end vertices.
-struct HalfedgeBuckets {
-  std::vector<Index> start;     ///< per vertex, and one more
-  std::vector<Index> halfedge;  ///< in increasing order in each bucket
+/// A half-edge 3 * face + corner seen from its smaller end.
+class Spoke {
+ public:
+  Spoke() = default;
+  Spoke(Index halfedge, Index from, Index to)
+      : far_(from < to ? to : from), code_(from < to ? halfedge : ~halfedge) {}
+  Index far() const { return far_; }
+  Index halfedge() const { return outwards() ? code_ : ~code_; }
+  bool outwards() const { return code_ >= 0; }
+
+ private:
+  Index far_ = 0, code_ = 0;
 };
 
-/// A half-edge seen from its smaller end.
-struct Spoke {
-  Index far, halfedge;
-  bool outwards;
+/// The half-edges of a triangle list by the smaller of their end vertices.
+struct HalfedgeBuckets {
+  std::vector<Index> start;   ///< per vertex, and one more
+  std::vector<Spoke> spokes;  ///< their half-edges in increasing order in each bucket
 };
 
 /// The origin and the target of half-edge h.
@@ -36,27 +44,33 @@ inline std::array<Index, 2> ends_of(const std::vector<Triangle>& faces, Index h)
 HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
                                const Work& work);
 
-/// Calls visit(std::span<const Spoke>) with the half-edges of each edge, once, in either direction:
-/// no hash map, no sort over the whole. Several threads call it side by side.
+/// Calls visit(std::span<const Spoke>) with the half-edges of each edge, once, in increasing order:
+/// no hash map, no sort over the whole. Several threads call it side by side. Sorts the buckets on
+/// the way.
 template <class Visit>
-void for_each_edge(const Work& work, const HalfedgeBuckets& buckets,
-                   const std::vector<Triangle>& faces, const Visit& visit) {
+void for_each_edge(const Work& work, HalfedgeBuckets& buckets, const Visit& visit) {
   constexpr std::int64_t kGrain = 16384;
+  constexpr std::ptrdiff_t kFew = 32;  // that are sorted as they come
   const std::int64_t vertex_count = size_of(buckets.start) - 1;
   parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Spoke> spokes;
     for (std::int64_t v = begin; v < end; ++v) {
-      spokes.clear();
-      for (Index i = buckets.start[v]; i < buckets.start[v + 1]; ++i) {
-        const Index h = buckets.halfedge[i];
-        const auto [from, to] = ends_of(faces, h);
-        spokes.push_back({std::max(from, to), h, from < to});
+      Spoke* const first = buckets.spokes.data() + buckets.start[v];
+      Spoke* const last = buckets.spokes.data() + buckets.start[v + 1];
+      if (last - first > kFew) {
+        sort_interruptibly(first, last, [](const Spoke& a, const Spoke& b) {
+          return a.far() != b.far() ? a.far() < b.far() : a.halfedge() < b.halfedge();
+        });
+      } else {
+        for (Spoke* next = first; next != last; ++next) {
+          const Spoke spoke = *next;
+          Spoke* place = next;
+          for (; place != first && place[-1].far() > spoke.far(); --place) *place = place[-1];
+          *place = spoke;
+        }
       }
-      sort_interruptibly(spokes.begin(), spokes.end(),
-                         [](const Spoke& a, const Spoke& b) { return a.far < b.far; });
-      for (std::size_t first = 0, last = 0; first < spokes.size(); first = last) {
-        while (last < spokes.size() && spokes[last].far == spokes[first].far) ++last;
-        visit(std::span<const Spoke>(spokes).subspan(first, last - first));
+      for (const Spoke *at = first, *until = first; at != last; at = until) {
+        while (until != last && until->far() == at->far()) ++until;
+        visit(std::span<const Spoke>(at, until));
       }
     }
   });

@@ -34,7 +34,7 @@ std::string quoted(Index index) {
   std::vector<Seen> seen(vertex_count);
   for (Index v = 0; v < vertex_count; ++v) {
     for (Index i = buckets.start[v]; i < buckets.start[v + 1]; ++i) {
-      const Index h = buckets.halfedge[i];
+      const Index h = buckets.spokes[i].halfedge();
       const auto [from, to] = ends_of(faces, h);
       Seen& other = seen[std::max(from, to)];
       if (other.bucket != v) other = {v, kNone, kNone};
@@ -52,11 +52,10 @@ std::string quoted(Index index) {
                     Element::face(h / 3));
       }
       // A third face on the edge makes it non-manifold, whichever way it runs.
-      const auto rest = buckets.halfedge.begin() + i + 1;
-      const auto end = buckets.halfedge.begin() + buckets.start[v + 1];
-      if (std::any_of(rest, end, [&, larger = std::max(from, to)](Index g) {
-            const auto [a, b] = ends_of(faces, g);
-            return std::max(a, b) == larger;
+      const auto rest = buckets.spokes.begin() + i + 1;
+      const auto end = buckets.spokes.begin() + buckets.start[v + 1];
+      if (std::any_of(rest, end, [larger = std::max(from, to)](const Spoke& spoke) {
+            return spoke.far() == larger;
           })) {
         throw Error(Fault::kNonManifoldEdge,
                     "more than two faces, " + quoted(h / 3) + " among them, share " + edge +
@@ -74,20 +73,20 @@ std::string quoted(Index index) {
 
 std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
                                   const Work& work) {
-  const HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
+  HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
   std::vector<Index> twin;
-  parallel_assign(work, twin, buckets.halfedge.size(), kNone);
+  parallel_assign(work, twin, buckets.spokes.size(), kNone);
   std::atomic<bool> sound{true};
-  for_each_edge(work, buckets, faces, [&](std::span<const Spoke> edge) {
+  for_each_edge(work, buckets, [&](std::span<const Spoke> edge) {
     if (edge.size() == 1) return;
-    if (edge.size() > 2 || edge[0].outwards == edge[1].outwards) {
+    if (edge.size() > 2 || edge[0].outwards() == edge[1].outwards()) {
       sound = false;
       return;
     }
-    twin[edge[0].halfedge] = edge[1].halfedge;
-    twin[edge[1].halfedge] = edge[0].halfedge;
+    twin[edge[0].halfedge()] = edge[1].halfedge();
+    twin[edge[1].halfedge()] = edge[0].halfedge();
   });
-  if (!sound) throw_edge_defect(faces, buckets);
+  if (!sound) throw_edge_defect(faces, sort_halfedges(vertex_count, faces, work));
   return twin;
 }
 
@@ -102,12 +101,15 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, const W
   const Index vertex_count = surface.vertex_count();
   surface.outgoing.assign(vertex_count, kNone);
   // The first one, whichever thread comes first.
-  parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto h = static_cast<Index>(begin); h < end; ++h) {
-      const std::atomic_ref<Index> outgoing(surface.outgoing[surface.origin(h)]);
-      Index known = outgoing.load(std::memory_order_relaxed);
-      while ((known == kNone || h < known) &&
-             !outgoing.compare_exchange_weak(known, h, std::memory_order_relaxed)) {
+  parallel_for(work, surface.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const Index h = 3 * f + k;
+        const std::atomic_ref<Index> outgoing(surface.outgoing[surface.faces[f][k]]);
+        Index known = outgoing.load(std::memory_order_relaxed);
+        while ((known == kNone || h < known) &&
+               !outgoing.compare_exchange_weak(known, h, std::memory_order_relaxed)) {
+        }
       }
     }
   });
@@ -145,16 +147,20 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, const W
 HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
                                const Work& work) {
   HalfedgeBuckets buckets;
-  const auto smaller_ends = [&](std::int64_t f, const auto& visit) {
-    for (int k = 0; k < 3; ++k) visit(k, std::min(faces[f][k], faces[f][next_corner(k)]));
+  const auto for_each_halfedge = [&](std::int64_t f, const auto& visit) {
+    for (int k = 0; k < 3; ++k) {
+      visit(static_cast<Index>(3 * f + k), faces[f][k], faces[f][next_corner(k)]);
+    }
   };
   BucketSort<Index> sort(
-      work, size_of(faces), vertex_count, buckets.start,
-      [&](std::int64_t f, const auto& count) { smaller_ends(f, [&](int, Index v) { count(v); }); });
-  parallel_assign(work, buckets.halfedge, 3 * faces.size());
+      work, size_of(faces), vertex_count, buckets.start, [&](std::int64_t f, const auto& count) {
+        for_each_halfedge(f, [&](Index, Index from, Index to) { count(std::min(from, to)); });
+      });
+  parallel_assign(work, buckets.spokes, 3 * faces.size());
   sort.place([&](std::int64_t f, const auto& place) {
-    smaller_ends(
-        f, [&](int k, Index v) { buckets.halfedge[place(v)] = static_cast<Index>(3 * f + k); });
+    for_each_halfedge(f, [&](Index h, Index from, Index to) {
+      buckets.spokes[place(std::min(from, to))] = Spoke(h, from, to);
+    });
   });
   return buckets;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
@@ -31,6 +33,12 @@ class VertexSums {
   template <class Give>
   double add_up(const Give& give, std::vector<Vec2>& sums);
 
+  /// The same of what `give(faces, terms)` writes for kLanes faces at once, as float; the last ones
+  /// may be one face several times, of which the first counts.
+  template <class Give>
+  void add_up_lanes(const Give& give, std::vector<Vec2>& sums);
+  using LaneTerms = std::array<LanesComplex, 3>;
+
  private:
   static constexpr std::int64_t kGrain = FaceChunks::kGrain;
   struct Aside {
@@ -40,41 +48,74 @@ class VertexSums {
 
   const std::vector<Triangle>& faces_;
   const Work work_;
+  void add(Index v, const Vec2& term, std::vector<Aside>& aside, std::vector<Vec2>& sums) const {
+    if (chunks_.shared(v)) {
+      aside.push_back({v, term});
+    } else {
+      sums[v] += term;
+    }
+  }
+
+  /// Calls add_chunk(begin, end, aside) for the chunks, with sums of zero before.
+  template <class AddChunk>
+  double sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk);
+
   Index vertex_count_;
   FaceChunks chunks_;
   std::vector<std::vector<Aside>> aside_;
 };
 
-template <class Give>
-double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
+template <class AddChunk>
+double VertexSums::sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk) {
   sums.resize(vertex_count_);
   parallel_for(work_, static_cast<std::int64_t>(sums.size()), kGrain,
                [&](std::int64_t begin, std::int64_t end) {
                  std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
                });
-  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Aside>& aside = aside_[FaceChunks::of(begin)];
-    aside.clear();
-    double total = 0;
-    Terms terms;
-    for (std::int64_t f = begin; f < end; ++f) {
-      total += give(static_cast<Index>(f), terms);
-      for (int k = 0; k < 3; ++k) {
-        const Index v = faces_[f][k];
-        if (chunks_.shared(v)) {
-          aside.push_back({v, terms[k]});
-        } else {
-          sums[v] += terms[k];
-        }
-      }
-    }
-    return total;
-  };
-  const double total = parallel_sum(work_, size_of(faces_), kGrain, chunk);
+  const double total =
+      parallel_sum(work_, size_of(faces_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<Aside>& aside = aside_[FaceChunks::of(begin)];
+        aside.clear();
+        return add_chunk(begin, end, aside);
+      });
   for (const std::vector<Aside>& aside : aside_) {
     for (const Aside& a : aside) sums[a.vertex] += a.term;
   }
   return total;
+}
+
+template <class Give>
+double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
+  return sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::vector<Aside>& aside) {
+    double total = 0;
+    Terms terms;
+    for (std::int64_t f = begin; f < end; ++f) {
+      total += give(static_cast<Index>(f), terms);
+      for (int k = 0; k < 3; ++k) add(faces_[f][k], terms[k], aside, sums);
+    }
+    return total;
+  });
+}
+
+template <class Give>
+void VertexSums::add_up_lanes(const Give& give, std::vector<Vec2>& sums) {
+  sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::vector<Aside>& aside) {
+    std::array<Index, kLanes> lanes;
+    LaneTerms terms;
+    for (std::int64_t first = begin; first < end; first += kLanes) {
+      const auto count = static_cast<int>(std::min<std::int64_t>(kLanes, end - first));
+      for (int i = 0; i < kLanes; ++i) {
+        lanes[i] = static_cast<Index>(first) + std::min(i, count - 1);
+      }
+      give(lanes, terms);
+      for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+          add(faces_[lanes[i]][k], {terms[k].real[i], terms[k].imag[i]}, aside, sums);
+        }
+      }
+    }
+    return 0.0;
+  });
 }
 
 }  // namespace beltrami

@@ -1,5 +1,7 @@
 #include "prolong/derivative.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "prolong/frame.h"
@@ -32,6 +34,54 @@ VertexDerivative of_face(const DiskMesh& mesh, Index f, const RestTriangle& rest
   const double area_factor = std::norm(map.fz) - std::norm(map.fzbar);
   if (!valid || !(area_factor > 0)) return VertexDerivative::Zero();
   return derivative_in_space(frame, map, portable::log(area_factor));
+}
+
+/// What carried_maps reads of the faces, lane by lane.
+struct Corners {
+  LanesVec3 x, second;  ///< edges from the first corner over the length of the first one
+  LanesComplex corner;
+  LanesVec3 gradient_u, gradient_v, normal;  ///< sums over the corners
+  Lanes scale;
+};
+
+Corners corners_of(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
+                   const std::vector<RestTriangle>& rest,
+                   const std::vector<VertexDerivative>& derivatives) {
+  Corners c;
+  const auto set = [](LanesVec3& to, int i, const auto& v) {
+    to.x[i] = static_cast<float>(v[0]);
+    to.y[i] = static_cast<float>(v[1]);
+    to.z[i] = static_cast<float>(v[2]);
+  };
+  for (int i = 0; i < kLanes; ++i) {
+    const Index f = faces[i];
+    const Triangle& t = mesh.faces[f];
+    const RestTriangle& r = rest[f];
+    const double inverse = 1 / r.x1;
+    const Vec3& origin = mesh.positions[t[0]];
+    set(c.x, i, inverse * (mesh.positions[t[1]] - origin));
+    set(c.second, i, inverse * (mesh.positions[t[2]] - origin));
+    c.corner.real[i] = static_cast<float>(inverse * r.x2);
+    c.corner.imag[i] = static_cast<float>(inverse * r.y2);
+    const VertexDerivative sum = derivatives[t[0]] + derivatives[t[1]] + derivatives[t[2]];
+    set(c.gradient_u, i, sum.gradient_u());
+    set(c.gradient_v, i, sum.gradient_v());
+    set(c.normal, i, sum.normal());
+    c.scale[i] = sum.scale();
+  }
+  return c;
+}
+
+/// Where the x and y axes found are not: a mollified face has none; or where nothing is carried.
+void leave_out(const LanesVec3& x, const LanesVec3& y, CarriedMaps& maps) {
+  constexpr float kUnit = 0.1F;  // how far from a unit vector what is mollified is
+  const Lanes x_sq = x.dot(x), y_sq = y.dot(y);
+  for (int i = 0; i < kLanes; ++i) {
+    const bool is_frame = std::abs(x_sq[i] - 1) < kUnit && std::abs(y_sq[i] - 1) < kUnit;
+    if (is_frame && maps.fz_norm[i] > 0) continue;
+    maps.fz.real[i] = maps.fz.imag[i] = maps.fzbar.real[i] = maps.fzbar.imag[i] = 0;
+    maps.fz_norm[i] = maps.fzbar_norm[i] = 0;
+  }
 }
 
 }  // namespace
@@ -76,6 +126,39 @@ std::vector<VertexDerivative> carried(const std::vector<VertexDerivative>& coars
     for (std::int64_t v = begin; v < end; ++v) fine[v] = interpolated(points[v], coarse);
   });
   return fine;
+}
+
+CarriedMaps carried_maps(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
+                         const std::vector<RestTriangle>& rest,
+                         const std::vector<VertexDerivative>& derivatives) {
+  constexpr float kMostStretched = 0.98F;  // |fzbar|^2 over |fz|^2: means may come near to flipping
+  constexpr float kOpposite = 1e-3F;       // 1 + cosine below which normals have no turn between
+  constexpr float kTiny = 1e-30F;          // in the place of zeros that are divided by
+  const Corners c = corners_of(mesh, faces, rest, derivatives);
+  const LanesVec3& x = c.x;
+  const LanesVec3 y = (1 / c.corner.imag) * (c.second - c.corner.real * x);
+  // Onto the plane of the other normal by the least turn: e - (e.u) (u + n) / (1 + u.n).
+  const LanesVec3 normal = x.cross(y);
+  const Lanes inverse = 1 / root(c.normal.dot(c.normal).max(kTiny));
+  const Lanes cosine = inverse * c.normal.dot(normal);
+  const LanesVec3 middle = (inverse / (1 + cosine).max(kOpposite)) * (inverse * c.normal + normal);
+  const LanesVec3 turned_x = x - c.normal.dot(x) * middle, turned_y = y - c.normal.dot(y) * middle;
+  const Lanes ux = c.gradient_u.dot(turned_x), vx = c.gradient_v.dot(turned_x);
+  const Lanes uy = c.gradient_u.dot(turned_y), vy = c.gradient_v.dot(turned_y);
+  CarriedMaps maps;
+  maps.corner = c.corner;
+  maps.fz = {0.5F * (ux + vy), 0.5F * (vx - uy)};
+  maps.fzbar = {0.5F * (ux - vy), 0.5F * (vx + uy)};
+  const Lanes a_sq = squared_modulus(maps.fz).max(kTiny), most = kMostStretched * a_sq;
+  const Lanes b_sq = squared_modulus(maps.fzbar);
+  const Lanes shrink = root(most / b_sq.max(most));
+  const Lanes scale = c.scale / (3 * root(a_sq - b_sq.min(most)));
+  maps.fz = scale * maps.fz;
+  maps.fzbar = (scale * shrink) * maps.fzbar;
+  maps.fz_norm = squared_modulus(maps.fz);
+  maps.fzbar_norm = squared_modulus(maps.fzbar);
+  leave_out(x, y, maps);
+  return maps;
 }
 
 }  // namespace beltrami

@@ -1,10 +1,10 @@
 // The derivative of a coarse map, carried to the vertices of a finer mesh without frames.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
@@ -35,42 +35,17 @@ std::vector<VertexDerivative> vertex_derivatives(const DiskMesh& mesh,
 std::vector<VertexDerivative> carried(const std::vector<VertexDerivative>& coarse,
                                       const std::vector<Footpoint>& points, const Work& work);
 
-/// The map of the face `f` of a mesh with these derivatives at its corners, in the frame of its
-/// rest triangle: their mean, turned as little as takes its normal to that of the face, with the
-/// mean scale. fz = 0 where the face has no shape in space.
-inline LinearMap derivative_of_face(const DiskMesh& mesh, Index f, const RestTriangle& rest,
-                                    const std::vector<VertexDerivative>& derivatives) {
-  constexpr double kMostStretched = 0.98;  // |fzbar|^2 over |fz|^2: means may come near to flipping
-  constexpr double kOpposite = 1e-3;       // 1 + cosine below which normals have no turn between
-  constexpr double kUnit = 0.1;            // how far from a unit vector what is mollified is
-  const Triangle& t = mesh.faces[f];
-  const Vec3& origin = mesh.positions[t[0]];
-  const Vec3 x = (1 / rest.x1) * (mesh.positions[t[1]] - origin);
-  const Vec3 y = (1 / rest.y2) * (mesh.positions[t[2]] - origin - rest.x2 * x);
-  if (!(std::abs(x.squaredNorm() - 1) < kUnit && std::abs(y.squaredNorm() - 1) < kUnit)) {
-    return {0, 0};
-  }
-  const VertexDerivative sum = derivatives[t[0]] + derivatives[t[1]] + derivatives[t[2]];
-  const Vec3 normal = x.cross(y), upright = sum.normal().cast<double>();
-  const double length = upright.norm();
-  // Onto the plane of the other normal by the least turn: e - (e.u) (u + n) / (1 + u.n).
-  const double inverse = length > 0 ? 1 / length : 0;
-  const double cosine = inverse * upright.dot(normal);
-  const Vec3 middle = (inverse * upright + normal) * (inverse / std::max(1 + cosine, kOpposite));
-  const Vec3 turned_x = x - upright.dot(x) * middle, turned_y = y - upright.dot(y) * middle;
-  const Vec3 by_u = sum.gradient_u().cast<double>(), by_v = sum.gradient_v().cast<double>();
-  const double ux = by_u.dot(turned_x), vx = by_v.dot(turned_x);
-  const double uy = by_u.dot(turned_y), vy = by_v.dot(turned_y);
-  LinearMap map{{0.5 * (ux + vy), 0.5 * (vx - uy)}, {0.5 * (ux - vy), 0.5 * (vx + uy)}};
-  const double a_sq = std::norm(map.fz);
-  double b_sq = std::norm(map.fzbar);
-  if (!(a_sq > 0)) return {0, 0};
-  if (b_sq > kMostStretched * a_sq) {
-    map.fzbar *= std::sqrt(kMostStretched * a_sq / b_sq);
-    b_sq = kMostStretched * a_sq;
-  }
-  const double scale = sum.scale() / (3 * std::sqrt(a_sq - b_sq));
-  return {scale * map.fz, scale * map.fzbar};
-}
+/// The maps of kLanes faces, each in the frame of its rest triangle, whose first edge counts as 1.
+struct CarriedMaps {
+  LanesComplex corner;        ///< of the rest triangle, the third; the second is at 1
+  LanesComplex fz, fzbar;     ///< 0 where the face has no shape in space
+  Lanes fz_norm, fzbar_norm;  ///< their squared moduli
+};
+
+/// Of the faces of a mesh with these derivatives at its corners: their means, turned as little as
+/// takes their normals to those of the faces, with the mean scales.
+CarriedMaps carried_maps(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
+                         const std::vector<RestTriangle>& rest,
+                         const std::vector<VertexDerivative>& derivatives);
 
 }  // namespace beltrami

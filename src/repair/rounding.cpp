@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
 #include "mesh/boundary.h"
@@ -30,6 +32,7 @@ constexpr int kReach = 2;  // of these to each side
 constexpr std::array<int, 4> kPatchRings = {1, 2, 4, 8};
 constexpr std::size_t kMostPatches = 2000;
 constexpr int kCrossingRounds = 4;
+constexpr std::int64_t kGrain = 16384;
 
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
@@ -248,7 +251,7 @@ double spacing_of(double x) {
 }  // namespace
 
 double Numbers::delivered(double x) const {
-  const double number = std::ldexp(x, -exponent);
+  const double number = portable::times_power_of_two(x, -exponent);
   return single ? nearest_of<float>(number) : nearest_of<double>(number);
 }
 
@@ -257,12 +260,13 @@ double Numbers::nearest(double x) const {
   const double size = std::abs(x);
   const bool moderate = size > 0x1p-400 && size < 0x1p400 && std::abs(exponent) < kModerate;
   if (!single && moderate) return x;
-  return std::ldexp(delivered(x), exponent);
+  return portable::times_power_of_two(delivered(x), exponent);
 }
 
 double Numbers::spacing(double x) const {
   const double number = delivered(x);
-  return std::ldexp(single ? spacing_of<float>(number) : spacing_of<double>(number), exponent);
+  const double spacing = single ? spacing_of<float>(number) : spacing_of<double>(number);
+  return portable::times_power_of_two(spacing, exponent);
 }
 
 bool Numbers::hold(const std::vector<Vec2>& places) const {
@@ -270,7 +274,8 @@ bool Numbers::hold(const std::vector<Vec2>& places) const {
       single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
   Eigen::AlignedBox2d box;
   for (const Vec2& place : places) {
-    const Vec2 number(std::ldexp(place.x(), -exponent), std::ldexp(place.y(), -exponent));
+    const Vec2 number(portable::times_power_of_two(place.x(), -exponent),
+                      portable::times_power_of_two(place.y(), -exponent));
     if (!(number.cwiseAbs().maxCoeff() <= greatest)) return false;
     box.extend(nearest(place));
   }
@@ -286,8 +291,10 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<Vec2>& placed, const std::vector<bool>& held,
                   const Numbers& numbers, const Work& work) {
   Rounded result;
-  result.uvs.reserve(placed.size());
-  for (const Vec2& w : placed) result.uvs.push_back(numbers.nearest(w));
+  parallel_assign<Vec2>(work, result.uvs, placed.size(), Vec2::Zero());
+  parallel_for(work, size_of(placed), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) result.uvs[v] = numbers.nearest(placed[v]);
+  });
   const auto judge = [&] {
     result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, work);
     return result.certificate.injective();

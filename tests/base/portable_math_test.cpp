@@ -256,6 +256,17 @@ TEST(PortableMath, TakesAnyAngle) {
   }
 }
 
+TEST(PortableMath, TimesAPowerOfTwoIsLdexp) {
+  for (const double x : {0.0, -0.0, 1.0, -1.5, 0x1.fffffffffffffp1023, 0x1p-1074, 0x1.8p-1000,
+                         0x1.123456789abcdp-30, -kInfinity}) {
+    for (const int exponent : {-3000, -1100, -1074, -1023, -1022, -50, 0, 50, 1023, 1024, 3000}) {
+      const double product = portable::times_power_of_two(x, exponent);
+      EXPECT_EQ(product, std::ldexp(x, exponent)) << x << " " << exponent;
+      EXPECT_EQ(std::signbit(product), std::signbit(x)) << x << " " << exponent;
+    }
+  }
+}
+
 TEST(PortableMath, DividesComplexNumbers) {
   EXPECT_EQ(quotient(Complex(1, 2), Complex(3, -1)), Complex(0.1, 0.7));
   EXPECT_EQ(quotient(Complex(0, 4), Complex(0, 2)), Complex(2, 0));
