@@ -196,8 +196,9 @@ void climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest, bo
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   if (climb.map.converged) return;
   climb.hard = true;
-  climb.failed = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs) >
-                 kHopelessly * climb.energy;
+  const double energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
+  climb.failed = to_dirichlet(options.energy, energy) >
+                 kHopelessly * to_dirichlet(options.energy, climb.energy);
 }
 
 /// From the coarsest level to the finest. Ends early where a level is hard, but for the `last` try,

@@ -173,8 +173,8 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
   run_stage("polish", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
     std::optional<BoundaryContact> fitted;
     if (contact) {
-      fitted.emplace(*contact).fit(
-          start, comparable_energy(options.energy, fine.statistics.coarse_energy));
+      fitted.emplace(*contact).fit(start,
+                                   to_dirichlet(options.energy, fine.statistics.coarse_energy));
     }
     const Setting setting{fine,   fitted ? &*fitted : nullptr,     options,
                           inner,  surface_area(*fine.mesh, inner), bounds_of(length),
