@@ -138,13 +138,16 @@ int main(int argc, char** argv) {
   bool no_cm = false;
   app.add_option("MESH", meshes, "Disks to flatten; the bust of examples/data by default");
   app.add_option("--faces", faces, "Refine smaller meshes to about this many faces first");
-  app.add_option("--energy", energy, "symmetric-dirichlet or symmetric-arap");
+  app.add_option("--energy", energy,
+                 "symmetric-dirichlet, symmetric-arap or exponential-dirichlet");
   app.add_option("--threads", threads, "Threads to use");
   app.add_flag("--no-cm", no_cm, "Leave out CM on the full mesh, which takes the longest");
   Records records("modes");
   return beltrami::benchmarks::run(app, argc, argv, records, [&] {
     const std::int32_t kind = energy == "symmetric-arap" ? BELTRAMI_ENERGY_SYMMETRIC_ARAP
-                                                         : BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
+                              : energy == "exponential-dirichlet"
+                                  ? BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET
+                                  : BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET;
     std::printf("%s, %d thread(s), energy %s\n", beltrami_build_info(), threads, energy.c_str());
     for (const std::string& mesh : meshes) {
       benchmark(mesh, faces, !no_cm, kind, threads, records);

@@ -44,8 +44,14 @@ Flatten flatten_of(std::int32_t value) {
 }
 
 Energy energy_of(std::int32_t value) {
-  return value == BELTRAMI_ENERGY_SYMMETRIC_ARAP ? Energy::kSymmetricArap
-                                                 : Energy::kSymmetricDirichlet;
+  switch (value) {
+    case BELTRAMI_ENERGY_SYMMETRIC_ARAP:
+      return Energy::kSymmetricArap;
+    case BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET:
+      return Energy::kExponentialDirichlet;
+    default:
+      return Energy::kSymmetricDirichlet;
+  }
 }
 
 Injectivity injectivity_of(std::int32_t value) {

@@ -25,6 +25,10 @@ namespace {
 /// Mean energy beyond which composite majorization has not got anywhere: it is 2 to 100 at minima.
 constexpr double kHopelessEnergy = 1e3;
 
+bool is_hopeless(const Descent& descent, const ChartOptions& options) {
+  return !(to_dirichlet(options.energy, descent.energy) <= kHopelessEnergy);
+}
+
 /// From a map that is near its minimum; nothing where it cannot serve.
 std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
                                      const ChartOptions& options, const Work& work) {
@@ -35,7 +39,7 @@ std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec
   Descent done = descend_led(mesh, rest, start, newton, work);
   const bool is_simple =
       !keeps_boundary_simple(options) || find_crossings(mesh.boundary, done.uvs).empty();
-  if (!is_simple || !(done.energy <= kHopelessEnergy)) return std::nullopt;
+  if (!is_simple || is_hopeless(done, options)) return std::nullopt;
   return done;
 }
 
@@ -69,7 +73,7 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   newton.tolerance = tolerance;
   const bool simple = keeps_boundary_simple(options);
   Descent best = descend(mesh, rest, std::move(uvs), newton, simple, options, work);
-  if (best.energy <= kHopelessEnergy || work.out_of_time()) return best;
+  if (!is_hopeless(best, options) || work.out_of_time()) return best;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
   if (other.empty()) return best;
   Descent again = descend(mesh, rest, std::move(other), newton, simple, options, work);

@@ -26,8 +26,8 @@ struct Led {
   int iterations = 0;   ///< those that led to it included
 };
 
-/// Far from the minimum the symmetric Dirichlet energy leads the way: it is smooth, and its minimum
-/// is near that of the others (symmetric ARAP alone takes 1.5 times the steps).
+/// Far from the minimum the symmetric Dirichlet energy leads the way: it is smooth, grows slowly,
+/// and its minimum is near that of the others (symmetric ARAP alone takes 1.5 times the steps).
 Led descend_with_lead(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                       NewtonOptions newton, const Work& work, std::vector<Vec2>& uvs) {
   const std::vector<bool> fixed = only_first_of_boundary(mesh);
@@ -58,9 +58,9 @@ void start_nearer(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, d
                   const ChartOptions& options, const Work& work, std::vector<Vec2>& uvs) {
   if (mesh.face_count() < kContactFaces || work.out_of_time()) return;
   const auto energy = [&](const std::vector<Vec2>& map) {
-    return comparable_energy(options.energy, mean_energy(options.energy, mesh.faces, rest, map));
+    return to_dirichlet(options.energy, mean_energy(options.energy, mesh.faces, rest, map));
   };
-  if (!(energy(uvs) > kFarStart * comparable_energy(options.energy, free_energy))) return;
+  if (!(energy(uvs) > kFarStart * to_dirichlet(options.energy, free_energy))) return;
   std::vector<Vec2> start = contact_from_coarser(mesh, rest, uvs, options, work);
   if (!start.empty() && energy(start) < energy(uvs)) uvs.swap(start);
 }

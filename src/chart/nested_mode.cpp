@@ -200,7 +200,8 @@ void climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest, bo
   climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
   if (converged) return;
   climb.hard = true;
-  climb.failed = climb.energy > kHopelessly * below;
+  climb.failed = to_dirichlet(options.energy, climb.energy) >
+                 kHopelessly * to_dirichlet(options.energy, below);
 }
 
 /// From the coarsest level to the finest. Ends early where a level is hard, but for the `last` try,

@@ -32,7 +32,7 @@ constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1
 constexpr int kMostSteps = 30;
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
-constexpr double kNothingLost = 1.002;     // times the energy of a coarser mesh
+constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
 
 /// What a length of the polish means.
@@ -42,7 +42,7 @@ struct Bounds {
   int most_steps;
   double stationary;  ///< predicted relative decrease that is none
   bool newton;        ///< may end with Newton steps
-  bool in_haste;      ///< one factor will do, where nothing is lost since the coarser mesh
+  bool in_haste;  ///< one factor will do, where no distortion has come on since the coarser mesh
 };
 
 Bounds bounds_of(PolishLength length) {
@@ -128,10 +128,13 @@ bool is_stationary(const Setting& setting, const State& state) {
   return 0.5 * state.last.predicted <= setting.bounds.stationary * energy;
 }
 
-/// Whether the energy is that of the coarser mesh.
+/// Whether the map is no more distorted than that of the coarser mesh.
 bool is_kept(const Setting& setting, const State& state) {
-  return setting.comparable(state.last.energies.back()) <=
-         kNothingLost * setting.comparable(setting.fine.statistics.coarse_energy);
+  const auto distortion = [&](double energy) {
+    return to_dirichlet(setting.options.energy, energy);
+  };
+  return distortion(state.last.energies.back()) <=
+         kNothingLost * distortion(setting.fine.statistics.coarse_energy);
 }
 
 void take_rounds(const Setting& setting, State& state) {
@@ -188,8 +191,8 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
   run_stage("polish", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
     std::optional<BoundaryContact> fitted;
     if (contact) {
-      fitted.emplace(*contact).fit(
-          start, comparable_energy(options.energy, fine.statistics.coarse_energy));
+      fitted.emplace(*contact).fit(start,
+                                   to_dirichlet(options.energy, fine.statistics.coarse_energy));
     }
     const Setting setting{fine,   fitted ? &*fitted : nullptr,     options,
                           inner,  surface_area(*fine.mesh, inner), bounds_of(length),

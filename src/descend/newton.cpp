@@ -31,7 +31,9 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
                          .comparable = comparable_energy<Density>,
                          .smooth = Density::kSmooth};
   const auto take_step = [&](bool proxy, double before) {
-    if (options.contact) stepper.fit_contact(uvs, comparable_energy<Density>(before));
+    if (options.contact) {
+      stepper.fit_contact(uvs, to_dirichlet<Density>(before), comparable_energy<Density>(before));
+    }
     const NewtonStep step = proxy ? stepper.step_with(typename Density::Proxy{}, uvs, before)
                                   : stepper.step(uvs, before);
     if (step.length > 0) judge();

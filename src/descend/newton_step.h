@@ -55,10 +55,11 @@ class NewtonStepper {
   /// From now on the contact's energy joins the objective, no step lets the boundary touch itself,
   /// and each begins where the last one ended.
   void set_contact(const BoundaryContact& contact) { contact_.emplace(contact); }
-  /// See BoundaryContact::fit; for the steps from `uvs` on. Precondition: set_contact.
-  void fit_contact(const std::vector<Vec2>& uvs, double energy) {
-    contact_->fit(uvs, energy, neighbours_);
-    loose_share_ = std::min(kLooseShare, last_gain_ / energy);
+  /// See BoundaryContact::fit; for the steps from `uvs` on. `distortion`: as symmetric Dirichlet
+  /// energy; `comparable`: what gains are compared with. Precondition: set_contact.
+  void fit_contact(const std::vector<Vec2>& uvs, double distortion, double comparable) {
+    contact_->fit(uvs, distortion, neighbours_);
+    loose_share_ = std::min(kLooseShare, last_gain_ / comparable);
   }
 
   /// Infinite if a face is not positive under a barrier density.

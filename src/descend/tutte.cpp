@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "descend/assembly.h"
-#include "energy/density.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
@@ -47,21 +46,19 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
 
 double best_scale(Energy energy, const std::vector<Triangle>& faces,
                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
-  ScaleMoments sum;
-  for (Index f = 0; f < size_of(faces); ++f) {
-    const SingularValues s =
-        singular_values(linear_map(rest[f], uvs[faces[f][0]], uvs[faces[f][1]], uvs[faces[f][2]]));
-    if (!(s.s2 > 0)) return 1;
-    const double area = rest[f].area();
-    sum.s1 += area * s.s1;
-    sum.s1_sq += area * s.s1 * s.s1;
-    sum.norm_sq += area * (s.s1 * s.s1 + s.s2 * s.s2);
-    sum.inverse_s2 += area / s.s2;
-    sum.inverse_s2_sq += area / (s.s2 * s.s2);
-    sum.inverse_norm_sq += area / (s.s1 * s.s1) + area / (s.s2 * s.s2);
-  }
-  const double scale = with_density(energy, [&](auto density) { return density.best_scale(sum); });
-  return std::isfinite(scale) && scale > 0 ? scale : 1;
+  bool positive = true;
+  const auto each_face = [&](const auto& body) {
+    for (Index f = 0; f < size_of(faces) && positive; ++f) {
+      const Triangle& t = faces[f];
+      const SingularValues s =
+          singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
+      positive = s.s2 > 0;
+      if (positive) body(rest[f].area(), s.s1, s.s2);
+    }
+  };
+  const double scale =
+      with_density(energy, [&](auto density) { return density.best_scale(each_face); });
+  return positive && std::isfinite(scale) && scale > 0 ? scale : 1;
 }
 
 double mean_energy(Energy energy, const std::vector<Triangle>& faces,

@@ -9,7 +9,11 @@
 //   model(s1, s2)            value, derivatives and a positive semi-definite model of the Hessian
 //   Proxy                    a type with another model(s1, s2) of the same density, for the start
 //   slopes(map)              value and gradient by fz and fzbar alone
-//   best_scale(moments)      the global scale at which its sum over a map is least
+//   best_scale(each_face)    the global scale at which its sum over a map is least, whose faces
+//                            each_face(body) hands out as body(area, s1, s2)
+// and, where it grows otherwise than quadratically with lengths and their inverses,
+//   to_dirichlet(energy)     the symmetric Dirichlet energy of an even map of that value
+//   from_dirichlet(energy)   the value of a face of that symmetric Dirichlet energy
 #pragma once
 
 namespace beltrami {
@@ -42,15 +46,6 @@ inline void use_weighted_rotation_model(double w1, double w2, DensityModel& mode
 struct DensitySlopes {
   double value;
   double by_fz, by_fzbar;
-};
-
-/// Sums over the faces of a map, weighted by area, from which an energy finds its best global
-/// scale.
-struct ScaleMoments {
-  double s1 = 0, norm_sq = 0;  ///< s1, s1^2 + s2^2
-  double s1_sq = 0;
-  double inverse_s2 = 0, inverse_s2_sq = 0;
-  double inverse_norm_sq = 0;  ///< s1^-2 + s2^-2
 };
 
 }  // namespace beltrami

@@ -59,12 +59,19 @@ struct SymmetricArap {
   }
 
   /// The root of a s^4 - b s^3 + d s - c = 0, by bisection of the derivative's sign in log s.
-  static double best_scale(const ScaleMoments& sum) {
+  template <class EachFace>
+  static double best_scale(const EachFace& each_face) {
+    double sum_s1 = 0, s1_sq = 0, inverse_s2 = 0, inverse_s2_sq = 0;
+    each_face([&](double area, double s1, double s2) {
+      sum_s1 += area * s1;
+      s1_sq += area * s1 * s1;
+      inverse_s2 += area / s2;
+      inverse_s2_sq += area / (s2 * s2);
+    });
     double low = -60, high = 60;
     for (int i = 0; i < 100; ++i) {
       const double middle = 0.5 * (low + high), s = portable::exp(middle);
-      const double slope =
-          s * sum.s1_sq - sum.s1 - sum.inverse_s2_sq / (s * s * s) + sum.inverse_s2 / (s * s);
+      const double slope = s * s1_sq - sum_s1 - inverse_s2_sq / (s * s * s) + inverse_s2 / (s * s);
       (slope > 0 ? high : low) = middle;
     }
     return portable::exp(0.5 * (low + high));

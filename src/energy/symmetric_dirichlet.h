@@ -54,8 +54,14 @@ struct SymmetricDirichlet {
   }
 
   /// s^4 = sum(A / sigma^2) / sum(A sigma^2) over both singular values.
-  static double best_scale(const ScaleMoments& sum) {
-    return std::sqrt(std::sqrt(sum.inverse_norm_sq / sum.norm_sq));
+  template <class EachFace>
+  static double best_scale(const EachFace& each_face) {
+    double norm_sq = 0, inverse_norm_sq = 0;
+    each_face([&](double area, double s1, double s2) {
+      norm_sq += area * (s1 * s1 + s2 * s2);
+      inverse_norm_sq += area / (s1 * s1) + area / (s2 * s2);
+    });
+    return std::sqrt(std::sqrt(inverse_norm_sq / norm_sq));
   }
 };
 

@@ -59,7 +59,7 @@ class FaceEnergies {
     });
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) /
                         std::accumulate(areas.begin(), areas.end(), 0.0);
-    limit_ = std::max(kLeastEnergy, kTimesMean * mean);
+    limit_ = std::max(from_dirichlet<Density>(kLeastEnergy), kTimesMean * mean);
     std::vector<Index> found;
     for (std::size_t f = 0; f < energies.size(); ++f) {
       if (is_outlier(energies[f])) found.push_back(static_cast<Index>(f));

@@ -10,6 +10,7 @@
 #include "base/work.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
+#include "energy/energy.h"
 #include "support/atlases.h"
 #include "support/cuts.h"
 #include "support/meshes.h"
@@ -64,6 +65,19 @@ TEST(UnwrapToATarget, MeetsIt) {
       EXPECT_EQ(atlas.charts.size(), 1);
       EXPECT_GE(atlas.seam_over_root_area, 0.99 * shorter);
       shorter = atlas.seam_over_root_area;
+    }
+  }
+}
+
+// The target is one of symmetric Dirichlet whatever the maps minimise.
+TEST(UnwrapToATarget, MeetsItWithMapsOfAnotherEnergyToo) {
+  for (const Energy energy : {Energy::kSymmetricArap, Energy::kExponentialDirichlet}) {
+    for (const TriangleList& mesh : {meshes::torus(20), disks::refined(meshes::cube(), 3)}) {
+      AtlasOptions options = aiming_at(2.05);
+      options.chart.energy = energy;
+      const Atlas atlas = unwrapped(mesh, options);
+      expect_sound(mesh, atlas);
+      EXPECT_LE(atlas.energy.symmetric_dirichlet, 2.05 + 1e-4) << static_cast<int>(energy);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "chart/options.h"
 #include "energy/energy.h"
 #include "support/disks.h"
+#include "support/energies.h"
 #include "support/meshes.h"
 #include "support/polls.h"
 #include "support/run.h"
@@ -60,11 +61,11 @@ std::vector<NamedMesh> models() {
 
 TEST(Modes, KeepTheirPromises) {
   for (const auto& [name, mesh] : models()) {
-    for (const Energy energy : {Energy::kSymmetricDirichlet, Energy::kSymmetricArap}) {
+    for (const Energy energy : disks::kEnergies) {
       for (const Flatten how : {Flatten::kMetric, Flatten::kDirichlet, Flatten::kGif}) {
         const Flattening result = run(mesh, coarse_to_fine(how, energy));
-        EXPECT_TRUE(result.certificate.injective())
-            << name << ", flatten " << static_cast<int>(how);
+        EXPECT_TRUE(result.certificate.injective()) << name << ", flatten " << static_cast<int>(how)
+                                                    << ", energy " << static_cast<int>(energy);
       }
       EXPECT_EQ(flips(run(mesh, coarse_to_fine(Flatten::kFlim, energy))), 0) << name;
     }
@@ -120,6 +121,13 @@ TEST(Modes, ComeCloseToTheMinimumOfTheirEnergy) {
     EXPECT_LE(arap(coarse_to_fine(Flatten::kMetric, Energy::kSymmetricArap)),
               1.02 * arap(method(Method::kCm, Energy::kSymmetricArap)) + 1e-4)
         << model.name;
+    constexpr Energy kExponential = Energy::kExponentialDirichlet;
+    const auto exponential = [&](const ChartOptions& options) {
+      return disks::distortion(kExponential, model.mesh, run(model.mesh, options));
+    };
+    EXPECT_LE(exponential(coarse_to_fine(Flatten::kMetric, kExponential)),
+              1.01 * exponential(method(Method::kCm, kExponential)))
+        << model.name;
   }
 }
 
@@ -166,6 +174,7 @@ std::vector<ChartOptions> all_modes() {
     modes.push_back(method(which));
   }
   modes.push_back(coarse_to_fine(Flatten::kMetric, Energy::kSymmetricArap));
+  modes.push_back(coarse_to_fine(Flatten::kMetric, Energy::kExponentialDirichlet));
   modes.push_back(coarse_to_fine(Flatten::kMetric));
   modes.back().delaunay = true;
   modes.push_back(coarse_to_fine(Flatten::kMetric));

@@ -15,6 +15,7 @@
 #include "chart/options.h"
 #include "energy/energy.h"
 #include "support/disks.h"
+#include "support/energies.h"
 #include "support/meshes.h"
 #include "support/run.h"
 
@@ -59,13 +60,15 @@ TEST(Nested, IsForLargeDisksThatAreFlattenedTheMetricWay) {
 
 TEST(Nested, ComesCloseToTheMapOfOneStep) {
   const TriangleList mesh = rough(kSide);
-  for (const Energy which : {Energy::kSymmetricDirichlet, Energy::kSymmetricArap}) {
+  for (const Energy which : disks::kEnergies) {
     ChartOptions levels, step = in_one_step(size_of(mesh.faces));
     levels.energy = step.energy = which;
     const Flattening nested = run(mesh, levels), whole = run(mesh, step);
     EXPECT_EQ(nested.status, Outcome::kOk);
     EXPECT_TRUE(nested.certificate.injective());
     EXPECT_LE(energy(nested), 1.003 * energy(whole));
+    EXPECT_LE(disks::distortion(which, mesh, nested),
+              1.003 * disks::distortion(which, mesh, whole));
     EXPECT_EQ(nested.restarts, 0);
   }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -91,7 +92,9 @@ ChartOptions extreme_options(Random& random) {
   if (random.below(3) > 0) options.coarse_faces = 4 + random.below(random.below(2) == 0 ? 20 : 300);
   options.method = static_cast<Method>(std::max(0, random.below(10) - 4));
   if (random.below(2) == 0) options.flatten = static_cast<Flatten>(random.below(5));
-  if (random.below(4) == 0) options.energy = Energy::kSymmetricArap;
+  options.energy =
+      std::array{Energy::kSymmetricDirichlet, Energy::kSymmetricDirichlet, Energy::kSymmetricArap,
+                 Energy::kExponentialDirichlet}[random.below(4)];
   if (random.below(3) == 0) options.injectivity = static_cast<Injectivity>(random.below(3));
   options.delaunay = random.below(6) == 0;
   options.unit_square = random.below(4) == 0;

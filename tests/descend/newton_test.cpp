@@ -23,7 +23,8 @@ namespace {
 
 using disks::Random;
 
-constexpr Energy kEnergies[] = {Energy::kSymmetricDirichlet, Energy::kSymmetricArap};
+constexpr Energy kEnergies[] = {Energy::kSymmetricDirichlet, Energy::kSymmetricArap,
+                                Energy::kExponentialDirichlet};
 
 /// Disks of every kind that is small.
 std::vector<meshes::TriangleList> small_disks() {

@@ -19,12 +19,19 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "support/disks.h"
+#include "support/face_maps.h"
 #include "support/meshes.h"
 
 namespace beltrami {
 namespace {
 
 using disks::Random;
+using faces::corners_of;
+using faces::energy_of;
+using faces::hessian_by_differences;
+using faces::least_eigenvalue;
+using faces::map_of;
+using faces::model_of;
 
 // ---- The density in its singular values -----------------------------------------------------
 
@@ -54,57 +61,17 @@ TEST_P(DensityAt, HasTheRadialHessianOfItsValue) {
 
 // ---- The density in the six coordinates of a face -------------------------------------------
 
-constexpr RestTriangle kRest{1.3, 0.4, 0.9};
-
-/// The corners under the map with the given singular values and arbitrary phases.
-Vector6 corners_of(double s1, double s2) {
-  const Complex fz = std::polar(0.5 * (s1 + s2), 0.7);
-  const Complex fzbar = std::polar(0.5 * (s1 - s2), -1.9);
-  Vector6 x;
-  for (int k = 0; k < 3; ++k) {
-    const Complex z = kRest.corner(k), w = fz * z + fzbar * std::conj(z) + Complex(0.2, -0.1);
-    x.segment<2>(2 * k) << w.real(), w.imag();
-  }
-  return x;
-}
-
-LinearMap map_of(const Vector6& x) {
-  return linear_map(kRest, x.segment<2>(0), x.segment<2>(2), x.segment<2>(4));
-}
-
-double energy_of(const Vector6& x) {
-  const SingularValues s = singular_values(map_of(x));
-  return SymmetricDirichlet::value(s.s1, s.s2);
-}
-
-template <class Density>
-FaceModel model_of(const Vector6& x, const Density& density) {
-  return face_model(kRest, map_of(x), density);
-}
-
-Matrix6 hessian_by_differences(const Vector6& x, double h) {
-  Matrix6 hessian;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6 step = h * Vector6::Unit(i);
-    hessian.col(i) = (model_of(Vector6(x + step), SymmetricDirichlet{}).gradient -
-                      model_of(Vector6(x - step), SymmetricDirichlet{}).gradient) /
-                     (2 * h);
-  }
-  return 0.5 * (hessian + hessian.transpose());
-}
-
-double least_eigenvalue(const Matrix6& m) {
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(m).eigenvalues()[0];
-}
-
 TEST_P(DensityAt, HasTheFaceGradientOfItsEnergy) {
   const Vector6 x = corners_of(s1, s2);
   const Vector6 gradient = model_of(x, SymmetricDirichlet{}).gradient;
   const double h = 1e-5 * s2;
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = h * Vector6::Unit(i);
-    EXPECT_NEAR(gradient[i], (energy_of(x + step) - energy_of(x - step)) / (2 * h),
-                1e-7 * (gradient.norm() + energy_of(x)))
+    EXPECT_NEAR(
+        gradient[i],
+        (energy_of<SymmetricDirichlet>(x + step) - energy_of<SymmetricDirichlet>(x - step)) /
+            (2 * h),
+        1e-7 * (gradient.norm() + energy_of<SymmetricDirichlet>(x)))
         << i;
   }
 }
@@ -112,7 +79,7 @@ TEST_P(DensityAt, HasTheFaceGradientOfItsEnergy) {
 TEST_P(DensityAt, HasTheFaceHessianOfItsEnergyButForTheClampedTwist) {
   const Vector6 x = corners_of(s1, s2);
   const Matrix6 modelled = model_of(x, SymmetricDirichlet{}).hessian;
-  const Matrix6 true_hessian = hessian_by_differences(x, 1e-5 * s2);
+  const Matrix6 true_hessian = hessian_by_differences<SymmetricDirichlet>(x, 1e-5 * s2);
   const double tolerance = 1e-6 * modelled.norm();
   EXPECT_GE(least_eigenvalue(modelled), -1e-12 * modelled.norm());
   // What the clamp adds is positive semi-definite, and nothing where the twist is not negative.
@@ -131,8 +98,8 @@ TEST_P(DensityAt, ClampsTheTwistAndNothingElse) {
   EXPECT_GT(m.h11, 0);
   EXPECT_GT(m.h22, 0);
   const Vector6 x = corners_of(s1, s2);
-  const Matrix6 clamped =
-      model_of(x, SymmetricDirichlet{}).hessian - hessian_by_differences(x, 1e-5 * s2);
+  const Matrix6 clamped = model_of(x, SymmetricDirichlet{}).hessian -
+                          hessian_by_differences<SymmetricDirichlet>(x, 1e-5 * s2);
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Matrix6>(clamped).eigenvalues();
   // At most one direction of the matrix space is changed.
   EXPECT_LE(values[4], 1e-6 * model_of(x, SymmetricDirichlet{}).hessian.norm());
@@ -155,7 +122,7 @@ TEST_P(DensityAt, HasAProxyWhoseMinimumIsTheClosestRotation) {
   const Complex fz = map_of(x).fz;
   Vector6 rotated;
   for (int k = 0; k < 3; ++k) {
-    const Complex w = fz / std::abs(fz) * kRest.corner(k);
+    const Complex w = fz / std::abs(fz) * faces::kRest.corner(k);
     rotated.segment<2>(2 * k) << w.real(), w.imag();
   }
   const FaceModel model = model_of(x, SymmetricDirichlet::Proxy{});
@@ -192,19 +159,15 @@ TEST_P(DensityAt, HasSlopesThatAreItsGradientByFzAndFzbar) {
 
 class ArapAt : public DensityAt {};
 
-double arap_of(const Vector6& x) {
-  const SingularValues s = singular_values(map_of(x));
-  return SymmetricArap::value(s.s1, s.s2);
-}
-
 TEST_P(ArapAt, HasTheFaceGradientOfItsEnergy) {
   const Vector6 x = corners_of(s1, s2);
   const Vector6 gradient = model_of(x, SymmetricArap{}).gradient;
   const double h = 1e-5 * s2;
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = h * Vector6::Unit(i);
-    EXPECT_NEAR(gradient[i], (arap_of(x + step) - arap_of(x - step)) / (2 * h),
-                1e-7 * (gradient.norm() + arap_of(x)))
+    EXPECT_NEAR(gradient[i],
+                (energy_of<SymmetricArap>(x + step) - energy_of<SymmetricArap>(x - step)) / (2 * h),
+                1e-7 * (gradient.norm() + energy_of<SymmetricArap>(x)))
         << i;
   }
 }

@@ -165,9 +165,10 @@ std::vector<std::string> modes(const std::string& coarse) {
   std::vector<std::string> all = {"method=cm max-iterations=10", "method=tutte"};
   for (const char* words :
        {"", "flatten=dirichlet", "flatten=gif", "flatten=flim", "flatten=bff",
-        "energy=symmetric-arap", "energy=symmetric-arap flatten=gif", "injectivity=local",
-        "delaunay=on", "refine refine-iterations=2", "float32", "unit-square", "method=gif",
-        "method=bff", "method=uv-prolongation"}) {
+        "energy=symmetric-arap", "energy=symmetric-arap flatten=gif",
+        "energy=exponential-dirichlet", "energy=exponential-dirichlet flatten=gif",
+        "injectivity=local", "delaunay=on", "refine refine-iterations=2", "float32", "unit-square",
+        "method=gif", "method=bff", "method=uv-prolongation"}) {
     all.push_back(*words == 0 ? coarse : coarse + " " + words);
   }
   return all;
@@ -244,7 +245,8 @@ std::vector<std::string> small_rows() {
   }
   // In levels.
   const TriangleList large = meshes::bumps(230, 230);
-  for (const char* options : {"", "energy=symmetric-arap", "float32"}) {
+  for (const char* options :
+       {"", "energy=symmetric-arap", "energy=exponential-dirichlet", "float32"}) {
     rows.push_back(row("large bumps", large, options));
   }
   rows.push_back(row("large ramp", disks::ramp(760, 72), ""));

@@ -1,4 +1,4 @@
-"""Compare the two energies, and the methods, on one mesh; draw what they do.
+"""Compare the energies, and the methods, on one mesh; draw what they do.
 
 Run it with the path of an OBJ file that has one disk, or it takes a square with a hump.
 """
@@ -41,21 +41,24 @@ vertices, faces = read_obj(sys.argv[1]) if len(sys.argv) > 1 else hump()
 RUNS = {
     "symmetric Dirichlet": {"energy": "symmetric-dirichlet"},
     "symmetric ARAP": {"energy": "symmetric-arap"},
+    "exponential": {"energy": "exponential-dirichlet"},
     "harmonic": {"flatten": "dirichlet"},
     "Tutte": {"method": "tutte"},
 }
 results = {name: beltrami.parameterize(vertices, faces, **run) for name, run in RUNS.items()}
-print(f"{'':20} {'Dirichlet':>10} {'ARAP':>10} {'injective':>10} {'seconds':>8}")
+print(f"{'':20} {'Dirichlet':>10} {'at most':>10} {'ARAP':>10} {'injective':>10} {'seconds':>8}")
 for name, result in results.items():
     energy = result.energy
     print(
-        f"{name:20} {energy.symmetric_dirichlet:10.4f} {energy.symmetric_arap:10.4f} "
+        f"{name:20} {energy.symmetric_dirichlet:10.4f} {energy.max:10.4g} "
+        f"{energy.symmetric_arap:10.4f} "
         f"{result.injective!s:>10} {result.report.seconds:8.3f}"
     )
 
 # %%
-figure, axes = plt.subplots(2, 2, figsize=(11, 9), layout="constrained")
+figure, axes = plt.subplots(2, 3, figsize=(16, 9), layout="constrained")
 for ax, (name, result) in zip(axes.flat, results.items()):
     plot.heat_map(vertices, faces, result.uv, ax, limit=4.0, resolution=600)
     ax.set_title(name)
+axes.flat[-1].axis("off")
 figure.savefig("energies.png", dpi=110)

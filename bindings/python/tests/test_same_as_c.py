@@ -17,6 +17,7 @@ F32, F64, U32 = 0, 1, 2
 OPTIONS = [
     {},
     {"energy": "symmetric-arap", "unit_square": True},
+    {"energy": "exponential-dirichlet", "coarse_faces": 60},
     {"method": "tutte"},
     {"flatten": "dirichlet", "coarse_faces": 60, "threads": 2},
     {"delaunay": True, "float32": True},

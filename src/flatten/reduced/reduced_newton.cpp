@@ -16,7 +16,7 @@
 namespace beltrami {
 namespace {
 
-/// Of a sample that is left out: a bad face, not an infinite one.
+/// Of a sample that is left out, as symmetric Dirichlet energy: a bad face, not an infinite one.
 constexpr double kFlippedEnergy = 100;
 /// Columns of the Hessian that are formed together.
 constexpr Eigen::Index kTile = 32;
@@ -40,7 +40,10 @@ class Descent {
         metas_(size_of(x)),
         x_(x),
         active_(problem.rest.size(), false),
-        total_area_(std::accumulate(problem.weights.begin(), problem.weights.end(), 0.0)) {
+        total_area_(std::accumulate(problem.weights.begin(), problem.weights.end(), 0.0)),
+        flipped_energy_(with_density(problem.energy, []<class Density>(Density) {
+          return from_dirichlet<Density>(kFlippedEnergy);
+        })) {
     loop_.resize(metas_);
     std::iota(loop_.begin(), loop_.end(), 0);
     scale_and_activate();
@@ -72,6 +75,7 @@ class Descent {
   std::vector<bool> active_;
   std::vector<Index> active_list_;
   const double total_area_;
+  const double flipped_energy_;
   std::vector<Index> loop_;
   DenseMatrix edges_;  // of the samples at x_
   double sample_energy_ = 0;
@@ -131,9 +135,9 @@ void Descent::activate() {
   double sum = 0;
   for (Index s = 0; s < sample_count(); ++s) {
     const double value = energy_of_sample(s, edges_);
-    if (value < kFlippedEnergy) active_[s] = true;
+    if (value < flipped_energy_) active_[s] = true;
     if (active_[s]) active_list_.push_back(s);
-    sum += problem_.weights[s] * (active_[s] ? value : kFlippedEnergy);
+    sum += problem_.weights[s] * (active_[s] ? value : flipped_energy_);
   }
   sample_energy_ = sum / total_area_;
 }

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal, TypedDict
 
 MethodChoice = Literal["beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"]
-EnergyChoice = Literal["symmetric-dirichlet", "symmetric-arap"]
+EnergyChoice = Literal["symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet"]
 FlattenChoice = Literal["metric", "dirichlet", "gif", "flim", "bff"]
 InjectivityChoice = Literal["auto", "global", "local"]
 CutChoice = Literal["minimal", "islands", "auto", "given"]

@@ -294,6 +294,10 @@ pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_12 = -1;
 pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_12 = 0;
 /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
 pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_12 = 1;
+/** 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
+ most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
+ a parabola instead of the exponential.*/
+pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_12 = 2;
 pub type _bindgen_ty_12 = ::core::ffi::c_int;
 pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_13 = -1;
 /// beltrami_set_int

@@ -130,11 +130,12 @@ fn a_run_has_the_bits_of_the_c_functions() {
     let surface = sheet(20);
     let coarse = || Options::new().coarse_faces(200);
     let faces = ("coarse-faces", 200);
-    let cases: [(Options, &[(&str, i64)]); 7] = [
+    let cases: [(Options, &[(&str, i64)]); 8] = [
         (Options::new(), &[]),
         (coarse(), &[faces]),
         (coarse().unit_square(true).float32(true), &[faces, ("unit-square", 1), ("float32", 1)]),
         (coarse().energy(Energy::SymmetricArap).threads(2), &[faces, ("energy", 1)]),
+        (coarse().energy(Energy::ExponentialDirichlet), &[faces, ("energy", 2)]),
         (
             coarse().flatten(Flatten::Dirichlet).refine(true),
             &[faces, ("flatten", 1), ("refine", 1)],

@@ -146,7 +146,8 @@ fn text_that_is_no_value_is_refused_in_words() {
     let refusal = |name, value| Options::new().set(name, value).unwrap_err().to_string();
     assert_eq!(
         refusal("energy", "sym"),
-        "\"sym\" is no value for the option energy: give one of symmetric-dirichlet, symmetric-arap"
+        "\"sym\" is no value for the option energy: give one of symmetric-dirichlet, symmetric-arap, \
+         exponential-dirichlet"
     );
     assert_eq!(
         refusal("threads", "1.5"),
