@@ -1,0 +1,3 @@
+"""stub"""
+def write_page(data, book, out):
+    return out
