@@ -125,8 +125,8 @@ def shower(quiet: bool) -> Any:
         bar = ("#" * round(share * BAR)).ljust(BAR, ".")
         width = shutil.get_terminal_size().columns - BAR - 24
         line = f"[{bar}] {share:4.0%}  {left / 60:4.0f} min left  {text[: max(width, 20)]}"
-        print(f"\r\x1b[K{line}" if terminal else line, end="" if terminal else "\n", file=sys.stderr)
-        sys.stderr.flush()
+        shown = f"\r\x1b[K{line}" if terminal else f"{line}\n"
+        print(shown, end="", file=sys.stderr, flush=True)
 
     return (lambda *_: None) if quiet else show
 
@@ -141,9 +141,7 @@ def main(given: list[str] | None = None) -> int:
     if not any(base.main for base in bases):
         print("evaluate: there is no disk or closed mesh in these folders", file=sys.stderr)
         return 2
-    data = DataSet(
-        bases, energy_names(), arguments.meshes, arguments.largest, refused=refused
-    )
+    data = DataSet(bases, energy_names(), arguments.meshes, arguments.largest, refused=refused)
     book = Book(arguments.out / "runs.jsonl", versions_of(arguments.rivals_python))
     with executor_of(arguments.scheduler, arguments.jobs) as (executor, slots):
         setting = Setting(

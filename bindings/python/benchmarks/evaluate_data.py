@@ -1,4 +1,4 @@
-"""The data set of ./dev evaluate, by the recipe of the paper, from base meshes in files or made here.
+"""The data set of ./dev evaluate, by the recipe of the paper.
 
 Disks are taken as they are. Closed meshes of genus 0 are opened along short seams, and give the
 meshes without one triangle. Those on which CM ends at a mean energy of 2.5 or more are kept and
@@ -182,14 +182,14 @@ def ladder(bases: Sequence[Base], count: int) -> list[Mesh]:
     base that has more faces than a size leaves it to others; a size is skipped where all have.
     """
     random = np.random.default_rng(1)
-    used = dict.fromkeys(range(len(bases)), 0.0)
+    used = [0] * len(bases)
     meshes = []
     for size in sizes(count):
-        free = [k for k in used if bases[k].faces <= size * 1.05]
+        order = random.permutation(len(bases)).tolist()
+        free = [k for k in order if bases[k].faces <= size * 1.05]
         if not free:
             continue
-        tie = random.permutation(len(bases))
-        chosen = min(free, key=lambda k: (used[k], tie[k]))  # noqa: B023, called at once
+        chosen = min(free, key=used.__getitem__)
         used[chosen] += 1
         values = {**bases[chosen].mesh.flat(), "faces": size}
         meshes.append(Mesh(**values))

@@ -109,7 +109,7 @@ class Book:
 
 
 def _record_of(line: str) -> Record | None:
-    """Return a record; None of a line that a stopped process left unfinished, or of other schemas."""
+    """Return a record; None of a line left unfinished, or of another schema."""
     try:
         record = json.loads(line)
     except json.JSONDecodeError:

@@ -53,8 +53,9 @@ def histogram(values: np.ndarray, weights: np.ndarray, least: float) -> list[flo
 
 def measure(vertices: np.ndarray, faces: np.ndarray, uv: np.ndarray) -> dict[str, Any]:
     """Return what holds of a map: exact counts, energies, and shares of the area by energy."""
-    import beltrami
     from meshes import areas
+
+    import beltrami
 
     triangles = beltrami.check_triangles(uv, faces)
     crossings = beltrami.check_boundary(uv, faces).boundary_crossings
@@ -158,8 +159,9 @@ PROGRAMS: dict[str, Callable[[np.ndarray, np.ndarray, dict[str, Any]], dict[str,
 
 def at_best_scale(vertices: np.ndarray, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
     """Return a rival's UVs, whose scale is its own affair, at the scale of least energy."""
-    import beltrami
     from meshes import areas
+
+    import beltrami
 
     used = areas(uv, faces)
     if used.sum() < 0:
@@ -190,7 +192,10 @@ def run(mesh: str, task: str, out: str) -> None:
             found = PROGRAMS[program](vertices, faces, options)
             found.update(finished(program, vertices, faces, found.pop("uv"), values))
     except Exception as error:  # of any program
-        found = {"status": getattr(error, "status", type(error).__name__), "error": str(error)[:300]}
+        found = {
+            "status": getattr(error, "status", type(error).__name__),
+            "error": str(error)[:300],
+        }
     found.setdefault("peak_bytes", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
     Path(out).write_text(json.dumps(found))
 
@@ -233,7 +238,12 @@ def versions() -> None:
     print(json.dumps(found))
 
 
+COMMANDS: dict[str, Callable[..., None]] = {
+    "prepare": prepare,
+    "run": run,
+    "judge": judge,
+    "versions": versions,
+}
+
 if __name__ == "__main__":
-    {"prepare": prepare, "run": run, "judge": judge, "versions": versions}[sys.argv[1]](
-        *sys.argv[2:]
-    )
+    COMMANDS[sys.argv[1]](*sys.argv[2:])
