@@ -30,7 +30,7 @@ from typing import Any
 
 import evaluate_process
 import records
-from evaluate_data import LARGEST, read_bases, sources_of
+from evaluate_data import LARGEST, Base, read_bases, sources_of
 from evaluate_page import write_page
 from evaluate_plan import DataSet, plan_of
 from evaluate_runs import Book, Loop, Record, Setting, own_version
@@ -60,6 +60,14 @@ def options(given: list[str] | None = None) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("--data", type=Path, nargs="+", default=[], metavar="FOLDER", help="with base meshes")
+    add(
+        "--punctured",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="FOLDER",
+        help="with closed meshes, to be without a triangle; left out, those of --data",
+    )
     add("--budget", type=seconds_of, default=seconds_of("40m"), help="time for runs: 90s, 40m, 2h")
     add("--out", type=Path, default=records.ROOT / "build" / "evaluation", metavar="FOLDER")
     add("--jobs", type=int, default=1, help="runs at a time; more than one blurs CPU seconds")
@@ -131,13 +139,21 @@ def shower(quiet: bool) -> Any:
     return (lambda *_: None) if quiet else show
 
 
+def bases_for(data: list[Path], punctured: list[Path]) -> tuple[list[Base], dict[str, str]]:
+    """Return the base meshes of folders, and why other files give none."""
+    bases, refused = read_bases(sources_of(data))
+    if punctured or all(base.main for base in bases):  # other closed meshes to take a face of
+        others, more = read_bases(sources_of(punctured))
+        bases = [base for base in bases if base.main]
+        bases += [base for base in others if not base.main]
+        refused.update(more if punctured else {})
+    return bases, refused
+
+
 def main(given: list[str] | None = None) -> int:
     """Run the program."""
     arguments = options(given)
-    bases, refused = read_bases(sources_of(arguments.data))
-    if not any(not base.main for base in bases):  # there is nothing closed to take a triangle of
-        shipped, _ = read_bases(sources_of([]))
-        bases += [base for base in shipped if not base.main]
+    bases, refused = bases_for(arguments.data, arguments.punctured)
     if not any(base.main for base in bases):
         print("evaluate: there is no disk or closed mesh in these folders", file=sys.stderr)
         return 2

@@ -185,11 +185,11 @@ def ladder(bases: Sequence[Base], count: int) -> list[Mesh]:
     used = [0] * len(bases)
     meshes = []
     for size in sizes(count):
-        order = random.permutation(len(bases)).tolist()
-        free = [k for k in order if bases[k].faces <= size * 1.05]
+        free = [k for k, base in enumerate(bases) if base.faces <= size * 1.05]
         if not free:
             continue
-        chosen = min(free, key=used.__getitem__)
+        tie = random.permutation(len(bases))
+        chosen = min(free, key=lambda k: (used[k], tie[k]))
         used[chosen] += 1
         values = {**bases[chosen].mesh.flat(), "faces": size}
         meshes.append(Mesh(**values))

@@ -78,7 +78,7 @@ SECTIONS = (
         "In the same time, and what fails",
         "Left: CM stopped when ours had ended. Right: what the maps of each method are.",
     ),
-    ("shares", "Where the time goes", "Every mesh counts the same."),
+    ("shares", "Where the time goes", "Of meshes from 100,000 faces on, each counting the same."),
     ("rivals", "Programs of others", "At their best scale, with default options, on small meshes."),
 )
 RATIOS = (

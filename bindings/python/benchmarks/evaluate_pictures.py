@@ -435,7 +435,7 @@ def mark_flips(axes: Any, uv: np.ndarray, faces: np.ndarray) -> None:
 def kept_maps(
     data: DataSet, book: Book, folder: Path, modes: Sequence[str]
 ) -> list[tuple[Run, np.ndarray]]:
-    """Return the maps of these modes on the first mesh that has them all."""
+    """Return the maps of these modes on a mesh that has them all."""
     runs = [run for run in picture_runs(data, book) if book.find(run) is not None]
     for mesh in dict.fromkeys(run.mesh for run in runs):
         found = []

@@ -230,13 +230,16 @@ def rival_runs(data: DataSet, book: Book) -> Iterator[Run]:
 
 
 def picture_runs(data: DataSet, book: Book) -> Iterator[Run]:
-    """Yield the maps that pictures show."""
-    for mesh in spread(data.ladder(book), 2, TEXTURE_FACES):
-        for mode in ("ours", "uv prolongation", "plain gif"):
+    """Yield the maps that pictures show: where UV prolongation flips most."""
+
+    def flips(mesh: Mesh) -> int:
+        record = book.find(run_of(mesh, "uv prolongation"))
+        return record["flips"] if record is not None and succeeded(record) else -1
+
+    meshes = [mesh for mesh in data.ladder(book) if mesh.faces <= TEXTURE_FACES]
+    for mesh in sorted(meshes, key=flips, reverse=True)[:1]:
+        for mode in ("ours", "uv prolongation"):
             yield run_of(mesh, mode, keep=True)
-    punctured = [base for base in data.bases if not base.main]
-    for base in punctured[:2]:
-        yield Run(base.mesh, "ours", base.faces, keep=True)
 
 
 def plan_of(data: DataSet, book: Book) -> dict[str, tuple[float, Iterable[Run]]]:

@@ -10,7 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+pytest.importorskip("matplotlib")
 from conftest import ROOT, grid, write_obj
+from evaluate import bases_for, executor_of, options
 from evaluate_data import (
     LEAST_ENERGY,
     Base,
@@ -231,8 +234,6 @@ def test_a_run_that_fails_crashes_or_takes_too_long_says_so(tmp_path, monkeypatc
 @pytest.mark.filterwarnings("ignore")  # of Dask's own dependencies
 def test_a_dask_scheduler_does_runs_without_knowing_these_modules(tmp_path):
     distributed = pytest.importorskip("distributed")
-    from evaluate import executor_of
-
     vertices, faces = grid(6)
     source = str(write_obj(tmp_path / "hump.obj", vertices, faces))
     run = Run(Mesh("hump", source, digest_of(source)), "ours", 72)
@@ -258,7 +259,33 @@ def test_the_version_is_that_of_the_sources(tmp_path):
     assert own_version(tmp_path) != before
 
 
-# ---- Help ---------------------------------------------------------------------------------
+# ---- Arguments ---------------------------------------------------------------------------------
+
+
+def test_a_budget_is_a_number_with_a_unit():
+    assert [options(["--budget", text]).budget for text in ("90s", "40m", "1.5h", "7")] == [
+        90,
+        2400,
+        5400,
+        7,
+    ]
+    with pytest.raises(SystemExit):
+        options(["--budget", "soon"])
+
+
+def test_disks_are_of_one_folder_and_closed_meshes_of_another(tmp_path):
+    disks, closed = tmp_path / "disks", tmp_path / "closed"
+    for folder in (disks, closed):
+        folder.mkdir()
+    write_obj(disks / "disk.obj", *grid(4))
+    write_obj(closed / "ball.obj", *body(1, 200))
+    bases, refused = bases_for([disks], [closed])
+    assert [base.mesh.name for base in bases] == ["disk", "ball punctured"]
+    assert refused == {}
+    alone, _ = bases_for([closed], [])
+    assert [base.mesh.name for base in alone] == ["ball punctured", "ball cut 2", "ball cut 3"]
+    shipped, _ = bases_for([disks], [])
+    assert {"disk", "spot punctured"} <= {base.mesh.name for base in shipped}
 
 
 def test_the_help_of_dev_names_it():

@@ -136,6 +136,7 @@ def test_outliers_are_what_is_uncertified_failed_or_above_the_limit():
     overlapping = row(map_of(3.2, 1), cm=map_of(3, 1, crossings=5))
     overlapping.modes["cm, global"] = {**map_of(3.19, 1), "options": {}}
     assert not list(outliers([overlapping]))
+    assert "1.100" in "".join(outliers([row(map_of(3, 1), gif=map_of(3.3, 1))]))
     flipped = row(map_of(3, 1), **{"uv prolongation": map_of(3, 1, flips=4)})
     assert not list(outliers([flipped]))
     assert flipped.energy("uv prolongation") == math.inf
