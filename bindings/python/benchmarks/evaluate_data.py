@@ -75,10 +75,10 @@ def body(seed: int, faces: int) -> tuple[np.ndarray, np.ndarray]:
     while 4 * len(corners) <= faces:
         vertices, corners = quarter(vertices, corners)
         vertices = vertices / np.linalg.norm(vertices, axis=1)[:, None]
-    limbs = random.normal(size=(int(random.integers(3, 7)), 3))
+    limbs = random.normal(size=(int(random.integers(6, 10)), 3))
     limbs /= np.linalg.norm(limbs, axis=1)[:, None]
-    lengths = random.uniform(1.0, 2.5, len(limbs))
-    widths = random.uniform(10, 25, len(limbs))
+    lengths = random.uniform(1.5, 3, len(limbs))
+    widths = random.uniform(15, 30, len(limbs))
     bumps = (lengths * np.exp(widths * (vertices @ limbs.T - 1))).sum(axis=1)
     vertices = vertices * (1 + bumps)[:, None]
     # Limbs have long faces: what is split is the longest.
@@ -104,7 +104,10 @@ def load(source: str) -> tuple[np.ndarray, np.ndarray]:
 
 def digest_of(source: str) -> str:
     """Return a hash of the contents of a source."""
-    known = source.encode() if source.startswith(BODY) else Path(source).read_bytes()
+    if source.startswith(BODY):
+        known = b"".join(array.tobytes() for array in load(source))
+    else:
+        known = Path(source).read_bytes()
     return hashlib.sha256(known).hexdigest()[:16]
 
 

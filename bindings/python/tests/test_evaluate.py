@@ -207,7 +207,7 @@ def test_a_run_in_a_process_has_all_that_a_record_has(tmp_path):
         assert sum(shares) == pytest.approx(1, abs=1e-6)
     assert record["boundary"] == boundary_edges(make(disk)[1])
     assert {"coarse", "certify"} <= set(record["stages"])
-    assert record["cpu_seconds"] > 0
+    assert record["cpu_seconds"] >= 0
     assert record["peak_bytes"] > 1e6
     assert Book(tmp_path / "runs.jsonl", VERSIONS).find(run) == json.loads(json.dumps(record))
     with np.load(tmp_path / "uvs" / run.uv_name()) as kept:
