@@ -169,9 +169,12 @@ def main(given: list[str] | None = None) -> int:
             slots=slots,
             head=head(),
         )
-        Loop(lambda known: plan_of(data, known), book, setting, executor).run(
-            shower(arguments.quiet)
-        )
+        loop = Loop(lambda known: plan_of(data, known), book, setting, executor)
+        try:
+            loop.run(shower(arguments.quiet))
+        except KeyboardInterrupt:
+            print("\nevaluate: stopped; another call goes on from here", file=sys.stderr)
+            return 130
     print(f"\n{write_page(data, book, arguments.out)}")
     return 0
 
