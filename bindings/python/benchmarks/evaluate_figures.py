@@ -204,7 +204,8 @@ def outliers(rows: Sequence[Row]) -> Iterator[str]:
                 yield f"{where}: not certified ({counts})"
         for mode in ("ours", "gif"):
             if row.excess(mode) > WORST:
-                found = f"E {row.energy(mode):.4f}, {row.excess(mode):.3f} times that of"
+                name = row.modes[mode]["options"].get("energy", "E")
+                found = f"{name} {row.energy(mode):.4f}, {row.excess(mode):.3f} times that of"
                 yield f"{row.mesh}, {row.faces} faces, {mode}: {found} {row.reference()}"
 
 

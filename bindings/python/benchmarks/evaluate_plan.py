@@ -36,6 +36,9 @@ ROUNDS = 3  # turns of each base on the ladder
 FEWEST = 24  # meshes on the ladder
 LARGE = (500_000, 1_000_000, 2_000_000, 4_000_000)
 SUBSET = 8  # meshes of the experiments that need no more
+EQUAL_FACES = 300_000  # at most, for the search for equal energy
+COARSE_FROM = 90_000  # of fewer faces 20,000 are no coarse mesh
+COARSE_MESHES = 5
 TEXTURE_FACES = 60_000
 # A map with less energy than CM's is not reached by it; equal up to this counts as reached.
 EQUAL = 1e-6
@@ -150,9 +153,15 @@ def spread(meshes: Sequence[Mesh], count: int, most: int) -> list[Mesh]:
     return list(chosen.values())
 
 
+def evenly(meshes: Sequence[Mesh], count: int, most: int) -> list[Mesh]:
+    """Return about so many meshes of at most so many faces, of all sizes up to that."""
+    small = [mesh for mesh in meshes if mesh.faces <= most]
+    return small[:: max(1, len(small) // count)]
+
+
 def equal_energy_runs(data: DataSet, book: Book) -> Iterator[Run]:
     """Yield CM with ever fewer iterations, until the number is known at which it has our energy."""
-    for mesh in spread(data.ladder(book), SUBSET, 150_000):
+    for mesh in evenly(data.ladder(book), SUBSET, EQUAL_FACES):
         ours, found = book.find(run_of(mesh, "ours")), book.find(run_of(mesh, "cm"))
         if not (succeeded(ours) and succeeded(found)) or ours is None or found is None:
             continue
@@ -214,7 +223,8 @@ def punctured_runs(data: DataSet, _book: Book) -> Iterator[Run]:
 
 def simplify_runs(data: DataSet, book: Book) -> Iterator[Run]:
     """Yield ever fewer coarse faces, in the paper's own mode and in the default one."""
-    for mesh in spread(data.ladder(book)[len(MODES) :], 5, 150_000):
+    meshes = [mesh for mesh in data.ladder(book) if mesh.faces >= COARSE_FROM]
+    for mesh in spread(meshes, COARSE_MESHES, 2 * COARSE_FROM):
         for count in COARSE_FACES:
             for mode in ("gif", "ours"):
                 yield run_of(mesh, mode, (("coarse_faces", count),))
