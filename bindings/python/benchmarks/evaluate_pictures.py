@@ -271,6 +271,8 @@ def simplification(tables: Tables) -> Figure | None:
     figure, axes = columns(2)
     counts = np.array(COARSE_FACES, float)
     for mode, rows in tables.coarse.items():
+        if not rows:
+            continue
         energies = np.array([[row.energy(str(n)) for n in COARSE_FACES] for row in rows])
         seconds = np.array([[row.seconds(str(n)) for n in COARSE_FACES] for row in rows])
         for place, values in zip(axes, (energies, seconds)):

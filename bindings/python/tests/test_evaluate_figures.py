@@ -171,6 +171,25 @@ def test_all_pictures_and_the_page_are_made_of_records(known, tmp_path):
     assert sum(path.stat().st_size for path in (tmp_path / "out").iterdir()) < 2_000_000
 
 
+def test_pictures_are_made_of_whatever_is_recorded_so_far(known):
+    data, book = known
+    records = list(book.records.items())
+    for count in [*range(0, 60, 4), *range(60, len(records), 40)]:
+        part = Book(None, VERSIONS)
+        part.records = dict(records[:count])
+        tables = tables_of(data, part)
+        for draw in PICTURES.values():
+            draw(tables)
+        summary(tables)
+    reversed_order = Book(None, VERSIONS)
+    for key, record in reversed(records):
+        reversed_order.records[key] = record
+        if len(reversed_order.records) % 60 == 1:
+            tables = tables_of(data, reversed_order)
+            for draw in PICTURES.values():
+                draw(tables)
+
+
 def test_nothing_recorded_makes_an_empty_page(tmp_path):
     data, book = DataSet([], ENERGIES), Book(None, VERSIONS)
     tables = tables_of(data, book)
