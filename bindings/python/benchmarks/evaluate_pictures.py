@@ -7,6 +7,7 @@ that it could show. The numbers of figures are those of the paper.
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -76,6 +77,7 @@ LABELS = {
 }
 # The paper's shares of its stages, beside which its own mode is set here.
 PAPER_SHARES = {"simplify": 0.11, "coarse": 0.14, "prolong": 0.04, "flatten": 0.71}
+USUAL_COARSE = 10_000  # faces that the default simplifies to at least
 STAGE_COLOURS = mpl.colormaps["tab20"].colors
 
 
@@ -168,7 +170,7 @@ def scatter(tables: Tables) -> Figure | None:
 def plain_ticks(axes: Any) -> None:
     """Write the numbers of logarithmic axes as numbers, about as many as there is room for."""
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        if axis.get_scale() != "log":
+        if axis.get_scale() != "log" or not 0 < low < high:  # nothing is drawn yet
             continue
         decades = math.log10(high / low)
         axis.set_minor_formatter(mpl.ticker.NullFormatter())
@@ -266,30 +268,42 @@ def punctured(tables: Tables) -> Figure | None:
 
 def simplification(tables: Tables) -> Figure | None:
     """Figure 14: energy and time against the faces of the coarse mesh."""
-    if not any(tables.coarse.values()):
+    usual = str(USUAL_COARSE)
+    found = {
+        mode: [row for row in rows if row.seconds(usual) > 0 and math.isfinite(row.energy(usual))]
+        for mode, rows in tables.coarse.items()
+    }
+    if not any(found.values()):
         return None
     figure, axes = columns(2)
-    counts = np.array(COARSE_FACES, float)
-    for mode, rows in tables.coarse.items():
-        if not rows:
-            continue
-        energies = np.array([[row.energy(str(n)) for n in COARSE_FACES] for row in rows])
-        seconds = np.array([[row.seconds(str(n)) for n in COARSE_FACES] for row in rows])
-        for place, values in zip(axes, (energies, seconds)):
-            usual = values[:, [COARSE_FACES.index(10_000)]]
-            for ratio in values / usual:
-                place.plot(counts, ratio, color=COLOURS[mode], alpha=0.25, linewidth=0.8)
-            shown = ~np.isnan(values / usual).all(axis=0)
-            middle = np.nanmedian((values / usual)[:, shown], axis=0)
-            place.plot(counts[shown], middle, "o-", color=COLOURS[mode], label=LABELS[mode])
+    for mode, rows in found.items():
+        against_coarse(axes[0], [(row, Row.energy) for row in rows], mode)
+        against_coarse(axes[1], [(row, Row.seconds) for row in rows], mode)
     for place, title in zip(axes, ("energy", "CPU seconds")):
         place.set_xscale("log")
         place.set_yscale("log")
         plain_ticks(place)
         place.set_xlabel("faces of the coarse mesh")
-        place.set_title(f"{title}, 1 at 10,000 faces", fontsize=9)
+        place.set_title(f"{title}, 1 at {USUAL_COARSE:,} faces", fontsize=9)
     axes[0].legend(fontsize=7)
     return figure
+
+
+def against_coarse(
+    axes: Any, rows: Sequence[tuple[Row, Callable[[Row, str], float]]], mode: str
+) -> None:
+    """Draw a value of meshes, in units of that of the usual coarse mesh, and the median of them."""
+    listed: dict[int, list[float]] = {}
+    for row, value in rows:
+        points = [(n, value(row, str(n)) / value(row, str(USUAL_COARSE))) for n in COARSE_FACES]
+        points = [point for point in points if math.isfinite(point[1])]
+        axes.plot(*zip(*points), color=COLOURS[mode], alpha=0.25, linewidth=0.8)
+        for count, ratio in points:
+            listed.setdefault(count, []).append(ratio)
+    counts = sorted(listed)
+    if counts:
+        medians = [statistics.median(listed[count]) for count in counts]
+        axes.plot(counts, medians, "o-", color=COLOURS[mode], label=LABELS[mode])
 
 
 def flips_and_repairs(tables: Tables) -> Figure | None:
