@@ -131,7 +131,7 @@ def shower(quiet: bool) -> Any:
     def show(text: str, passed: float, left: float) -> None:
         share = passed / max(passed + left, 1e-9)
         bar = ("#" * round(share * BAR)).ljust(BAR, ".")
-        width = shutil.get_terminal_size().columns - BAR - 24
+        width = shutil.get_terminal_size().columns - BAR - 24 if terminal else len(text)
         line = f"[{bar}] {share:4.0%}  {left / 60:4.0f} min left  {text[: max(width, 20)]}"
         shown = f"\r\x1b[K{line}" if terminal else f"{line}\n"
         print(shown, end="", file=sys.stderr, flush=True)

@@ -175,8 +175,9 @@ def bisection(mesh: Mesh, target: float, found: Record, book: Book) -> Iterator[
         return
     step = 2
     while reached - missed > 1:
-        probe = max(reached - step, (reached + missed) // 2, missed + 1) if missed == 0 else None
-        probe = (reached + missed) // 2 if probe is None else probe
+        probe = (reached + missed) // 2
+        if missed == 0:  # the energy is reached in the last iterations
+            probe = max(reached - step, probe)
         run = stopped(mesh, probe)
         yield run
         record = book.find(run)
