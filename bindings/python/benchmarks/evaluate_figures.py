@@ -125,7 +125,8 @@ def equal_energy(row: Row, stopped: Row | None) -> float:
     first = min(reached, key=iterations)
     if iterations(first) - max(missed, default=0) > 1:  # the search has not ended
         return math.nan
-    return float(first["cpu_seconds"]) / row.seconds("ours")
+    seconds = row.seconds("ours")
+    return float(first["cpu_seconds"]) / seconds if seconds > 0 else math.nan
 
 
 def stage_shares(rows: Sequence[Row], mode: str) -> dict[str, float]:

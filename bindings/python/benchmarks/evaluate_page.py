@@ -284,12 +284,22 @@ def atlas_section() -> str:
     )
 
 
+def written(value: Any) -> Any:
+    """Return figures as JSON can hold them: what is not finite is null."""
+    if isinstance(value, dict):
+        return {key: written(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [written(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def write_page(data: DataSet, book: Book, folder: Path) -> Path:
     """Write pictures, numbers and the page; return the page."""
     tables = tables_of(data, book)
     numbers = summary(tables)
     names = write_pictures(data, book, tables, folder)
-    (folder / "figures.json").write_text(json.dumps(numbers, indent=1) + "\n")
+    text = json.dumps(written(numbers), indent=1, allow_nan=False)
+    (folder / "figures.json").write_text(text + "\n")
     page = folder / "index.html"
     page.write_text(document(data, book, tables, numbers, names))
     return page
