@@ -197,13 +197,12 @@ def base_table(data: DataSet, book: Book) -> str:
 
 def origin(book: Book) -> str:
     """Say what the records come from."""
-    found = sorted(
-        {
-            tuple(str(record.get(key, "")) for key in ("date", "commit", "processor", "build"))
-            for record in book.records.values()
-        }
-    )
-    return "<br>".join(html.escape(", ".join(each)) for each in found)
+    commits: dict[str, list[str]] = {}
+    for record in book.records.values():
+        place = ", ".join(str(record.get(key, "")) for key in ("date", "processor", "build"))
+        commits.setdefault(place, []).append(str(record.get("commit", "")))
+    lines = (f"{place}; at {', '.join(dict.fromkeys(found))}" for place, found in commits.items())
+    return "<br>".join(html.escape(line) for line in lines)
 
 
 def document(
