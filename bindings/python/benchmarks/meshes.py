@@ -11,10 +11,10 @@ FOLDER = Path(__file__).resolve().parents[3] / "examples" / "data"
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertices (n, 3) and faces (m, 3), scaled to area 1."""
+    """Return vertices (n, 3) and faces (m, 3), scaled to area 1; other polygons are an error."""
     lines = [line.split() for line in path.read_text().splitlines()]
     vertices = np.array([words[1:4] for words in lines if words[:1] == ["v"]], float)
-    corners = [[w.split("/")[0] for w in words[1:4]] for words in lines if words[:1] == ["f"]]
+    corners = [[w.split("/")[0] for w in words[1:]] for words in lines if words[:1] == ["f"]]
     faces = np.array(corners, np.int64) - 1
     return vertices / np.sqrt(areas(vertices, faces).sum()), faces
 
@@ -43,6 +43,19 @@ def is_sphere(vertices: np.ndarray, faces: np.ndarray) -> bool:
     return bool((count == 2).all()) and len(vertices) - len(ends) + len(faces) == 2
 
 
+def quarters(faces: np.ndarray, middles: np.ndarray) -> np.ndarray:
+    """Return four faces for each, whose edges have these vertices, (m, 3), in their middles."""
+    (a, b, c), (ab, bc, ca) = faces.T, middles.T
+    return np.hstack([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]).T
+
+
+def quarter(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same surface, with a boundary or none, in four times the faces."""
+    ends, of_face, _ = edges(faces)
+    points = np.vstack([vertices, vertices[ends].mean(axis=1)])
+    return points, quarters(faces, len(vertices) + of_face)
+
+
 def subdivide(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return a closed surface with four times the faces, by Loop's rules."""
     ends, of_face, _ = edges(faces)
@@ -55,22 +68,22 @@ def subdivide(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.n
     beta = (0.625 - (0.375 + 0.25 * np.cos(2 * np.pi / valence)) ** 2) / valence
     moved = (1 - valence * beta) * vertices + beta * ring
     middles = 0.375 * vertices[ends].sum(axis=1) + 0.125 * wings
-    (a, b, c), (ab, bc, ca) = faces.T, count + of_face.T
-    corners = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    return np.vstack([moved, middles]), np.hstack(corners).T
+    return np.vstack([moved, middles]), quarters(faces, count + of_face)
 
 
 def split_longest(
     vertices: np.ndarray, faces: np.ndarray, target: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Split edges of a closed surface that are the longest of both faces, up to `target` faces."""
-    ends, of_face, _ = edges(faces)
+    """Split edges that are the longest of all their faces, up to `target` faces."""
+    ends, of_face, count = edges(faces)
     length = np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1)
     rank = length.argsort(kind="stable").argsort(kind="stable")
     first = rank[of_face].argmax(axis=1)
     longest = np.take_along_axis(of_face, first[:, None], axis=1).ravel()
-    chosen = np.flatnonzero(np.bincount(longest, minlength=len(ends)) == 2)
-    chosen = chosen[np.argsort(-rank[chosen])][: (target - len(faces) + 1) // 2]
+    chosen = np.flatnonzero(np.bincount(longest, minlength=len(ends)) == count)
+    chosen = chosen[np.argsort(-rank[chosen])]
+    more = np.cumsum(count[chosen]) - count[chosen]  # faces from the edges before each
+    chosen = chosen[more < target - len(faces)]
     middle = np.full(len(ends), -1)
     middle[chosen] = len(vertices) + np.arange(len(chosen))
     hit = middle[longest] >= 0
@@ -83,10 +96,16 @@ def split_longest(
     )
 
 
-def refine(vertices: np.ndarray, faces: np.ndarray, target: int) -> tuple[np.ndarray, np.ndarray]:
-    """Refine a closed surface to about `target` faces: by Loop's rules, then at longest edges."""
+def refine(
+    vertices: np.ndarray, faces: np.ndarray, target: int, smooth: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
+    """Refine to about `target` faces, first all, then at longest edges.
+
+    Smoothly a closed surface becomes another one by Loop's rules; else any surface stays itself.
+    """
+    step = subdivide if smooth else quarter
     while 4 * len(faces) <= target + target // 20:
-        vertices, faces = subdivide(vertices, faces)
+        vertices, faces = step(vertices, faces)
     while len(faces) < target - target // 200:
         vertices, faces = split_longest(vertices, faces, target)
     return vertices, faces

@@ -88,6 +88,14 @@ def run_ours(method: str, vertices: np.ndarray, faces: np.ndarray) -> Outcome:
 
 def run_scaf(vertices: np.ndarray, faces: np.ndarray) -> Outcome:
     """Flatten with SCAF; its start does not count."""
+    uv, seconds = scaf(vertices, faces, SCAF_ITERATIONS)
+    if not np.isfinite(uv).all():
+        return Outcome(np.nan, 0, len(faces), seconds, False)
+    return judge(uv, faces, energy_at_best_scale(vertices, faces, uv), seconds, True)
+
+
+def scaf(vertices: np.ndarray, faces: np.ndarray, iterations: int) -> tuple[np.ndarray, float]:
+    """Return the UVs of SCAF from Tutte's embedding, and its CPU seconds without that."""
     import igl
     import igl.triangle
 
@@ -105,11 +113,8 @@ def run_scaf(vertices: np.ndarray, faces: np.ndarray) -> Outcome:
         0.0,
         data,
     )
-    uv = np.array(igl.triangle.scaf_solve(SCAF_ITERATIONS, data))[: len(vertices), :2]
-    seconds = time.process_time() - start
-    if not np.isfinite(uv).all():
-        return Outcome(np.nan, 0, len(faces), seconds, False)
-    return judge(uv, faces, energy_at_best_scale(vertices, faces, uv), seconds, True)
+    found = np.array(igl.triangle.scaf_solve(iterations, data))[: len(vertices), :2]
+    return np.ascontiguousarray(found), time.process_time() - start
 
 
 def energy_at_best_scale(vertices: np.ndarray, faces: np.ndarray, uv: np.ndarray) -> float:
