@@ -25,15 +25,8 @@ namespace beltrami::benchmarks {
 namespace {
 
 DiskMesh disk_of(const TriangleMesh& file) {
-  std::vector<Vec3> positions;
-  for (std::size_t i = 0; i < file.positions.size(); i += 3) {
-    positions.emplace_back(file.positions[i], file.positions[i + 1], file.positions[i + 2]);
-  }
-  std::vector<Triangle> faces;
-  for (std::size_t i = 0; i < file.faces.size(); i += 3) {
-    Triangle& face = faces.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) face[k] = static_cast<Index>(file.faces[i + k]);
-  }
+  const std::vector<Vec3> positions = positions_of(file);
+  std::vector<Triangle> faces = faces_of(file);
   std::vector<Vec3> kept;
   for (const Index v : drop_unreferenced(size_of(positions), faces, Work(1)))
     kept.push_back(positions[v]);

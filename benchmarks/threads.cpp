@@ -9,16 +9,17 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <queue>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "abi/input_mesh.h"
 #include "base/loop_trace.h"
+#include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "commands/command.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/locality.h"
 #include "records.h"
 #include "refine.h"
 #include "yardstick.h"
@@ -51,21 +52,32 @@ struct StageTimes {
 
 using Times = std::map<std::string, StageTimes>;
 
-/// Loads and flattens the mesh as the library's caller does.
+/// Loads and flattens the mesh as the library does for its callers.
 Flattening run_stages(const TriangleMesh& file, const Work& work, double& load) {
   const double begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
-  InputDisk input = read_disk(cli::view_of(file.view()), work.named("load"));
-  const Normalisation frame = normalise(input.disk.positions, input.disk.faces, work.named("load"));
+  const Work loading = work.part(0, 0).named("load");
+  loading.report(0);
+  std::vector<Triangle> faces = faces_of(file);
+  std::vector<Vec3> positions = positions_of(file);
+  const Arrangement arranged = arrange(positions, faces, loading);
+  positions = in_order(positions, arranged.vertices, loading);
+  DiskMesh disk = build_disk(std::move(positions), std::move(faces), loading);
+  const Normalisation frame = normalise(disk.positions, disk.faces, loading);
   load = seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
-  return flatten(input.disk, frame, ChartOptions{}, work);
+  return flatten(disk, frame, ChartOptions{}, work);
 }
 
-/// `order`: of the stages, as they first end.
+/// `order`: of the stages, as they first begin.
 Times trace_run(const TriangleMesh& file, const std::vector<int>& threads,
                 std::vector<std::string>& order) {
   Times times;
-  LoopTrace trace([&](const char* stage, const std::vector<double>& chunks) {
-    StageTimes& of = times[stage];
+  std::string present;  // stage
+  const auto note_stage = [&](double, const char* name) {
+    present = name;
+    return false;
+  };
+  LoopTrace trace([&](const std::vector<double>& chunks) {
+    StageTimes& of = times[present];
     of.loops.resize(threads.size());
     double longest = 0;
     for (const double time : chunks) {
@@ -78,7 +90,8 @@ Times trace_run(const TriangleMesh& file, const std::vector<int>& threads,
   });
   const int most = *std::max_element(threads.begin(), threads.end());
   double load = 0;
-  const Flattening done = run_stages(file, Work({.threads = most, .trace = &trace}, nullptr), load);
+  const Flattening done =
+      run_stages(file, Work({.threads = most, .trace = &trace}, note_stage), load);
   order = {"load"};
   times["load"].work = load;
   for (const StageStatistics& stage : done.statistics.stages) {

@@ -101,18 +101,28 @@ void number_along_curve(std::vector<Vec3>& positions, std::vector<Triangle>& fac
 
 }  // namespace
 
-System interior_laplacian(const TriangleMesh& file, Numbering numbering) {
+std::vector<Vec3> positions_of(const TriangleMesh& file) {
   std::vector<Vec3> positions;
   for (std::size_t v = 0; v < file.vertex_count(); ++v) {
     positions.emplace_back(file.positions[3 * v], file.positions[3 * v + 1],
                            file.positions[3 * v + 2]);
   }
+  return positions;
+}
+
+std::vector<Triangle> faces_of(const TriangleMesh& file) {
   std::vector<Triangle> faces;
   for (std::size_t f = 0; f < file.face_count(); ++f) {
     faces.push_back({static_cast<Index>(file.faces[3 * f]),
                      static_cast<Index>(file.faces[3 * f + 1]),
                      static_cast<Index>(file.faces[3 * f + 2])});
   }
+  return faces;
+}
+
+System interior_laplacian(const TriangleMesh& file, Numbering numbering) {
+  std::vector<Vec3> positions = positions_of(file);
+  std::vector<Triangle> faces = faces_of(file);
   if (numbering == Numbering::kAlongCurve) number_along_curve(positions, faces);
   const DiskMesh mesh = build_disk(std::move(positions), std::move(faces), Work(1));
   MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 1, Work(1));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/types.h"
 #include "linear/spd_solver.h"
 #include "refine.h"
 
@@ -12,6 +13,10 @@ namespace beltrami::benchmarks {
 
 /// Seconds on CLOCK_MONOTONIC (wall) or CLOCK_PROCESS_CPUTIME_ID.
 double seconds(clockid_t clock);
+
+/// The mesh as the stages have it.
+std::vector<Vec3> positions_of(const TriangleMesh& file);
+std::vector<Triangle> faces_of(const TriangleMesh& file);
 
 /// The interior cotan Laplacian of a mesh, and two right-hand sides.
 struct System {

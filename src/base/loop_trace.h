@@ -15,9 +15,9 @@ namespace beltrami {
 /// chunks of another count as a part of these.
 class LoopTrace {
  public:
-  /// Called after each loop with the name of its stage and the CPU seconds of its chunks, in the
-  /// order in which they are handed out.
-  using Listener = std::function<void(const char* stage, const std::vector<double>& chunks)>;
+  /// Called after each loop with the CPU seconds of its chunks, in the order in which they are
+  /// handed out.
+  using Listener = std::function<void(const std::vector<double>& chunks)>;
 
   explicit LoopTrace(Listener listener) : listener_(std::move(listener)) {}
 
@@ -26,7 +26,7 @@ class LoopTrace {
 
   /// Runs chunk(i) for i in [0, count).
   template <class Chunk>
-  void run(const char* stage, std::int64_t count, const Chunk& chunk) {
+  void run(std::int64_t count, const Chunk& chunk) {
     std::vector<double> seconds(static_cast<std::size_t>(count));
     inside_ = true;
     try {
@@ -40,7 +40,7 @@ class LoopTrace {
       throw;
     }
     inside_ = false;
-    listener_(stage, seconds);
+    listener_(seconds);
   }
 
  private:

@@ -25,7 +25,7 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
   const std::int64_t chunks = (count + grain - 1) / grain;
   LoopTrace* const trace = work.trace();
   if (trace && work.threads() > 1 && !trace->is_inside()) {
-    trace->run(work.name(), chunks, [&](std::int64_t chunk) {
+    trace->run(chunks, [&](std::int64_t chunk) {
       poll_interrupt();
       body(chunk * grain, std::min((chunk + 1) * grain, count));
     });

@@ -34,10 +34,9 @@ class Work {
   explicit Work(int threads = 1);
   Work(const Limits& limits, Progress progress);
 
-  int threads() const;       ///< for a loop of this share, the caller's included
-  Pool& pool() const;        ///< the threads of the run; parallel_for lends them
-  LoopTrace* trace() const;  ///< or null
-  const char* name() const { return name_; }
+  int threads() const;                ///< for a loop of this share, the caller's included
+  Pool& pool() const;                 ///< the threads of the run; parallel_for lends them
+  LoopTrace* trace() const;           ///< or null
   std::int64_t memory_limit() const;  ///< bytes; 0: none
 
   /// Whether the time is up. Work that improves on what it has ends then, and keeps the best.
