@@ -112,7 +112,7 @@ struct ExponentialDirichlet {
   static constexpr double kLastGrown = 162754.79141900392;  // exp(kLast - 2)
   // Logarithms of scales, from that of symmetric Dirichlet: what is looked through, and what does
   // not differ in the energy.
-  static constexpr double kFarthest = 1, kSameScale = 1e-9;
+  static constexpr double kFarthest = 10, kSameScale = 1e-9;
 };
 
 }  // namespace beltrami
