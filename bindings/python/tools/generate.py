@@ -358,8 +358,12 @@ def documentation(options: list[Option], indent: str) -> str:
             kind = "{" + ", ".join(f'"{choice}"' for choice in option.choices) + "}"
         default = f'"{option.default}"' if isinstance(option.default, str) else option.default
         preset = ", or as the preset has it" if option.of_presets else ""
-        lines.append(f"{indent}{option.name} : {kind}, default {default}{preset}")
+        head = f"{indent}{option.name} : {kind}, default {default}{preset}"
         text = option.summary + (f" A number {option.range}." if option.range else "")
+        if len(head) > COLUMNS:
+            head = f"{indent}{option.name} : str, default {default}{preset}"
+            text = f"One of {kind[1:-1]}. {text}"
+        lines.append(head)
         lines.append(wrapped(text, indent + "    "))
     return "\n".join(lines) + "\n"
 

@@ -77,9 +77,10 @@ def batch(
         on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
         baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
         coarse UVs (bff and uv-prolongation may flip).
-    energy : {"symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet"}, default "symmetric-dirichlet"
-        The distortion that is minimised; exponential-dirichlet lowers it where it is highest, at a
-        mean that is a little higher.
+    energy : str, default "symmetric-dirichlet"
+        One of "symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet". The distortion that
+        is minimised; exponential-dirichlet lowers it where it is highest, at a mean that is a
+        little higher.
     coarse_faces : int, default 0
         Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
         at least 10,000. A number from 0 to 700,000,000.
