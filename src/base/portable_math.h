@@ -27,7 +27,7 @@ double cos(double x);
 /// The angle of (x, y) in [-pi, pi], within 2 ulp; signs of zero and infinities as in C.
 double atan2(double y, double x);
 
-/// ldexp: as one product where 2^exponent is a double, which IEEE 754 rounds alike.
+/// ldexp: as one product where 2^exponent is a normal double, which IEEE 754 rounds alike.
 inline double times_power_of_two(double x, int exponent) {
   if (exponent < -1022 || exponent > 1023) return std::ldexp(x, exponent);
   return x * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);

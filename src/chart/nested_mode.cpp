@@ -64,7 +64,7 @@ constexpr double kLevels = 1.0 / 7;
 /// A map on the way up, with what it took.
 struct Climb {
   ChartMap map;        ///< of the level reached
-  double energy = 0;   ///< mean, of that level
+  double energy = 0;   ///< mean, of that level; at the end, of the one below the finest
   bool hard = false;   ///< the polish of a level did not end stationary
   bool failed = true;  ///< without an injective map, or far from the energy of the level below
 };

@@ -1,8 +1,11 @@
 // What is done                  with the factor       how often
 // ----------------------------  --------------------  ------------------------------------------
-// one step of L-BFGS            of the flattening     once, and only if it is not held up
-// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, while a round
-//   or held up                                        gains a thousandth of the energy
+// one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
+//                                                     finest of several levels up to 4 steps, with
+//                                                     which it mostly ends
+// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all (8 on that level),
+//   or held up                                        while a round gains a thousandth of the
+//   energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //
@@ -125,7 +128,8 @@ void fit_factor(const Setting& setting, const State& state) {
 /// Whether the last step looked at promises next to nothing.
 bool is_stationary(const Setting& setting, const State& state) {
   const double energy = setting.comparable(state.last.energies.back());
-  return 0.5 * state.last.predicted <= setting.bounds.stationary * energy;
+  const double predicted = state.last.predicted;  // below 0 where it would lead uphill
+  return predicted >= 0 && 0.5 * predicted <= setting.bounds.stationary * energy;
 }
 
 /// Whether the map is no more distorted than that of the coarser mesh.
@@ -198,7 +202,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
                           inner,  surface_area(*fine.mesh, inner), bounds_of(length),
                           inverse};
     State state{.uvs = std::move(start)};
-    take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps : 1, false, state);
+    take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
     // A map that no step has changed was cleaned when it was mended.

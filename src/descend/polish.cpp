@@ -247,13 +247,14 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     history.find_direction(gradient, precondition, spare, direction);
     if (options.enough > 0) {
       result.predicted = -dot(gradient, direction, work);
-      result.converged = 0.5 * result.predicted < options.enough * scale;
+      result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;
       if (result.converged) break;
     }
     double length = hold_back(faces, uvs, rigidly, direction, result.blocking, work);
     const double slope = dot(gradient, direction, work);
     result.predicted = -slope;
-    result.converged = settling.settled && 0.5 * result.predicted <= options.stationary * scale;
+    result.converged = settling.settled && result.predicted >= 0 &&
+                       0.5 * result.predicted <= options.stationary * scale;
     if (result.converged) break;
     if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
       result.blocked = true;

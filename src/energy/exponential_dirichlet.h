@@ -89,8 +89,9 @@ struct ExponentialDirichlet {
   }
 
   static double to_dirichlet(double energy) {
-    const double grown = energy - 1, beyond = std::sqrt(std::max(1.0, 2 * grown / kLastGrown - 1));
-    return grown < kLastGrown ? 2 + portable::log(grown) : kLast + (beyond - 1);
+    const double grown = energy - 1;
+    if (!(grown >= kLastGrown)) return 2 + portable::log(grown);
+    return kLast + (std::sqrt(2 * grown / kLastGrown - 1) - 1);
   }
   static double from_dirichlet(double energy) { return growth(energy).value; }
 

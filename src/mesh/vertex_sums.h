@@ -20,6 +20,8 @@ class VertexSums {
  public:
   /// What a face gives to its three corners.
   using Terms = std::array<Vec2, 3>;
+  /// The same of kLanes faces.
+  using LaneTerms = std::array<LanesComplex, 3>;
 
   VertexSums(Index vertex_count, const std::vector<Triangle>& faces, const Work& work)
       : faces_(faces),
@@ -37,7 +39,6 @@ class VertexSums {
   /// may be one face several times, of which the first counts.
   template <class Give>
   void add_up_lanes(const Give& give, std::vector<Vec2>& sums);
-  using LaneTerms = std::array<LanesComplex, 3>;
 
  private:
   static constexpr std::int64_t kGrain = FaceChunks::kGrain;
@@ -46,8 +47,6 @@ class VertexSums {
     Vec2 term;
   };
 
-  const std::vector<Triangle>& faces_;
-  const Work work_;
   void add(Index v, const Vec2& term, std::vector<Aside>& aside, std::vector<Vec2>& sums) const {
     if (chunks_.shared(v)) {
       aside.push_back({v, term});
@@ -60,6 +59,8 @@ class VertexSums {
   template <class AddChunk>
   double sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk);
 
+  const std::vector<Triangle>& faces_;
+  const Work work_;
   Index vertex_count_;
   FaceChunks chunks_;
   std::vector<std::vector<Aside>> aside_;

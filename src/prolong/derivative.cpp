@@ -38,7 +38,7 @@ VertexDerivative of_face(const DiskMesh& mesh, Index f, const RestTriangle& rest
 
 /// What carried_maps reads of the faces, lane by lane.
 struct Corners {
-  LanesVec3 x, second;  ///< edges from the first corner over the length of the first one
+  LanesVec3 x, y;  ///< axes of the frames
   LanesComplex corner;
   LanesVec3 gradient_u, gradient_v, normal;  ///< sums over the corners
   Lanes scale;
@@ -59,8 +59,10 @@ Corners corners_of(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
     const RestTriangle& r = rest[f];
     const double inverse = 1 / r.x1;
     const Vec3& origin = mesh.positions[t[0]];
-    set(c.x, i, inverse * (mesh.positions[t[1]] - origin));
-    set(c.second, i, inverse * (mesh.positions[t[2]] - origin));
+    // In double precision: the height of a sliver is the difference of what is much longer.
+    const Vec3 x = inverse * (mesh.positions[t[1]] - origin);
+    set(c.x, i, x);
+    set(c.y, i, (1 / r.y2) * (mesh.positions[t[2]] - origin - r.x2 * x));
     c.corner.real[i] = static_cast<float>(inverse * r.x2);
     c.corner.imag[i] = static_cast<float>(inverse * r.y2);
     const VertexDerivative sum = derivatives[t[0]] + derivatives[t[1]] + derivatives[t[2]];
@@ -135,8 +137,7 @@ CarriedMaps carried_maps(const DiskMesh& mesh, const std::array<Index, kLanes>& 
   constexpr float kOpposite = 1e-3F;       // 1 + cosine below which normals have no turn between
   constexpr float kTiny = 1e-30F;          // in the place of zeros that are divided by
   const Corners c = corners_of(mesh, faces, rest, derivatives);
-  const LanesVec3& x = c.x;
-  const LanesVec3 y = (1 / c.corner.imag) * (c.second - c.corner.real * x);
+  const LanesVec3 &x = c.x, &y = c.y;
   // Onto the plane of the other normal by the least turn: e - (e.u) (u + n) / (1 + u.n).
   const LanesVec3 normal = x.cross(y);
   const Lanes inverse = 1 / root(c.normal.dot(c.normal).max(kTiny));
