@@ -28,6 +28,9 @@ inline constexpr double kBlockedStep = 0.02;
 /// Shorter steps say nothing about convergence: on hard models the step is tiny for a while and the
 /// energy hardly falls, long before the minimum.
 inline constexpr double kFullStep = 0.5;
+/// Nor does the gain of a step that leaps over a narrow valley, if the model has promised more than
+/// so many times the tolerance.
+inline constexpr double kLeap = 10;
 /// Unless there are many of them, and Newton's model sees little to gain either: energies that are
 /// not smooth (symmetric ARAP at s1 = s2) creep towards their minimum in shortened steps.
 inline constexpr int kPatience = 5;
@@ -57,9 +60,10 @@ struct NewtonRun {
   bool impatient = false;
 };
 
-/// Whether a Newton step would gain less than the tolerance by its own model.
-inline bool is_stationary(const NewtonStep& step, double energy, const NewtonRun& run) {
-  const double share = run.smooth ? run.tolerance : newton::kLittleLeft;
+/// Whether a Newton step would gain less than so many times the tolerance by its own model.
+inline bool is_stationary(const NewtonStep& step, double energy, const NewtonRun& run,
+                          double times = 1) {
+  const double share = run.smooth ? times * run.tolerance : newton::kLittleLeft;
   return 0.5 * step.predicted <= share * run.comparable(energy);
 }
 
@@ -92,7 +96,8 @@ bool run_newton(const NewtonRun& run, const Work& work, std::vector<double>& ene
     }
     const double enough = run.tolerance * run.comparable(before);
     const bool little = made.gain <= enough;
-    if (little && !proxy && made.length >= newton::kFullStep) return true;
+    const bool full = !proxy && made.length >= newton::kFullStep;
+    if (little && full && is_stationary(made, before, run, newton::kLeap)) return true;
     const bool counts = run.impatient || made.length >= newton::kBlockedStep ||
                         made.gain <= newton::kNothing * enough;
     little_gains = little && counts ? little_gains + 1 : 0;
