@@ -13,6 +13,7 @@
 #include "chart/options.h"
 #include "chart/starts.h"
 #include "descend/newton.h"
+#include "energy/energy.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "linear/spd_solver.h"

@@ -16,6 +16,7 @@
 #include "chart/polish_schedule.h"
 #include "descend/contact.h"
 #include "descend/tutte.h"
+#include "energy/energy.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "flatten/carried_target.h"

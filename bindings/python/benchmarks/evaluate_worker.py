@@ -127,6 +127,19 @@ def slim(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -> d
     return {"uv": found.uv, "cpu_seconds": found.cpu_seconds}
 
 
+def lscm(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -> dict[str, Any]:
+    """Flatten with libigl's least-squares conformal map, two far boundary vertices pinned."""
+    import igl
+
+    start = time.process_time()
+    boundary = igl.boundary_loop(faces.astype(np.int64))
+    away = np.linalg.norm(vertices[boundary] - vertices[boundary[0]], axis=1).argmax()
+    pinned = np.array([boundary[0], boundary[away]], np.int64)
+    ends = np.array([[0.0, 0.0], [1.0, 0.0]])
+    uv, _ = igl.lscm(vertices, faces.astype(np.int64), pinned, ends)
+    return {"uv": uv, "cpu_seconds": time.process_time() - start}
+
+
 def scaf(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -> dict[str, Any]:
     """Flatten with libigl's SCAF."""
     import seams
@@ -151,6 +164,7 @@ def blender(vertices: np.ndarray, faces: np.ndarray, _options: dict[str, Any]) -
 
 PROGRAMS: dict[str, Callable[[np.ndarray, np.ndarray, dict[str, Any]], dict[str, Any]]] = {
     "beltrami": ours,
+    "LSCM": lscm,
     "SLIM": slim,
     "SCAF": scaf,
     "Blender": blender,
