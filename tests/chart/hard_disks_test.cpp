@@ -30,7 +30,7 @@ namespace {
 using meshes::TriangleList;
 
 /// Runs, and judges the delivered numbers once more.
-Flattening run(TriangleList mesh, const ChartOptions& options) {
+Flattening judged(TriangleList mesh, const ChartOptions& options) {
   Flattening result = disks::run(mesh, options);
   const DiskMesh disk = disks::disk(std::move(mesh));
   const auto& faces = result.faces.empty() ? disk.faces : result.faces;
@@ -65,7 +65,7 @@ TEST(HardDisks, AreInjectiveAsDelivered) {
       for (const bool square : {false, true}) {
         ChartOptions options = coarse(faces, float32);
         options.unit_square = square;
-        const Flattening result = run(disks::tree(), options);
+        const Flattening result = judged(disks::tree(), options);
         EXPECT_TRUE(result.certificate.injective()) << faces << float32 << square;
         EXPECT_LT(result.statistics.coarse_energy, 100) << faces << float32 << square;
       }
@@ -77,9 +77,10 @@ TEST(HardDisks, GetAMapWhereAlmostAllOfThemIsOnePoint) {
   for (const bool delaunay : {false, true}) {
     ChartOptions options = coarse(4, false);
     options.delaunay = delaunay;
-    EXPECT_TRUE(run(disks::collapsed(), options).certificate.injective()) << delaunay;
+    EXPECT_TRUE(judged(disks::collapsed(), options).certificate.injective()) << delaunay;
     options.float32 = true;
-    EXPECT_EQ(run(disks::collapsed(), options).status, Outcome::kNotInjectiveFloat32) << delaunay;
+    EXPECT_EQ(judged(disks::collapsed(), options).status, Outcome::kNotInjectiveFloat32)
+        << delaunay;
   }
 }
 
@@ -90,13 +91,13 @@ TriangleList scaled(TriangleList mesh, double unit) {
 
 TEST(HardDisks, AreFlattenedInAnyUnitThatNumbersHold) {
   for (const double unit : {1e-310, 1e-307, 1e-160, 1e160, 1e300, 0x1p1021}) {
-    const Flattening result = run(scaled(meshes::grid(3, 3), unit), {});
+    const Flattening result = judged(scaled(meshes::grid(3, 3), unit), {});
     EXPECT_EQ(result.status, Outcome::kOk) << unit;
     EXPECT_TRUE(result.certificate.injective()) << unit;
     EXPECT_NEAR(result.distortion.symmetric_dirichlet, 2, 1e-3) << unit;
     ChartOptions square;
     square.unit_square = true;
-    const Flattening fitted = run(scaled(meshes::grid(3, 3), unit), square);
+    const Flattening fitted = judged(scaled(meshes::grid(3, 3), unit), square);
     EXPECT_TRUE(fitted.certificate.injective()) << unit;
     for (const Vec2& w : fitted.uvs) {
       EXPECT_TRUE(w.minCoeff() >= 0 && w.maxCoeff() <= 1) << unit;
@@ -106,10 +107,10 @@ TEST(HardDisks, AreFlattenedInAnyUnitThatNumbersHold) {
 
 TEST(HardDisks, AreSaidToBeOutOfTheRangeOfSinglePrecision) {
   for (const double unit : {1e-310, 1e-60, 1e60, 1e300}) {
-    const Flattening single = run(scaled(meshes::grid(3, 3), unit), coarse(0, true));
+    const Flattening single = judged(scaled(meshes::grid(3, 3), unit), coarse(0, true));
     EXPECT_EQ(single.status, Outcome::kNotInjectiveFloat32) << unit;
     EXPECT_EQ(single.restarts, 0) << unit << ": no other map would fit either";
-    const Flattening both = run(scaled(meshes::grid(3, 3), unit), {});
+    const Flattening both = judged(scaled(meshes::grid(3, 3), unit), {});
     EXPECT_TRUE(both.certificate.injective()) << unit;
     EXPECT_FALSE(both.single_certificate.injective()) << unit;
   }
@@ -122,7 +123,7 @@ TEST(HardDisks, AreSaidToUnfoldBeyondTheRangeOfNumbers) {
     const auto column = static_cast<int>(std::lround(40 * p.x()));
     p = {0x1p1023 * p.x(), 0x1p1023 * p.y(), column % 2 == 0 ? 0x1.8p1023 : 0};
   }
-  const Flattening result = run(mesh, {});
+  const Flattening result = judged(mesh, {});
   EXPECT_EQ(result.status, Outcome::kNotInjective);
 }
 
@@ -134,14 +135,14 @@ TEST(HardDisks, AreFlattenedConformallyWhereTheyAreAlmostALine) {
   mesh.positions[1] = {2e83, 3e247, 0};
   mesh.positions[2] = {1e251, 0, 0};
   mesh.positions[3] = {7e277, 0, 0};
-  const Flattening result = run(mesh, method(Method::kBff));
+  const Flattening result = judged(mesh, method(Method::kBff));
   EXPECT_GE(result.status, Outcome::kOk);
   EXPECT_EQ(result.restarts, 0);
 }
 
 TEST(HardDisks, WithoutInnerVerticesHaveAReducedMapOfSparseSteps) {
   // With more bridges than dense steps can serve.
-  const Flattening strip = run(meshes::strip(1500), method(Method::kGif));
+  const Flattening strip = judged(meshes::strip(1500), method(Method::kGif));
   EXPECT_EQ(strip.status, Outcome::kOk);
   EXPECT_NEAR(strip.distortion.symmetric_dirichlet, 2, 0.01);
 }
@@ -192,12 +193,12 @@ TEST(HardDisks, OfTheSharedDataEndWithAMap) {
       {"gif_thin_strip_slow/in.obj", method(Method::kGif)},
   };
   for (const auto& [name, options] : all) {
-    const Flattening result = run(shared_data::read_obj(folder / name), options);
+    const Flattening result = judged(shared_data::read_obj(folder / name), options);
     EXPECT_TRUE(result.certificate.injective()) << name;
     EXPECT_TRUE(std::isfinite(result.distortion.symmetric_dirichlet)) << name;
   }
   const auto bff =
-      run(shared_data::read_obj(folder / "bff_exit4" / "in.obj"), method(Method::kBff));
+      judged(shared_data::read_obj(folder / "bff_exit4" / "in.obj"), method(Method::kBff));
   EXPECT_TRUE(std::isfinite(bff.distortion.symmetric_dirichlet));
 }
 

@@ -30,6 +30,9 @@ NAMES = re.compile(
     r"[A-Za-z][^\n(=;{\[]*?(?<!:)\b(\w+)\s*[(=;{\[]",
     re.M,
 )
+# What is brought in from another namespace of the project, beside which another of that name is an
+# overload.
+IMPORTS = re.compile(r"^using (?:\w+::)+(\w+);", re.M)
 # Of which one line may have several.
 CONSTANTS = re.compile(r"^const(?:expr)? [^;{]*;", re.M)
 
@@ -62,7 +65,7 @@ def groups_of(sources: dict[str, list[str]]) -> list[list[str]]:
 
     Files of a group have the same arguments; the language of C has no namespaces, and no groups.
     """
-    groups: list[tuple[object, set[str], set[str], list[str]]] = []
+    groups: list[tuple[object, set[str], set[str], set[str], set[str], list[str]]] = []
     declared: dict[Path, set[str]] = {}
     for name, words in sources.items():
         path = Path(name)
@@ -72,19 +75,24 @@ def groups_of(sources: dict[str, list[str]]) -> list[list[str]]:
             if header not in declared:
                 declared[header] = names_of(header.read_text())
             shared |= declared[header]
-        own = names_of(path.read_text()) - shared
-        for other, taken, meant, members in groups:
+        text = path.read_text()
+        own, again = names_of(text) - shared, names_of(text) & shared
+        imported = set(IMPORTS.findall(text)) - names_of(text)
+        for other, taken, meant, repeated, brought, members in groups:
             if (
                 other == kind
                 and len(members) < MOST
                 and not (taken & (own | shared) or meant & own)
+                and not (brought & again or imported & repeated)
             ):
                 break
         else:
-            taken, meant, members = set(), set(), []
-            groups.append((kind, taken, meant, members))
+            taken, meant, repeated, brought, members = set(), set(), set(), set(), []
+            groups.append((kind, taken, meant, repeated, brought, members))
         taken |= own
         meant |= shared
+        repeated |= again
+        brought |= imported
         members.append(name)
     return [members for *_, members in groups]
 
