@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +42,14 @@ def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
     lines += ["f {} {} {}".format(*(np.asarray(face) + 1)) for face in faces]
     path.write_text("\n".join(lines) + "\n")
     return path
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c_is_not_ignored() -> Iterator[None]:
+    """Have Ctrl-C raise KeyboardInterrupt, though a shell has started this job with it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture
