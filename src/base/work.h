@@ -5,9 +5,10 @@
 #include <functional>
 #include <memory>
 
+#include "base/loop_trace.h"
+
 namespace beltrami {
 
-class LoopTrace;
 class Pool;
 
 /// Called on the thread that runs the work; `fraction` in [0, 1] never decreases. Returns true to
