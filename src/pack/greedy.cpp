@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/interrupt.h"
 
@@ -41,16 +42,23 @@ struct Candidate {
 /// The best place of one mask by its upper side; rows that cannot be better are not looked at.
 void look_lowest(const Page& page, const Mask& mask, int from, Spot spot, std::int64_t& steps,
                  Candidate& best) {
-  const int last = page.height() - mask.height;
-  for (int y = from; y <= last && y + mask.height <= best.cost; ++y) {
-    y = page.skip_full_rows(mask, y, last, page.width() - mask.width, steps);
-    if (y > last || y + mask.height > best.cost) return;
-    const int x = page.first_free(mask, y, page.width() - mask.width, steps);
-    if (x < 0) continue;
-    const int cost = y + mask.height, second = x + mask.width;
+  const int last = std::min(page.height(), best.cost) - mask.height;
+  const int furthest = page.width() - mask.width;
+  Page::Places places;
+  for (int y = from; y <= last;) {
+    y = page.skip_full_rows(mask, y, last, furthest, steps);
+    if (y > last) return;
+    const int rows = Page::rows_together(mask, y, last);
+    if (!page.first_free(mask, y, rows, furthest, places, steps)) {
+      y += rows;
+      continue;
+    }
+    int k = 0;
+    while (places[k] < 0) ++k;
+    const int cost = y + k + mask.height, second = places[k] + mask.width;
     if (cost < best.cost || second < best.second) {
-      spot.x = x;
-      spot.y = y;
+      spot.x = places[k];
+      spot.y = y + k;
       best = {cost, second, spot};
     }
     return;
@@ -60,21 +68,27 @@ void look_lowest(const Page& page, const Mask& mask, int from, Spot spot, std::i
 /// Likewise by the greater of its upper and its right side.
 void look_corner(const Page& page, const Mask& mask, int from, Spot spot, std::int64_t& steps,
                  Candidate& best) {
-  const int last = page.height() - mask.height;
-  for (int y = from; y <= last && y + mask.height <= best.cost; ++y) {
+  Page::Places places;
+  for (int y = from;;) {
+    const int last = std::min(page.height(), best.cost) - mask.height;
     const int furthest = std::min(page.width(), best.cost) - mask.width;
-    if (furthest < 0) return;
+    if (y > last || furthest < 0) return;
     y = page.skip_full_rows(mask, y, last, furthest, steps);
-    if (y > last || y + mask.height > best.cost) return;
-    const int x = page.first_free(mask, y, furthest, steps);
-    if (x < 0) continue;
-    const int up = y + mask.height, right = x + mask.width;
-    const int cost = std::max(up, right), second = std::min(up, right);
-    if (cost < best.cost || second < best.second) {
-      spot.x = x;
-      spot.y = y;
-      best = {cost, second, spot};
+    if (y > last) return;
+    const int rows = Page::rows_together(mask, y, last);
+    if (page.first_free(mask, y, rows, furthest, places, steps)) {
+      for (int k = 0; k < rows; ++k) {
+        const int up = y + k + mask.height, right = places[k] + mask.width;
+        const int cost = std::max(up, right), second = std::min(up, right);
+        if (places[k] < 0 || cost > best.cost) continue;
+        if (cost < best.cost || second < best.second) {
+          spot.x = places[k];
+          spot.y = y + k;
+          best = {cost, second, spot};
+        }
+      }
     }
+    y += rows;
   }
 }
 
@@ -113,15 +127,47 @@ std::vector<Needs> later_needs(const std::vector<std::vector<Mask>>& masks,
   return later;
 }
 
+/// The pages of a layout.
+class Pages {
+ public:
+  Pages(std::vector<Page> given, const Page& empty, std::vector<Page>& spare)
+      : empty_(empty), spare_(spare), given_(given.size()), pages_(std::move(given)) {}
+  Pages(const Pages&) = delete;
+  Pages& operator=(const Pages&) = delete;
+  ~Pages() {
+    for (; pages_.size() > given_; pages_.pop_back()) spare_.push_back(std::move(pages_.back()));
+  }
+
+  Page& operator[](Index p) { return pages_[p]; }
+  Index size() const { return size_of(pages_); }
+  void add(const Needs& needs) {
+    if (spare_.empty()) {
+      pages_.emplace_back(empty_, needs);
+      return;
+    }
+    pages_.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+    pages_.back().assign(empty_, needs);
+  }
+
+ private:
+  const Page& empty_;
+  std::vector<Page>& spare_;
+  std::size_t given_;
+  std::vector<Page> pages_;
+};
+
 }  // namespace
 
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
-                      std::vector<Page> pages, const Page& empty, int max_pages, int limit) {
+                      std::vector<Page> given, const Page& empty, int max_pages,
+                      std::vector<Page>& spare, int limit) {
   Layout layout;
+  Pages pages(std::move(given), empty, spare);
   layout.steps = empty.height() * kStepsPerRow;
   layout.spots.resize(masks.size());
   const bool many = plan.order.size() >= kManyCharts;
-  std::vector<Floor> floors(pages.size());
+  std::vector<Floor> floors(static_cast<std::size_t>(pages.size()));
   double size = 0;  // of the charts that the floors are about
   const std::vector<Needs> later = later_needs(masks, plan.order);
   for (std::size_t i = 0; i < plan.order.size(); ++i) {
@@ -138,8 +184,8 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
       for (Floor& floor : floors) floor.reset();
     }
     for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
-      if (p == size_of(pages)) {
-        pages.emplace_back(empty, later[i]);
+      if (p == pages.size()) {
+        pages.add(later[i]);
         floors.emplace_back();
       }
       const int forced = plan.turns.empty() ? kNone : plan.turns[chart];

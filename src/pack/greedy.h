@@ -43,9 +43,10 @@ inline constexpr int kNoLimit = std::numeric_limits<int>::max() - 1;
 
 /// Places the charts of a plan in its order, each on the first of the pages that has room for it:
 /// those given, which may have taken cells, and up to `max_pages` copies of `empty`. `masks` are
-/// per chart, one for each turn; a chart without any gets page 0.
+/// per chart, one for each turn; a chart without any gets page 0. Pages in `spare` lend their
+/// memory and get it back.
 Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& plan, Rule rule,
                       std::vector<Page> pages, const Page& empty, int max_pages,
-                      int limit = kNoLimit);
+                      std::vector<Page>& spare, int limit = kNoLimit);
 
 }  // namespace beltrami

@@ -27,7 +27,7 @@ class Bits {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Sets the cells first .. last of a row, as far as there are such.
+  /// Sets the cells of a row from that of x = first to that of x = last, as far as there are such.
   void set(int row, double first, double last) {
     if (row < 0 || row >= height_ || last < 0 || first >= width_ || last < first) return;
     const int begin = static_cast<int>(std::max(first, 0.0));
@@ -62,6 +62,12 @@ class Bits {
   int width_, height_, words_;
   std::vector<Word> bits_;
 };
+
+/// The least whole number that is not below a number of cells.
+int ceiling(double x) {
+  const int towards_zero = static_cast<int>(x);
+  return towards_zero + (x > towards_zero ? 1 : 0);
+}
 
 /// The x that a convex set covers within a band of y.
 struct Extent {
@@ -101,8 +107,9 @@ void draw_edge(const Vec2& p, const Vec2& q, double radius, Bits& bits) {
   const Vec2 side =
       length > 0 ? Vec2(-along.y() * (radius / length), along.x() * (radius / length)) : Vec2(0, 0);
   const double lowest = std::min(p.y(), q.y()) - radius, highest = std::max(p.y(), q.y()) + radius;
-  const int first = static_cast<int>(std::max(0.0, std::floor(lowest)));
-  const int last = static_cast<int>(std::min<double>(bits.height() - 1, std::floor(highest)));
+  if (highest < 0) return;
+  const int first = static_cast<int>(std::max(0.0, lowest));
+  const int last = static_cast<int>(std::min<double>(bits.height() - 1, highest));
   for (int row = first; row <= last; ++row) {
     Extent extent;
     const double bottom = row, top = row + 1.0;
@@ -110,7 +117,7 @@ void draw_edge(const Vec2& p, const Vec2& q, double radius, Bits& bits) {
     add_disk(q, radius, bottom, top, extent);
     add_segment(p + side, q + side, bottom, top, extent);
     add_segment(p - side, q - side, bottom, top, extent);
-    bits.set(row, std::floor(extent.low), std::floor(extent.high));
+    bits.set(row, extent.low, extent.high);
   }
 }
 
@@ -118,29 +125,26 @@ void draw_edge(const Vec2& p, const Vec2& q, double radius, Bits& bits) {
 void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2>>& edges,
           Bits& bits) {
   struct Crossing {
-    int row;
     double x;
     int turn;
   };
-  std::vector<Crossing> found;
-  std::vector<std::size_t> start(static_cast<std::size_t>(bits.height()) + 1, 0);
-  for (const auto& [from, to] : edges) {
-    const Vec2 &p = points[from], &q = points[to];
-    const double low = std::min(p.y(), q.y()), high = std::max(p.y(), q.y());
-    // Rows whose centre is in [low, high).
-    const double first = std::max(0.0, std::ceil(low - 0.5));
-    const double last = std::min<double>(bits.height(), std::ceil(high - 0.5));
-    for (double row = first; row < last; ++row) {
-      const double share = (row + 0.5 - p.y()) / (q.y() - p.y());
-      found.push_back(
-          {static_cast<int>(row), p.x() + share * (q.x() - p.x()), q.y() > p.y() ? -1 : 1});
-      ++start[static_cast<std::size_t>(row) + 1];
+  std::vector<std::size_t> start(static_cast<std::size_t>(bits.height()) + 2, 0);
+  const auto for_each_row = [&](const auto& visit) {
+    for (const auto& [from, to] : edges) {
+      const Vec2 &p = points[from], &q = points[to];
+      // Rows whose centre is in [low, high).
+      const int first = std::max(0, ceiling(std::min(p.y(), q.y()) - 0.5));
+      const int last = std::min(bits.height(), ceiling(std::max(p.y(), q.y()) - 0.5));
+      for (int row = first; row < last; ++row) visit(row, p, q);
     }
-  }
-  for (std::size_t row = 1; row < start.size(); ++row) start[row] += start[row - 1];
-  std::vector<Crossing> crossings(found.size());
-  std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  for (const Crossing& crossing : found) crossings[next[crossing.row]++] = crossing;
+  };
+  for_each_row([&](int row, const Vec2&, const Vec2&) { ++start[row + 2]; });
+  for (std::size_t row = 2; row < start.size(); ++row) start[row] += start[row - 1];
+  std::vector<Crossing> crossings(start.back());
+  for_each_row([&](int row, const Vec2& p, const Vec2& q) {
+    const double share = (row + 0.5 - p.y()) / (q.y() - p.y());
+    crossings[start[row + 1]++] = {p.x() + share * (q.x() - p.x()), q.y() > p.y() ? -1 : 1};
+  });
   for (int row = 0; row < bits.height(); ++row) {
     Crossing* const of_row = crossings.data() + start[row];
     const std::size_t count = start[row + 1] - start[row];
@@ -150,13 +154,28 @@ void fill(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2
     for (std::size_t i = 0; i + 1 < count; ++i) {
       winding += of_row[i].turn;
       if (winding == 0) continue;
-      bits.set(row, std::ceil(of_row[i].x - 0.5), std::floor(of_row[i + 1].x - 0.5));
+      bits.set(row, ceiling(of_row[i].x - 0.5), of_row[i + 1].x - 0.5);
     }
   }
 }
 
-/// The longest run first; then rows far from those before them, where the next obstacle may be: in
-/// the sequence of van der Corput, by their bits reversed. Longer runs of a row come first.
+/// Visits the numbers below `count` in the sequence of van der Corput, by their bits reversed.
+template <class Visit>
+void for_each_spread(int count, const Visit& visit) {
+  unsigned top = 1;
+  while (top < static_cast<unsigned>(count)) top *= 2;
+  unsigned reversed = 0;
+  for (unsigned i = 0; i < top; ++i) {
+    if (reversed < static_cast<unsigned>(count)) visit(static_cast<int>(reversed));
+    // One is added to the number that is read from right to left.
+    unsigned bit = top / 2;
+    for (; (reversed & bit) != 0; bit /= 2) reversed ^= bit;
+    reversed |= bit;
+  }
+}
+
+/// The longest run first; then rows far from those before them, where the next obstacle may be.
+/// Longer runs of a row come first.
 void find_probes(Mask& mask) {
   const auto length = [&](int r) { return mask.runs[r].end - mask.runs[r].begin; };
   const int count = static_cast<int>(mask.runs.size());
@@ -177,11 +196,11 @@ void find_probes(Mask& mask) {
   add(longest);
   mask.needs.run_level = mask.probes.front().level;
   std::vector<int> of_row;
-  const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(mask.height - 1)));
-  for (int i = 0; i < 1 << bits; ++i) {
-    int row = 0;
-    for (int bit = 0; bit < bits; ++bit) row |= (i >> bit & 1) << (bits - 1 - bit);
-    if (row >= mask.height) continue;
+  for_each_spread(mask.height, [&](int row) {
+    if (start[row + 1] - start[row] == 1) {
+      if (start[row] != longest) add(start[row]);
+      return;
+    }
     of_row.clear();
     for (int r = start[row]; r < start[row + 1]; ++r) {
       if (r != longest) of_row.push_back(r);
@@ -189,7 +208,7 @@ void find_probes(Mask& mask) {
     std::sort(of_row.begin(), of_row.end(),
               [&](int a, int b) { return length(a) != length(b) ? length(a) > length(b) : a < b; });
     for (const int r : of_row) add(r);
-  }
+  });
 }
 
 constexpr int kSquareSamples = 48;  // per side of a mask, in the search for its largest square
@@ -360,6 +379,24 @@ Mask quarter_turned(const Mask& mask) {
   for (const Square& square : mask.squares) {
     turned.squares.push_back(
         {mask.height - square.y - (1 << square.level), square.x, square.level});
+  }
+  return turned;
+}
+
+Mask half_turned(const Mask& mask) {
+  Mask turned = mask;
+  turned.origin = Vec2(mask.width, mask.height) - mask.origin;
+  std::reverse(turned.runs.begin(), turned.runs.end());
+  for (Run& run : turned.runs) {
+    run = {mask.height - 1 - run.row, mask.width - run.end, mask.width - run.begin};
+  }
+  for (Probe& probe : turned.probes) {
+    const int beyond = mask.width - (1 << probe.level);
+    probe = {mask.height - 1 - probe.row, beyond - probe.right, beyond - probe.left, probe.level};
+  }
+  for (Square& square : turned.squares) {
+    const int side = 1 << square.level;
+    square = {mask.width - square.x - side, mask.height - square.y - side, square.level};
   }
   return turned;
 }

@@ -51,6 +51,9 @@ Mask mask_of(const Outline& outline, const Vec2& turn, double density, double ra
 /// side on the right, and by less than a cell not its lower one.
 Mask quarter_turned(const Mask& mask);
 
+/// Likewise by 180 degrees.
+Mask half_turned(const Mask& mask);
+
 /// Likewise, with the chart's origin at `origin` (cells); of cells [0, cells)^2 alone. The mask's
 /// box is these, and its runs are where they are.
 Mask mask_at(const Outline& outline, const Vec2& turn, double density, double radius,

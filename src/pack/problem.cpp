@@ -20,18 +20,18 @@ constexpr double kRoundingOfPage = 0x1p-22;
 /// Cells per side of a page: with more of them masks are tighter and all is slower. With few charts
 /// there is time for more orders on fewer cells; of many, thin or tiny ones need more, as half a
 /// cell is much to them.
-constexpr int kCellsOfFew = 512, kCells = 1024, kMostCells = 2048;
+constexpr int kCellsOfFew = 512, kCells = 1024, kMostCells = 1536;
 constexpr Index kFew = 20;
 
 /// The share by which charts with their margins are to take less room on the finer grid.
-constexpr double kWorthFiner = 0.05;
+constexpr double kWorthFiner = 0.033;
 
 /// Up to so many charts each turn counts.
 constexpr Index kFewForTurns = 6;
 constexpr int kFinerTurns = 4;
 
 /// From so many charts on quarter turns are enough: there is always one that fits well.
-constexpr Index kManyForTurns = 600;
+constexpr Index kManyForTurns = 500;
 
 /// Masks are drawn up to so many times the side of a page.
 constexpr int kMostOfPage = 2;
@@ -94,6 +94,25 @@ Problem Problem::on_finest_grid() const {
   return finer;
 }
 
+Problem Problem::on_coarse_grid() const {
+  Problem coarse = *this;  // what is thinned for finer cells serves
+  coarse.set_cells(std::min(cells_, kCellsOfFew));
+  return coarse;
+}
+
+double Problem::longest_side() const {
+  double longest = 0;
+  for (Index c = 0; c < size(); ++c) {
+    const Vec2 turn = turn_to_least_box(outlines_[c].hull);
+    Eigen::AlignedBox1d side;
+    for (const Vec2& p : outlines_[c].hull) {
+      side.extend(Eigen::Matrix<double, 1, 1>(turn.x() * p.x() - turn.y() * p.y()));
+    }
+    if (!side.isEmpty()) longest = std::max(longest, chart(c).scale * side.sizes().x());
+  }
+  return longest;
+}
+
 void Problem::set_cells(int cells) {
   cells_ = cells;
   cell_ = static_cast<double>(options_.resolution) / cells;
@@ -108,36 +127,57 @@ Problem::Sums Problem::sums() const {
   return sums;
 }
 
+/// Solves area d^2 + length r d = room for d, with r half the margin and half a cell.
+double Problem::density_in(const Sums& all, double room) const {
+  const double half = all.length * half_margin() / 2;
+  if (!(all.area > 0)) return room / (2 * half);
+  return (std::sqrt(half * half + all.area * room) - half) / all.area;
+}
+
+double Problem::half_margin() const {
+  return radius() + cell_ / 2;
+}
+
+/// What the margins of points take, in square texels.
+double Problem::room_of_points() const {
+  return size() * std::numbers::pi * half_margin() * half_margin();
+}
+
 double Problem::density_for(double share) const {
   const Sums all = sums();
-  const double half_margin = radius() + cell_ / 2;
   const double side = options_.resolution;
   const double room = share * options_.max_pages * side * side;
-  // area d^2 + length r d + n pi r^2 = room, in texels, with r about half the margin and half a
-  // cell.
-  const double rest =
-      std::max(0.02 * room, room - size() * std::numbers::pi * half_margin * half_margin);
-  if (all.area > 0) {
-    const double half = all.length * half_margin / 2;
-    return (std::sqrt(half * half + all.area * rest) - half) / all.area;
-  }
-  return side / all.length;
+  if (!(all.area > 0)) return side / all.length;
+  return density_in(all, std::max(0.02 * room, room - room_of_points()));
+}
+
+double Problem::share_at(double density) const {
+  const double side = options_.resolution;
+  return (room_beside_points(sums(), density) + room_of_points()) / (side * side);
+}
+
+double Problem::density_by(double density, double factor) const {
+  const Sums all = sums();
+  const double room = room_beside_points(all, density), points = room_of_points();
+  return density_in(all, std::max(0.5 * room, factor * (room + points) - points));
+}
+
+double Problem::room_beside_points(const Sums& all, double density) const {
+  return all.area * density * density + all.length * half_margin() * density;
 }
 
 /// Whether with so many cells to a page the charts take that much less room.
-bool Problem::gains_from(int cells) const {
+bool Problem::gains_from(int cells) {
   constexpr double kFull = 0.85;  // of a page
-  const Sums all = sums();
-  if (!(all.length > 0)) return false;
+  if (!(sums().length > 0)) return false;
   const double density =
       options_.texels_per_unit > 0 ? options_.texels_per_unit : density_for(kFull);
-  const auto room = [&](double cell) {
-    const double half_margin = radius() + cell / 2;
-    return all.area * density * density + all.length * half_margin * density +
-           size() * std::numbers::pi * half_margin * half_margin;
-  };
-  const double finer = static_cast<double>(options_.resolution) / cells;
-  return room(cell_) > (1 + kWorthFiner) * room(finer);
+  const int given = cells_;
+  const double share = share_at(density);
+  set_cells(cells);
+  const bool gains = share > (1 + kWorthFiner) * share_at(density);
+  set_cells(given);
+  return gains;
 }
 
 double Problem::radius() const {
@@ -158,20 +198,25 @@ Vec2 Problem::turn(Index c, int k) const {
   return turn / portable::hypot(turn.x(), turn.y());
 }
 
-Masks Problem::masks(double texels_per_unit) const {
+Masks Problem::masks(double texels_per_unit, double spare) const {
   Masks masks(charts_.size());
   parallel_for(work_, size(), 4, [&](std::int64_t begin, std::int64_t end) {
     for (auto c = static_cast<Index>(begin); c < end; ++c) {
       if (charts_[c].kept || outlines_[c].edges.empty()) continue;
       const double density = texels_per_unit * charts_[c].scale / cell_;
       const int quarter = turns_ % 4 == 0 ? turns_ / 4 : turns_;
+      masks[c].reserve(turns_);
       for (int k = 0; k < turns_; ++k) {
+        if (k >= 2 * quarter) {
+          masks[c].push_back(half_turned(masks[c][k - 2 * quarter]));
+          continue;
+        }
         if (k >= quarter) {
           masks[c].push_back(quarter_turned(masks[c][k - quarter]));
           continue;
         }
-        masks[c].push_back(mask_of(thinned_[c], turn(c, k), density, radius() / cell_ + kThin,
-                                   kMostOfPage * cells_));
+        masks[c].push_back(mask_of(thinned_[c], turn(c, k), density,
+                                   (1 + spare) * radius() / cell_ + kThin, kMostOfPage * cells_));
       }
     }
   });

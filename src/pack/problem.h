@@ -30,6 +30,8 @@ class Problem {
   /// Areas and lengths at a density of one.
   double area(Index c) const { return chart(c).scale * chart(c).scale * outlines_[c].area; }
   double length(Index c) const { return chart(c).scale * outlines_[c].length; }
+  /// The longer side of the least box of a chart, at a density of one: the greatest of all.
+  double longest_side() const;
 
   /// Cells per side of a page, and texels per side of a cell.
   int cells() const { return cells_; }
@@ -44,15 +46,22 @@ class Problem {
   /// Precondition: one has a length.
   double density_for(double share) const;
 
-  /// The same charts on a grid of more cells to a page, where there is one.
+  /// What the charts with their margins take at a density, as a share of a page.
+  double share_at(double density) const;
+  /// The density at which they take `factor` times what they do at a density; no less than half of
+  /// what is beyond the margins of points. Precondition: one has a length.
+  double density_by(double density, double factor) const;
+
+  /// The same charts on a grid of other cells to a page, where that may be.
   bool can_be_finer() const;
   Problem on_finest_grid() const;
+  Problem on_coarse_grid() const;
 
   int turns() const { return turns_; }
   Vec2 turn(Index c, int k) const;
 
-  /// Of the charts that are not kept.
-  Masks masks(double texels_per_unit) const;
+  /// Of the charts that are not kept, with half the margin and `spare` of it more.
+  Masks masks(double texels_per_unit, double spare = 0) const;
   /// What these took, in words of bits that were looked at.
   static std::int64_t steps_of(const Masks& masks);
   /// Those charts, large ones first.
@@ -68,16 +77,20 @@ class Problem {
 
  private:
   /// Charts up to which orders are searched for.
-  static constexpr Index kMostToOrder = 600;
+  static constexpr Index kMostToOrder = 500;
 
   /// Of all charts at a density of one.
   struct Sums {
     double area = 0, length = 0;
   };
   Sums sums() const;
+  double half_margin() const;
+  double room_of_points() const;
+  double room_beside_points(const Sums& all, double density) const;
+  double density_in(const Sums& all, double room) const;
   void set_cells(int cells);
   void thin_outlines();
-  bool gains_from(int cells) const;
+  bool gains_from(int cells);
 
   std::span<const PackChart> charts_;
   const PackOptions& options_;

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/types.h"
 #include "pack/greedy.h"
 #include "pack/grow.h"
+#include "pack/many.h"
 #include "pack/mask.h"
 #include "pack/page.h"
 
@@ -22,13 +25,6 @@ constexpr double kSteps = 1.6e8;
 
 /// Room beyond the page in which layouts are made that then are brought to its size.
 constexpr double kStrip = 1.4;
-
-/// Densities that are tried, each lower than the one before, until margins are all that counts.
-constexpr int kMostStepsDown = 60;
-
-/// Many charts that with their margins fill less of a page than this are packed on the finest grid:
-/// a few long ones among them have not found the gaps that there are.
-constexpr double kPoorShare = 0.75;
 
 /// Disks of half the margin fill no more of a plane than this.
 constexpr double kDensestDisks = 0.9069;
@@ -64,12 +60,11 @@ class OnePage {
       : problem_(problem),
         cells_(problem.cells()),
         strip_(cells_, static_cast<int>(kStrip * cells_)),
-        square_(static_cast<int>(kStrip * cells_), static_cast<int>(kStrip * cells_)),
         first_{problem.order(), std::vector<int>(problem.size(), kNone)} {}
 
   Packed run() {
     start();
-    if (problem_.few_to_order()) improve();
+    improve();
     return std::move(best_);
   }
 
@@ -83,8 +78,12 @@ class OnePage {
 
   /// A plan that takes more than `limit` cells fails: the sooner, the less it costs.
   Layout lay(const Plan& plan, Rule rule, int limit = kNoLimit) {
-    const Page& page = rule == Rule::kLowest ? strip_ : square_;
-    Layout layout = place_in_order(masks_, plan, rule, {}, page, 1, limit);
+    if (rule == Rule::kCorner && !square_) {
+      square_.emplace(strip_.height(), strip_.height());
+    }
+    const bool lowest = rule == Rule::kLowest;
+    Layout layout = place_in_order(masks_, plan, rule, {}, lowest ? strip_ : *square_, 1,
+                                   lowest ? spare_strip_ : spare_square_, limit);
     steps_ += layout.steps;
     return layout;
   }
@@ -122,7 +121,7 @@ class OnePage {
     constexpr double kEnough = 0.985;  // of the side
     constexpr int kMostTries = 12;
     double low = 0, high = 0;
-    set_density(problem_.density_for(problem_.few_to_order() ? kFirstShare : kFirstShareOfMany));
+    set_density(problem_.density_for(kFirstShare));
     for (int tries = 0;; ++tries) {
       const Layout layout = lay(first_, Rule::kLowest);
       const bool whole = layout.failed == kNone;
@@ -202,13 +201,15 @@ class OnePage {
   }
 
   static constexpr std::int64_t kPlansOfFew = 100;
-  /// What charts with their margins mostly fill; of many it is the more, and each layout counts.
-  static constexpr double kFirstShare = 0.75, kFirstShareOfMany = 0.84;
+  /// What charts with their margins mostly fill.
+  static constexpr double kFirstShare = 0.75;
   static constexpr double kStepDown = 0.8;
 
   const Problem& problem_;
   int cells_;
-  Page strip_, square_;
+  Page strip_;
+  std::optional<Page> square_;
+  std::vector<Page> spare_strip_, spare_square_;
   Plan first_;
   double density_ = 0;
   Masks masks_;
@@ -221,12 +222,13 @@ Packed pack_on_pages(const Problem& problem) {
   constexpr double kEnough = 1.005;
   const Page empty(problem.cells(), problem.cells());
   const Plan plan{problem.order(), {}};
+  std::vector<Page> spare;
   double density = problem.density_for(0.75), low = 0, high = 0;
   Packed best;
   for (int step = 0; step < kMostStepsDown; ++step) {
     const Masks masks = problem.masks(density);
     const Layout layout =
-        place_in_order(masks, plan, Rule::kLowest, {}, empty, problem.options().max_pages);
+        place_in_order(masks, plan, Rule::kLowest, {}, empty, problem.options().max_pages, spare);
     if (layout.failed == kNone) {
       low = density;
       best = {problem.placements(masks, layout), density};
@@ -254,23 +256,20 @@ Packed pack_at_largest(const Problem& problem) {
     Packed packed = pack_on_pages(problem);
     return problem.few_to_order() ? grow(problem, std::move(packed)) : packed;
   }
-  Packed packed = OnePage(problem).run();
-  if (!problem.few_to_order() && problem.can_be_finer() &&
-      packed.texels_per_unit < problem.density_for(kPoorShare)) {
-    const Problem finer = problem.on_finest_grid();
-    Packed again = OnePage(finer).run();
-    if (again.texels_per_unit > packed.texels_per_unit) packed = std::move(again);
-  }
-  return problem.few_to_order() ? grow(problem, std::move(packed)) : packed;
+  if (problem.few_to_order()) return grow(problem, OnePage(problem).run());
+  Packed packed = pack_many(problem);
+  if (!(packed.texels_per_unit > 0)) refuse_margins(problem);
+  return packed;
 }
 
 Packed pack_at_density(const Problem& problem, double density) {
   const Page empty(problem.cells(), problem.cells());
   const Plan plan{problem.order(), {}};
+  std::vector<Page> spare;
   Index failed = kNone;
   const auto lay = [&](const Masks& masks, Rule rule) {
     Layout layout = place_in_order(masks, plan, rule, problem.kept_pages(density), empty,
-                                   problem.options().max_pages);
+                                   problem.options().max_pages, spare);
     if (failed == kNone) failed = layout.failed;
     return layout;
   };

@@ -11,6 +11,9 @@ struct Packed {
   double texels_per_unit = 0;
 };
 
+/// Densities that are tried, each lower than the one before, until margins are all that counts.
+inline constexpr int kMostStepsDown = 60;
+
 /// The largest density that is found at which all charts fit into the pages that there may be.
 /// Throws Error INVALID_ARGUMENT where the margins alone take more than these. Precondition: no
 /// chart is kept, and one has a length.

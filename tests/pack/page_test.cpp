@@ -65,6 +65,25 @@ class Numbers {
   std::uint32_t state_ = 7;
 };
 
+/// The first place in a row of the page, which is looked at together with those after it.
+int first_free(const Page& page, const Mask& mask, int y, int to, std::int64_t& steps) {
+  const int last = page.height() - mask.height;
+  const int rows = std::min(Page::kRows, last - y + 1);
+  Page::Places places;
+  const bool found = page.first_free(mask, y, rows, to, places, steps);
+  int first = -1;
+  for (int k = rows; k-- > 0;) {
+    Page::Places alone;
+    const bool any = page.first_free(mask, y + k, 1, to, alone, steps);
+    EXPECT_EQ(any, found && places[k] >= 0);
+    first = any ? alone[0] : -1;
+    if (any) {
+      EXPECT_EQ(places[k], alone[0]);
+    }
+  }
+  return first;
+}
+
 /// Fills a page with triangles up to a size, each at the first place that cells one by one find.
 void expect_places_of_cells(Page page, Numbers& numbers, int rounds, std::uint32_t size) {
   Cells cells(page.width(), page.height());
@@ -76,7 +95,7 @@ void expect_places_of_cells(Page page, Numbers& numbers, int rounds, std::uint32
     const int last = page.height() - mask.height, to = page.width() - mask.width;
     int found = -1, row = -1;
     for (int y = 0; y <= last; ++y) {
-      const int x = page.first_free(mask, y, to, steps);
+      const int x = first_free(page, mask, y, to, steps);
       ASSERT_EQ(x, cells.first_free(mask, y));
       if (x >= 0 && found < 0) {
         found = x;
@@ -103,6 +122,7 @@ TEST(Page, FindsTheFirstPlaceThatCellsOneByOneFind) {
   for (const int width : widths) {
     SCOPED_TRACE(width);
     expect_places_of_cells(Page(width, 90), numbers, 60, 40);
+    expect_places_of_cells(Page(width, 90, false), numbers, 60, 40);
   }
   expect_places_of_cells(Page(4500, 40), numbers, 80, 900);
 }
@@ -117,11 +137,11 @@ TEST(Page, ForSmallMasksIsSmallerAndTheSame) {
   const auto expect_same = [&](const Mask& mask) {
     for (int y = 0; y + mask.height <= page.height(); ++y) {
       const int to = page.width() - mask.width;
-      EXPECT_EQ(copy.first_free(mask, y, to, steps), page.first_free(mask, y, to, steps));
+      EXPECT_EQ(first_free(copy, mask, y, to, steps), first_free(page, mask, y, to, steps));
     }
   };
   expect_same(largest);
-  const int x = page.first_free(largest, 5, page.width() - largest.width, steps);
+  const int x = first_free(page, largest, 5, page.width() - largest.width, steps);
   page.take(largest, x, 5);
   copy.take(largest, x, 5, small.needs);  // from now on for the small one alone
   expect_same(small);
@@ -167,6 +187,32 @@ TEST(Mask, HasTheCellsThatAreNearerThanTheRadius) {
     EXPECT_EQ(turned.cells, mask.cells);
     EXPECT_EQ(turned.probes.size(), turned.runs.size());
     expect_near_cells(turned, turn, radius);
+  }
+}
+
+TEST(Mask, TurnedByHalfIsTurnedTwiceByAQuarter) {
+  const Mask mask = triangle(70, 45, 1.2);
+  const Mask half = half_turned(mask), quarters = quarter_turned(quarter_turned(mask));
+  ASSERT_EQ(half.runs.size(), quarters.runs.size());
+  for (std::size_t r = 0; r < half.runs.size(); ++r) {
+    EXPECT_EQ(half.runs[r].row, quarters.runs[r].row);
+    EXPECT_EQ(half.runs[r].begin, quarters.runs[r].begin);
+    EXPECT_EQ(half.runs[r].end, quarters.runs[r].end);
+  }
+  EXPECT_LT((half.origin - quarters.origin).norm(), 1e-9);
+  // What is tested is what is taken.
+  for (const Square& square : half.squares) {
+    for (int y = square.y; y < square.y + (1 << square.level); ++y) {
+      EXPECT_TRUE(std::any_of(half.runs.begin(), half.runs.end(), [&](const beltrami::Run& run) {
+        return run.row == y && run.begin <= square.x && square.x + (1 << square.level) <= run.end;
+      }));
+    }
+  }
+  for (const Probe& probe : half.probes) {
+    EXPECT_TRUE(std::any_of(half.runs.begin(), half.runs.end(), [&](const beltrami::Run& run) {
+      return run.row == probe.row && run.begin == probe.left &&
+             run.end == probe.right + (1 << probe.level);
+    }));
   }
 }
 
