@@ -1,6 +1,7 @@
 // Data-parallel loops whose results do not depend on the number of threads.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -34,6 +35,17 @@ void parallel_assign(const Work& work, std::vector<T>& items, std::size_t count,
   items.assign(count, value);
 }
 
+/// copy = items for large arrays.
+template <class T>
+void parallel_copy(const Work& work, const std::vector<T>& items, std::vector<T>& copy) {
+  constexpr std::int64_t kBytes = std::int64_t{1} << 18;
+  constexpr std::int64_t kGrain = kBytes / static_cast<std::int64_t>(sizeof(T));
+  parallel_assign(work, copy, items.size());
+  parallel_for(work, size_of(items), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::copy(items.begin() + begin, items.begin() + end, copy.begin() + begin);
+  });
+}
+
 /// The first of the items [0, count) for which `test` holds, or `count`.
 template <class Test>
 std::int64_t parallel_find(const Work& work, std::int64_t count, std::int64_t grain,
@@ -62,8 +74,13 @@ std::vector<Index> parallel_filter(const Work& work, Index count, std::int64_t g
       if (test(i)) found.push_back(i);
     }
   });
+  std::vector<std::size_t> start(of_chunk.size() + 1, 0);
+  for (std::size_t c = 0; c < of_chunk.size(); ++c) start[c + 1] = start[c] + of_chunk[c].size();
   std::vector<Index> all;
-  for (const auto& found : of_chunk) all.insert(all.end(), found.begin(), found.end());
+  parallel_assign(work, all, start.back());
+  parallel_for(work, size_of(of_chunk), 1, [&](std::int64_t c, std::int64_t) {
+    std::copy(of_chunk[c].begin(), of_chunk[c].end(), all.begin() + start[c]);
+  });
   return all;
 }
 

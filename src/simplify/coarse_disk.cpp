@@ -1,9 +1,12 @@
 // The end of every simplifier: where the fine vertices went, and the proof of a disk.
+#include <atomic>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
@@ -13,27 +16,40 @@
 namespace beltrami {
 namespace {
 
+constexpr std::int64_t kGrain = 16384;
+
 /// From the next vertex on the way to the coarse vertex at its end.
-std::vector<Index> follow_collapses(std::vector<Index> into,
-                                    const std::vector<Index>& fine_vertex) {
-  for (Index v = 0; v < size_of(into); ++v) {
-    Index end = v;
-    while (into[end] != end) end = into[end];
-    for (Index on_the_way = v; on_the_way != end;)
-      on_the_way = std::exchange(into[on_the_way], end);
-  }
-  std::vector<Index> coarse_vertex(into.size(), kNone);
-  for (Index c = 0; c < size_of(fine_vertex); ++c) coarse_vertex[fine_vertex[c]] = c;
-  for (Index& v : into) v = coarse_vertex[v];
-  return into;
+std::vector<Index> follow_collapses(std::vector<Index> into, const std::vector<Index>& fine_vertex,
+                                    const Work& work) {
+  std::vector<Index> coarse_vertex, nearby;
+  parallel_assign(work, coarse_vertex, into.size());
+  parallel_assign(work, nearby, into.size());
+  parallel_for(work, size_of(fine_vertex), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto c = static_cast<Index>(begin); c < end; ++c) coarse_vertex[fine_vertex[c]] = c;
+  });
+  parallel_for(work, size_of(into), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    // Ways are halved as they are gone: whoever does so, they end where they did.
+    const auto next = [&](Index v) { return std::atomic_ref<Index>(into[v]); };
+    constexpr auto kRelaxed = std::memory_order_relaxed;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      Index at = v, to = next(at).load(kRelaxed);
+      while (to != at) {
+        const Index beyond = next(to).load(kRelaxed);
+        if (beyond != to) next(at).store(beyond, kRelaxed);
+        at = std::exchange(to, beyond);
+      }
+      nearby[v] = coarse_vertex[at];
+    }
+  });
+  return nearby;
 }
 
 /// With the mesh that `disk` returns, or throws Error without.
 template <class Disk>
 CoarseDisk proven(std::vector<Index> fine_vertex, std::vector<Index> collapsed_into,
-                  const Disk& disk) {
+                  const Work& work, const Disk& disk) {
   CoarseDisk coarse;
-  coarse.nearby = follow_collapses(std::move(collapsed_into), fine_vertex);
+  coarse.nearby = follow_collapses(std::move(collapsed_into), fine_vertex, work);
   coarse.fine_vertex = std::move(fine_vertex);
   try {
     coarse.mesh = disk();
@@ -62,13 +78,13 @@ CoarseDisk coarse_disk(const DiskMesh& fine, std::vector<Index> fine_vertex,
   std::vector<Vec3> positions;
   positions.reserve(fine_vertex.size());
   for (const Index v : fine_vertex) positions.push_back(fine.positions[v]);
-  return proven(std::move(fine_vertex), std::move(collapsed_into),
+  return proven(std::move(fine_vertex), std::move(collapsed_into), work,
                 [&] { return build_disk(std::move(positions), std::move(faces), work); });
 }
 
 CoarseDisk coarse_disk(Surface left, std::vector<Index> fine_vertex,
                        std::vector<Index> collapsed_into, const Work& work) {
-  return proven(std::move(fine_vertex), std::move(collapsed_into),
+  return proven(std::move(fine_vertex), std::move(collapsed_into), work,
                 [&] { return prove_disk(std::move(left), work); });
 }
 

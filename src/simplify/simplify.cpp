@@ -5,7 +5,7 @@
 // hence the costs of the candidates left stay exact, and the checks look at the faces as they are
 // by then. (Locking the whole ring needs half as many passes again and came out no better.)
 #include <algorithm>
-#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -15,6 +15,7 @@
 #include "base/types.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
+#include "simplify/blocks.h"
 #include "simplify/quadric.h"
 #include "simplify/shape.h"
 #include "simplify/simplify.h"
@@ -37,10 +38,15 @@ constexpr Index kMaxTargetValence = 64;
 /// How many targets of one vertex are tried in a pass; later ones cost too much to be wanted.
 constexpr int kMaxAttempts = 3;
 
-/// Vertices in a block. Blocks are simplified side by side; what reaches into another block comes
-/// after them. Its borders do not depend on the number of threads, so the result does not either;
-/// and they move from pass to pass, since vertices are renumbered.
-constexpr Index kBlock = 16384;
+/// Blocks are simplified side by side, then pairs of them; what reaches into a third block comes
+/// after them. There are at least so many where they have 2^kLeastShift vertices or more. Their
+/// borders do not depend on the number of threads, so the result does not either; and they move
+/// from pass to pass, since vertices are renumbered.
+constexpr Index kBlocks = 24;
+constexpr int kLeastShift = 10, kMostShift = 14;
+
+/// Collapses that are left to the target, below which all of them go in one order.
+constexpr Index kFewCollapses = 256;
 
 /// Costs that tell which candidates are the cheaper half.
 constexpr Index kSample = 20000;
@@ -95,18 +101,70 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
   return best;
 }
 
-/// In the order of the vertices.
-std::vector<Candidate> find_candidates(const ShrinkingSurface& surface, const Work& work) {
+int block_shift(Index vertices) {
+  int shift = kMostShift;
+  while (shift > kLeastShift && vertices >> shift < kBlocks) --shift;
+  return shift;
+}
+
+/// Those of a pass, block by block, in the order of the vertices.
+struct Candidates {
+  int shift;
+  std::vector<std::vector<Candidate>> of_block;
+
+  Index count() const {
+    std::size_t sum = 0;
+    for (const auto& block : of_block) sum += block.size();
+    return static_cast<Index>(sum);
+  }
+};
+
+/// Calls body(block) for each of them.
+template <class Body>
+void for_each_block(const Candidates& candidates, const Work& work, const Body& body) {
+  parallel_for(work, size_of(candidates.of_block), 1,
+               [&](std::int64_t block, std::int64_t) { body(static_cast<Index>(block)); });
+}
+
+Candidates find_candidates(const ShrinkingSurface& surface, const Work& work) {
   const Candidate no_floor{-1, kNone, kNone};
-  std::vector<Candidate> candidates;
-  parallel_assign(work, candidates, surface.site.size());
-  parallel_for(work, surface.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) {
-      candidates[v] = cheapest_collapse(surface, static_cast<Index>(v), no_floor);
+  const Index count = surface.vertex_count();
+  const int shift = block_shift(count);
+  Candidates candidates{shift, {}};
+  candidates.of_block.resize(((count - 1) >> shift) + 1);
+  for_each_block(candidates, work, [&](Index block) {
+    std::vector<Candidate> found;
+    const Index begin = block << shift, end = std::min((block + 1) << shift, count);
+    for (Index v = begin; v < end; ++v) {
+      const Candidate candidate = cheapest_collapse(surface, v, no_floor);
+      if (candidate.target != kNone) found.push_back(candidate);
     }
+    candidates.of_block[block] = std::move(found);
   });
-  std::erase_if(candidates, [](const Candidate& c) { return c.target == kNone; });
   return candidates;
+}
+
+/// Those that cost at most `max_cost` and more than `min_cost`.
+Candidates between(const Candidates& all, double min_cost, double max_cost, const Work& work) {
+  Candidates chosen{all.shift, {}};
+  chosen.of_block.resize(all.of_block.size());
+  for_each_block(all, work, [&](Index block) {
+    std::copy_if(all.of_block[block].begin(), all.of_block[block].end(),
+                 std::back_inserter(chosen.of_block[block]),
+                 [&](const Candidate& c) { return c.cost > min_cost && c.cost <= max_cost; });
+  });
+  return chosen;
+}
+
+/// The cost of every stride-th.
+std::vector<double> sampled_costs(const Candidates& candidates, Index stride) {
+  std::vector<double> costs;
+  Index skip = 0;
+  for (const auto& block : candidates.of_block) {
+    for (; skip < size_of(block); skip += stride) costs.push_back(block[skip].cost);
+    skip -= size_of(block);
+  }
+  return costs;
 }
 
 // --- Checks -------------------------------------------------------------------------------------
@@ -197,111 +255,168 @@ Index collapse(ShrinkingSurface& surface, Index v, Index target) {
   return gone;
 }
 
-/// The vertices of a block, or all.
-struct Range {
-  Index begin, end;
-
-  bool has(Index v) const { return v >= begin && v < end; }
-  /// Whether a collapse of v onto the target, both inside, looks at and changes nothing outside.
-  bool has_all_of(const ShrinkingSurface& surface, Index v, Index target) const {
-    bool inside = true;
-    surface.for_each_neighbour(v, [&](Index u) { inside &= has(u); });
-    surface.for_each_neighbour(target, [&](Index u) { inside &= has(u); });
-    return inside;
-  }
-};
-
-enum class Outcome { kCollapsed, kRefused, kReachesOut };
+/// A vertex outside that a collapse of v onto the target, both inside, looks at or changes, or
+/// kNone.
+Index vertex_outside(const ShrinkingSurface& surface, Index v, Index target,
+                     const Territory& territory) {
+  Index outside = kNone;
+  const auto look_at = [&](Index u) {
+    if (!territory.has(u)) outside = u;
+  };
+  surface.for_each_neighbour(v, look_at);
+  surface.for_each_neighbour(target, look_at);
+  return outside;
+}
 
 /// What candidates came to.
 struct Collapses {
   Index vertices = 0, faces = 0;
-  std::vector<Candidate> reaching_out;
   CollapseHistory history;  ///< where it is asked for
 };
 
-/// Tries the candidate, then the next cheapest targets of its vertex up to `max_cost`, if all that
-/// it touches is in the range.
-Outcome try_collapse(ShrinkingSurface& surface, Candidate candidate, double max_cost,
-                     const ShapeLimits& limits, const Range* range, Collapses& done) {
+/// Those left for later.
+struct Left {
+  ReachingOut<Candidate> reaching_out;
+  std::vector<Candidate> of_boundary;  ///< whose loop is everybody's
+};
+
+/// What is asked of collapses.
+struct Asked {
+  double max_cost;
+  Index target_faces;
+  const ShapeLimits& limits;
+};
+
+/// Tries the candidate, then the next cheapest targets of its vertex up to `max_cost`. Returns
+/// kNone, or where that reaches out of the territory a vertex there.
+Index try_collapse(ShrinkingSurface& surface, Candidate candidate, const Asked& asked,
+                   const Territory& territory, Collapses& done) {
   const Index v = candidate.vertex;
   // Not even a look at what another thread may be changing.
-  if (range && !range->has(candidate.target)) return Outcome::kReachesOut;
-  if (surface.locked[v] || surface.locked[candidate.target]) return Outcome::kRefused;
-  if (surface.on_boundary(v)) {
-    if (range) return Outcome::kReachesOut;  // the loop is everybody's
-    if (!surface.may_shorten(v)) return Outcome::kRefused;
-  }
+  if (!territory.has(candidate.target)) return candidate.target;
+  if (surface.locked[v] || surface.locked[candidate.target]) return kNone;
+  if (surface.on_boundary(v) && !surface.may_shorten(v)) return kNone;
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-    if (range && !range->has_all_of(surface, v, candidate.target)) return Outcome::kReachesOut;
+    const Index outside = vertex_outside(surface, v, candidate.target, territory);
+    if (outside != kNone) return outside;
     if (keeps_topology(surface, v, candidate.target) &&
-        keeps_shape(surface, v, candidate.target, limits)) {
+        keeps_shape(surface, v, candidate.target, asked.limits)) {
       if (surface.keeps_history) record(surface, v, candidate.target, done.history);
       done.faces += collapse(surface, v, candidate.target);
       ++done.vertices;
-      return Outcome::kCollapsed;
+      return kNone;
     }
     candidate = cheapest_collapse(surface, v, candidate);
-    if (candidate.target == kNone || candidate.cost > max_cost) return Outcome::kRefused;
+    if (candidate.target == kNone || candidate.cost > asked.max_cost) return kNone;
   }
-  return Outcome::kRefused;
+  return kNone;
 }
 
-/// Collapses candidates from the cheapest on. With a range, those that reach out of it are kept for
-/// later.
-Collapses collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate>& candidates,
-                            double max_cost, Index target_faces, const ShapeLimits& limits,
-                            const Range* range) {
+Index append(const Collapses& done, ShrinkingSurface& surface) {
+  surface.live_faces -= done.faces;
+  surface.history.append(done.history);
+  return done.vertices;
+}
+
+/// Collapses candidates of a part of the surface from the cheapest on.
+Left collapse_in_part(ShrinkingSurface& surface, std::vector<Candidate> candidates,
+                      const Asked& asked, const Territory& territory, Collapses& done) {
+  std::sort(candidates.begin(), candidates.end());
+  Left left;
+  for (const Candidate& candidate : candidates) {
+    if (surface.on_boundary(candidate.vertex)) {
+      left.of_boundary.push_back(candidate);
+      continue;
+    }
+    const Index outside = try_collapse(surface, candidate, asked, territory, done);
+    if (outside != kNone) left.reaching_out.add(outside >> territory.shift, candidate);
+  }
+  return left;
+}
+
+/// Collapses candidates anywhere from the cheapest on, until the target is reached.
+Collapses collapse_in_order(ShrinkingSurface& surface, std::vector<Candidate> candidates,
+                            const Asked& asked) {
   std::sort(candidates.begin(), candidates.end());
   Collapses done;
+  PollSometimes poll;
   for (const Candidate& candidate : candidates) {
-    if (!range && surface.live_faces - done.faces <= target_faces) break;
-    const Outcome outcome = try_collapse(surface, candidate, max_cost, limits, range, done);
-    if (outcome == Outcome::kReachesOut) done.reaching_out.push_back(candidate);
+    poll();
+    if (surface.live_faces - done.faces <= asked.target_faces) break;
+    try_collapse(surface, candidate, asked, Territory::all(), done);
   }
   return done;
 }
 
+void add_to(std::vector<Candidate>& all, const std::vector<Candidate>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Collapses candidates, too few to pass the target, in parts side by side. Returns how many took
+/// place; adds to `rest` those that reach out of two blocks.
+Index collapse_in_parts(ShrinkingSurface& surface, Candidates candidates, const Asked& asked,
+                        const Work& work, std::vector<Candidate>& rest) {
+  const std::size_t blocks = candidates.of_block.size();
+  std::vector<Collapses> of_block(blocks);
+  std::vector<ReachingOut<Candidate>> reaching_out(blocks);
+  std::vector<std::vector<Candidate>> of_boundary(blocks);
+  for_each_block(candidates, work, [&](Index block) {
+    Left left = collapse_in_part(surface, std::move(candidates.of_block[block]), asked,
+                                 Territory::of_block(candidates.shift, block), of_block[block]);
+    reaching_out[block] = std::move(left.reaching_out);
+    of_boundary[block] = std::move(left.of_boundary);
+  });
+  Index collapsed = 0;
+  for (const Collapses& done : of_block) collapsed += append(done, surface);
+  for (const auto& pairs : rounds_of_pairs(reaching_out)) {
+    std::vector<Collapses> of_pair(pairs.size());
+    std::vector<Left> left(pairs.size());
+    parallel_for(work, size_of(pairs), 1, [&](std::int64_t p, std::int64_t) {
+      std::vector<Candidate> both;
+      for (const auto* items : pairs[p].items) add_to(both, *items);
+      left[p] = collapse_in_part(surface, std::move(both), asked,
+                                 {candidates.shift, pairs[p].one, pairs[p].other}, of_pair[p]);
+    });
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      collapsed += append(of_pair[p], surface);
+      for (const auto& into : left[p].reaching_out.into()) add_to(rest, into.items);
+    }
+  }
+  for (const auto& boundary : of_boundary) add_to(rest, boundary);
+  return collapsed;
+}
+
 /// Collapses those candidates that cost at most `max_cost` and more than `min_cost`. Returns how
 /// many took place.
-Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& candidates,
-                       double min_cost, double max_cost, Index target_faces,
-                       const ShapeLimits& limits, const Work& work) {
-  poll_interrupt();
-  const Index count = surface.vertex_count(), blocks = (count + kBlock - 1) / kBlock;
-  std::vector<std::vector<Candidate>> of_block(blocks);
-  Index most = 0;
-  for (const Candidate& c : candidates) {
-    if (!(c.cost > min_cost) || c.cost > max_cost) continue;
-    of_block[c.vertex / kBlock].push_back(c);
-    ++most;
-  }
-  std::vector<Candidate> rest;
+Index collapse_between(ShrinkingSurface& surface, const Candidates& candidates, double min_cost,
+                       double max_cost, Index target_faces, const ShapeLimits& limits,
+                       const Work& work) {
   Index collapsed = 0;
-  // Blocks do not know when the target is reached: near it all goes in one order. A collapse takes
-  // two faces.
-  if (blocks > 1 && surface.live_faces - 2 * std::int64_t{most} > target_faces) {
-    std::vector<Collapses> done(blocks);
-    parallel_for(work, blocks, 1, [&](std::int64_t block, std::int64_t) {
-      const auto begin = static_cast<Index>(block) * kBlock;
-      const Range range{begin, std::min(begin + kBlock, count)};
-      done[block] =
-          collapse_in_order(surface, of_block[block], max_cost, target_faces, limits, &range);
-    });
-    for (const Collapses& d : done) {
-      collapsed += d.vertices;
-      surface.live_faces -= d.faces;
-      rest.insert(rest.end(), d.reaching_out.begin(), d.reaching_out.end());
-      surface.history.append(d.history);
+  double from = min_cost;
+  while (surface.live_faces > target_faces) {
+    poll_interrupt();
+    Candidates chosen = between(candidates, from, max_cost, work);
+    Asked asked{max_cost, target_faces, limits};
+    // Parts do not know when the target is reached. A collapse takes two faces.
+    const Index most = (surface.live_faces - target_faces) / 2;
+    const bool too_many = chosen.count() > most;
+    if (too_many && most > kFewCollapses) {
+      std::vector<double> costs = sampled_costs(chosen, 1);
+      std::nth_element(costs.begin(), costs.begin() + (most - 1), costs.end());
+      asked.max_cost = costs[most - 1];
+      chosen = between(chosen, from, asked.max_cost, work);
     }
-  } else {
-    for (const auto& block : of_block) rest.insert(rest.end(), block.begin(), block.end());
+    std::vector<Candidate> rest;
+    if (chosen.of_block.size() > 1 && chosen.count() <= most) {
+      collapsed += collapse_in_parts(surface, std::move(chosen), asked, work, rest);
+    } else {
+      for (const auto& block : chosen.of_block) add_to(rest, block);
+    }
+    collapsed += append(collapse_in_order(surface, std::move(rest), asked), surface);
+    if (!(asked.max_cost < max_cost)) break;
+    from = asked.max_cost;
   }
-  poll_interrupt();
-  const Collapses last = collapse_in_order(surface, rest, max_cost, target_faces, limits, nullptr);
-  surface.live_faces -= last.faces;
-  surface.history.append(last.history);
-  return collapsed + last.vertices;
+  return collapsed;
 }
 
 /// One pass over the cheaper half of the candidates, or all of them if the half barely helps.
@@ -309,14 +424,12 @@ Index collapse_between(ShrinkingSurface& surface, const std::vector<Candidate>& 
 bool run_pass(ShrinkingSurface& surface, Index target_faces, const ShapeLimits& limits,
               const Work& work) {
   begin_pass(surface, work);
-  const std::vector<Candidate> candidates = find_candidates(surface, work);
-  if (candidates.empty()) return false;
-  const Index count = size_of(candidates);
+  const Candidates candidates = find_candidates(surface, work);
+  const Index count = candidates.count();
+  if (count == 0) return false;
   const Index worthwhile = 1 + static_cast<Index>(limits.min_progress * count);
   // The middle of a sample splits large lists well enough.
-  const Index stride = 1 + count / kSample;
-  std::vector<double> costs;
-  for (Index i = 0; i < count; i += stride) costs.push_back(candidates[i].cost);
+  std::vector<double> costs = sampled_costs(candidates, 1 + count / kSample);
   const auto middle = costs.begin() + (size_of(costs) - 1) / 2;
   std::nth_element(costs.begin(), middle, costs.end());
   const auto run = [&](double min_cost, double max_cost) {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <iterator>
 
 #include "base/bucket_sort.h"
@@ -26,7 +25,7 @@ constexpr double kBoundaryWeight = 10;
 /// A face without area weighs as much as one of this width over its length.
 constexpr double kDegenerateWidth = 1e-6;
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 
 /// One boundary vertex strictly between two positions of the loop, nearest the middle by length.
 Index middle_of_loop(const Surface& mesh, const std::vector<Index>& loop, Index begin, Index end) {
@@ -194,50 +193,46 @@ ShrinkingSurface make_surface(const Surface& mesh, const VertexLoops& loops, con
 
 namespace {
 
-void drop_removed_faces(ShrinkingSurface& surface) {
-  const auto is_removed = [](const Triangle& face) { return face[0] == kNone; };
-  if (surface.keeps_history) {
-    std::size_t kept = 0;
-    for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-      if (!is_removed(surface.faces[f])) surface.fine_face[kept++] = surface.fine_face[f];
-    }
-    surface.fine_face.resize(kept);
-  }
-  std::erase_if(surface.faces, is_removed);
+/// items[i] = items[kept[i]], and no more of them.
+template <class Item>
+void keep(const std::vector<Index>& kept, std::vector<Item>& items, const Work& work) {
+  if (kept.size() == items.size()) return;
+  std::vector<Item> of_kept;
+  parallel_assign(work, of_kept, kept.size());
+  parallel_for(work, size_of(kept), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) of_kept[i] = items[kept[i]];
+  });
+  items.swap(of_kept);
 }
 
 }  // namespace
 
 void compact(ShrinkingSurface& surface, const Work& work) {
-  const std::vector<Index> kept_vertices =
+  const std::vector<Index> vertices =
       parallel_filter(work, surface.vertex_count(), kGrain,
                       [&](Index v) { return surface.role[v] != Role::kRemoved; });
-  const Index kept = size_of(kept_vertices);
-  std::vector<Index> renumbered(surface.vertex_count());
-  parallel_for(work, kept, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) renumbered[kept_vertices[v]] = static_cast<Index>(v);
+  const std::vector<Index> faces = parallel_filter(
+      work, size_of(surface.faces), kGrain, [&](Index f) { return surface.faces[f][0] != kNone; });
+  std::vector<Index> renumbered;
+  parallel_assign(work, renumbered, surface.site.size());
+  parallel_for(work, size_of(vertices), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) renumbered[vertices[v]] = v;
   });
-  const auto move_down = [&](auto& items) {
-    for (Index v = 0; v < kept; ++v) items[v] = items[kept_vertices[v]];
-    items.resize(kept);
-  };
+  keep(vertices, surface.quadric, work);
+  keep(vertices, surface.site, work);
+  keep(vertices, surface.role, work);
+  keep(vertices, surface.fine_vertex, work);
+  keep(vertices, surface.loop_next, work);
+  keep(vertices, surface.loop_previous, work);
+  keep(faces, surface.faces, work);
+  if (surface.keeps_history) keep(faces, surface.fine_face, work);
   const auto renumber = [&](Index& v) { v = v == kNone ? kNone : renumbered[v]; };
-  // Arrays that have nothing to do with each other.
-  const std::function<void()> tasks[] = {
-      [&] { drop_removed_faces(surface); },
-      [&] { move_down(surface.quadric); },
-      [&] { move_down(surface.site); },
-      [&] {
-        move_down(surface.role);
-        move_down(surface.fine_vertex);
-        for (std::vector<Index>* loop : {&surface.loop_next, &surface.loop_previous}) {
-          move_down(*loop);
-          std::for_each(loop->begin(), loop->end(), renumber);
-        }
-      },
-  };
-  parallel_for(work, std::ssize(tasks), 1, [&](std::int64_t task, std::int64_t) { tasks[task](); });
-  parallel_for(work, size_of(surface.faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(vertices), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::for_each(surface.loop_next.begin() + begin, surface.loop_next.begin() + end, renumber);
+    std::for_each(surface.loop_previous.begin() + begin, surface.loop_previous.begin() + end,
+                  renumber);
+  });
+  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : surface.faces[f]) v = renumbered[v];
     }
@@ -260,9 +255,11 @@ void begin_pass(ShrinkingSurface& surface, const Work& work) {
     }
   });
   surface.valence.resize(vertex_count);
-  for (Index v = 0; v < vertex_count; ++v) {
-    surface.valence[v] = surface.fan_start[v + 1] - surface.fan_start[v];
-  }
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      surface.valence[v] = surface.fan_start[v + 1] - surface.fan_start[v];
+    }
+  });
   surface.mark.assign(vertex_count, kNone);
   surface.locked.assign(vertex_count, false);
 }

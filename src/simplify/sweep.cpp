@@ -3,21 +3,21 @@
 // the twins of half-edges are kept up to date in place. The cost is the error of Garland & Heckbert
 // 1997 under the planes of the faces that a vertex has by then; without memory of what went before
 // (Lindstrom & Turk 1998, "Fast and Memory Efficient Polygonal Simplification"), which a few levels
-// can do without. As in the passes a collapse locks its two vertices for the rest of the sweep, and
-// blocks of vertices go side by side.
+// can do without. As in the passes a collapse locks its two vertices for the rest of the sweep;
+// blocks of vertices go side by side, then pairs of them along their borders.
 #include "simplify/sweep.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "simplify/back_ends.h"
+#include "simplify/blocks.h"
 #include "simplify/history.h"
 #include "simplify/shape.h"
 
@@ -39,27 +39,22 @@ constexpr int kMaxAttempts = 3;
 constexpr double kCheapShare = 0.65;
 constexpr Index kSample = 5000;
 
-/// Vertices in a block.
-constexpr Index kBlock = 16384;
+/// Vertices in a block: 2^kShift.
+constexpr int kShift = 14;
+constexpr Index kBlock = Index{1} << kShift;
 
 /// A sweep that takes away less than this share of the faces is the last.
 constexpr double kWorthSweep = 0.02;
 
-constexpr std::int64_t kGrain = 16384;
-
-/// The vertices of a block, or all.
-struct Range {
-  Index begin, end;
-
-  bool has(Index v) const { return v >= begin && v < end; }
-};
+constexpr std::int64_t kGrain = 16384;  // bits of on_boundary of different chunks share no word
+constexpr std::int64_t kSampleGrain = 128;
 
 using Vec3f = Eigen::Vector3f;
 
 /// What is around a vertex. Face k lies between the half-edges k and k + 1.
 struct Star {
-  int count = 0;  ///< faces
-  bool inside = true;
+  int count = 0;                           ///< faces
+  Index outside = kNone;                   ///< a neighbour out of the territory
   std::array<Index, kMostFaces> halfedge;  ///< outgoing, counter-clockwise
   std::array<Index, kMostFaces> ring;      ///< their targets
   // Measured by costs_of.
@@ -81,26 +76,12 @@ float quality(float twice_area, float squared_lengths) {
 
 struct Collapses {
   Index count = 0;
-  std::vector<Index> reaching_out;  ///< vertices
   CollapseHistory history;
 };
 
 class Sweeps {
  public:
-  Sweeps(const Surface& fine, bool keeps_history)
-      : fine_(fine),
-        keeps_history_(keeps_history),
-        faces_(fine.faces),
-        twin_(fine.twin),
-        outgoing_(fine.outgoing) {
-    into_.resize(outgoing_.size());
-    std::iota(into_.begin(), into_.end(), 0);
-    locked_.resize(outgoing_.size());
-    valence_.assign(outgoing_.size(), 0);
-    for (const Triangle& face : faces_) {
-      for (const Index v : face) ++valence_[v];
-    }
-  }
+  Sweeps(const Surface& fine, bool keeps_history, const Work& work);
 
   /// Returns how many collapses took place.
   Index sweep(const Work& work);
@@ -125,14 +106,17 @@ class Sweeps {
     } while (h != kNone && h != first);
   }
 
-  Star star_of(Index v, const Range& range) const;
+  Star star_of(Index v, const Territory& territory) const;
   std::array<float, kMostFaces> costs_of(Index v, Star& star) const;
-  float cheap_enough() const;
-  enum class Verdict { kGranted, kRefused, kReachesOut };
-  Verdict judge(Index v, const Star& star, int k, const Range& range) const;
+  float cheap_enough(const Work& work) const;
+  Index neighbour_outside(Index w, const Territory& territory) const;
+  bool is_granted(Index v, const Star& star, int k) const;
   bool keeps_shape(const Star& star, int target) const;
   void collapse(Index v, const Star& star, int k, CollapseHistory& history);
-  bool try_vertex(Index v, float max_cost, const Range& range, Collapses& done);
+  Index try_vertex(Index v, float max_cost, const Territory& territory, Collapses& done);
+  std::vector<Index> sweep_pairs(const std::vector<ReachingOut<Index>>& reaching_out,
+                                 float max_cost, const Work& work, Collapses& all);
+  void append(Collapses& done, Collapses& all);
 
   const Surface& fine_;
   const bool keeps_history_;
@@ -143,12 +127,34 @@ class Sweeps {
   CollapseHistory history_;
 };
 
-/// `inside`: whether all of it is in the range.
-Star Sweeps::star_of(Index v, const Range& range) const {
+Sweeps::Sweeps(const Surface& fine, bool keeps_history, const Work& work)
+    : fine_(fine), keeps_history_(keeps_history) {
+  const std::size_t count = fine.outgoing.size();
+  parallel_copy(work, fine.faces, faces_);
+  parallel_copy(work, fine.twin, twin_);
+  parallel_copy(work, fine.outgoing, outgoing_);
+  parallel_assign(work, into_, count);
+  parallel_assign(work, valence_, count);
+  locked_.resize(count);
+  parallel_for(work, size_of(outgoing_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    PollSometimes poll;  // a hub may have all faces
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      into_[v] = v;
+      Index faces = 0;
+      for_each_outgoing(v, [&](Index) {
+        poll();
+        ++faces;
+      });
+      valence_[v] = faces;
+    }
+  });
+}
+
+Star Sweeps::star_of(Index v, const Territory& territory) const {
   Star star;
   for_each_outgoing(v, [&](Index h) {
     const Index u = target(h);
-    star.inside = star.inside && range.has(u);
+    if (!territory.has(u)) star.outside = u;
     star.halfedge[star.count] = h;
     star.ring[star.count++] = u;
   });
@@ -187,38 +193,47 @@ std::array<float, kMostFaces> Sweeps::costs_of(Index v, Star& star) const {
   return costs;
 }
 
-float Sweeps::cheap_enough() const {
-  const Range all{0, size_of(outgoing_)};
-  std::vector<float> least;
-  for (Index v = 0; v < all.end; v += 1 + all.end / kSample) {
-    if (!may_go(v)) continue;
-    Star star = star_of(v, all);
-    const auto costs = costs_of(v, star);
-    least.push_back(*std::min_element(costs.begin(), costs.begin() + star.count));
-  }
-  if (least.empty()) return -1;
+float Sweeps::cheap_enough(const Work& work) const {
+  const Index count = size_of(outgoing_), stride = 1 + count / kSample;
+  constexpr float kNoCost = -1;
+  std::vector<float> least((count + stride - 1) / stride, kNoCost);
+  parallel_for(work, size_of(least), kSampleGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      const Index v = i * stride;
+      if (!may_go(v)) continue;
+      Star star = star_of(v, Territory::all());
+      const auto costs = costs_of(v, star);
+      least[i] = *std::min_element(costs.begin(), costs.begin() + star.count);
+    }
+  });
+  std::erase(least, kNoCost);
+  if (least.empty()) return kNoCost;
   const auto limit =
       least.begin() + static_cast<std::ptrdiff_t>(kCheapShare * (size_of(least) - 1));
   std::nth_element(least.begin(), limit, least.end());
   return *limit;
 }
 
-/// The link condition, and no vertex of too few faces.
-Sweeps::Verdict Sweeps::judge(Index v, const Star& star, int k, const Range& range) const {
-  const Index h = star.halfedge[k], w = star.ring[k];
-  int common = 0;
-  bool inside = true;
+/// A neighbour of w out of the territory, or kNone.
+Index Sweeps::neighbour_outside(Index w, const Territory& territory) const {
+  Index outside = kNone;
   for_each_outgoing(w, [&](Index g) {
     const Index u = target(g);
-    inside = inside && range.has(u);
-    common += star.has(u) ? 1 : 0;
+    if (!territory.has(u)) outside = u;
   });
-  if (!inside) return Verdict::kReachesOut;
-  if (common != 2 || valence_[v] + valence_[w] - 4 < 3) return Verdict::kRefused;
+  return outside;
+}
+
+/// The link condition, no vertex of too few faces, and the shapes.
+bool Sweeps::is_granted(Index v, const Star& star, int k) const {
+  const Index h = star.halfedge[k], w = star.ring[k];
+  int common = 0;
+  for_each_outgoing(w, [&](Index g) { common += star.has(target(g)) ? 1 : 0; });
+  if (common != 2 || valence_[v] + valence_[w] - 4 < 3) return false;
   for (const Index a : {apex(h), apex(twin_[h])}) {
-    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return Verdict::kRefused;
+    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return false;
   }
-  return keeps_shape(star, k) ? Verdict::kGranted : Verdict::kRefused;
+  return keeps_shape(star, k);
 }
 
 /// Whether the faces left keep their shapes within the first limits of the passes (shape.h).
@@ -283,11 +298,11 @@ void Sweeps::collapse(Index v, const Star& star, int k, CollapseHistory& history
   locked_[v] = locked_[w] = true;
 }
 
-/// Whether it has been dealt with: not so where it reaches out of the range.
-bool Sweeps::try_vertex(Index v, float max_cost, const Range& range, Collapses& done) {
-  Star star = star_of(v, range);
+/// Returns kNone, or where it has not been dealt with a vertex outside that it reaches.
+Index Sweeps::try_vertex(Index v, float max_cost, const Territory& territory, Collapses& done) {
+  Star star = star_of(v, territory);
   // Not even a look at what another thread may be changing.
-  if (!star.inside) return false;
+  if (star.outside != kNone) return star.outside;
   auto costs = costs_of(v, star);
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     int best = -1;
@@ -298,47 +313,81 @@ bool Sweeps::try_vertex(Index v, float max_cost, const Range& range, Collapses& 
           best < 0 || (costs[k] != costs[best] ? costs[k] < costs[best] : w < star.ring[best]);
       if (is_less) best = k;
     }
-    if (best < 0) return true;
-    const Verdict verdict = judge(v, star, best, range);
-    if (verdict == Verdict::kReachesOut) return false;
-    if (verdict == Verdict::kGranted) {
+    if (best < 0) return kNone;
+    const Index outside = neighbour_outside(star.ring[best], territory);
+    if (outside != kNone) return outside;
+    if (is_granted(v, star, best)) {
       collapse(v, star, best, done.history);
       ++done.count;
-      return true;
+      return kNone;
     }
     costs[best] = std::numeric_limits<float>::infinity();
   }
-  return true;
+  return kNone;
+}
+
+void Sweeps::append(Collapses& done, Collapses& all) {
+  all.count += done.count;
+  history_.append(done.history);
+  done = {};
+}
+
+/// What reaches from one block into another. Returns the vertices that reach into a third one.
+std::vector<Index> Sweeps::sweep_pairs(const std::vector<ReachingOut<Index>>& reaching_out,
+                                       float max_cost, const Work& work, Collapses& all) {
+  std::vector<Index> rest;
+  for (const auto& pairs : rounds_of_pairs(reaching_out)) {
+    std::vector<Collapses> of_pair(pairs.size());
+    std::vector<std::vector<Index>> left(pairs.size());
+    parallel_for(work, size_of(pairs), 1, [&](std::int64_t p, std::int64_t) {
+      PollSometimes poll;
+      for (const std::vector<Index>* vertices : pairs[p].items) {
+        for (const Index v : *vertices) {
+          poll();
+          if (!may_go(v) || locked_[v]) continue;
+          const Territory both{kShift, pairs[p].one, pairs[p].other};
+          if (try_vertex(v, max_cost, both, of_pair[p]) != kNone) left[p].push_back(v);
+        }
+      }
+    });
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      append(of_pair[p], all);
+      rest.insert(rest.end(), left[p].begin(), left[p].end());
+    }
+  }
+  return rest;
 }
 
 Index Sweeps::sweep(const Work& work) {
-  const float max_cost = cheap_enough();
-  std::fill(locked_.begin(), locked_.end(), false);
+  const float max_cost = cheap_enough(work);
   const Index count = size_of(outgoing_), blocks = (count + kBlock - 1) / kBlock;
   std::vector<Collapses> of_block(blocks);
-  parallel_for(work, blocks, 1, [&](std::int64_t block, std::int64_t) {
-    Collapses& done = of_block[block];
-    const auto begin = static_cast<Index>(block) * kBlock;
-    const Range range{begin, std::min(begin + kBlock, count)};
-    for (Index v = range.begin; v < range.end; ++v) {
+  std::vector<ReachingOut<Index>> reaching_out(blocks);
+  parallel_for(work, blocks, 1, [&](std::int64_t number, std::int64_t) {
+    const auto block = static_cast<Index>(number);
+    const Index begin = block * kBlock, end = std::min(begin + kBlock, count);
+    std::fill(locked_.begin() + begin, locked_.begin() + end, false);
+    const Territory territory = Territory::of_block(kShift, block);
+    Collapses done;
+    ReachingOut<Index> left;
+    for (Index v = begin; v < end; ++v) {
       if (!may_go(v) || locked_[v]) continue;
-      if (!try_vertex(v, max_cost, range, done)) done.reaching_out.push_back(v);
+      const Index outside = try_vertex(v, max_cost, territory, done);
+      if (outside != kNone) left.add(outside >> kShift, v);
     }
+    of_block[block] = std::move(done);
+    reaching_out[block] = std::move(left);
   });
-  Collapses rest;
-  for (const Collapses& done : of_block) {
-    rest.count += done.count;
-    history_.append(done.history);
-  }
+  Collapses all;
+  for (Collapses& done : of_block) append(done, all);
+  Collapses last;
   PollSometimes poll;
-  for (const Collapses& done : of_block) {
-    for (const Index v : done.reaching_out) {
-      poll();
-      if (may_go(v) && !locked_[v]) try_vertex(v, max_cost, {0, count}, rest);
-    }
+  for (const Index v : sweep_pairs(reaching_out, max_cost, work, all)) {
+    poll();
+    if (may_go(v) && !locked_[v]) try_vertex(v, max_cost, Territory::all(), last);
   }
-  history_.append(rest.history);
-  return rest.count;
+  append(last, all);
+  return all.count;
 }
 
 /// What is left, numbered anew.
@@ -349,24 +398,36 @@ CoarseSurface Sweeps::result(const Work& work) {
                                        [&](Index v) { return outgoing_[v] != kNone; });
   coarse.fine_face = parallel_filter(work, size_of(faces_), kGrain,
                                      [&](Index f) { return faces_[f][0] != kNone; });
-  std::vector<Index> vertex(outgoing_.size()), face(faces_.size());
-  for (std::size_t v = 0; v < coarse.fine_vertex.size(); ++v) {
-    vertex[coarse.fine_vertex[v]] = static_cast<Index>(v);
-  }
-  for (std::size_t f = 0; f < coarse.fine_face.size(); ++f) {
-    face[coarse.fine_face[f]] = static_cast<Index>(f);
-  }
+  const Index vertices = size_of(coarse.fine_vertex), faces = size_of(coarse.fine_face);
+  // By then only the new numbers count.
+  std::vector<Index>&vertex = valence_, face;
+  parallel_assign(work, face, faces_.size());
+  const auto for_each = [&](Index count, const auto& body) {
+    parallel_for(work, count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<Index>(begin); i < end; ++i) body(i);
+    });
+  };
+  for_each(vertices, [&](Index v) { vertex[coarse.fine_vertex[v]] = v; });
+  for_each(faces, [&](Index f) { face[coarse.fine_face[f]] = f; });
   const auto halfedge = [&](Index h) { return h == kNone ? kNone : 3 * face[h / 3] + h % 3; };
-  for (const Index v : coarse.fine_vertex) {
-    mesh.positions.push_back(fine_.positions[v]);
-    mesh.outgoing.push_back(halfedge(outgoing_[v]));
-    mesh.on_boundary.push_back(fine_.on_boundary[v]);
-  }
-  for (const Index f : coarse.fine_face) {
-    const auto [a, b, c] = faces_[f];
-    mesh.faces.push_back({vertex[a], vertex[b], vertex[c]});
-    for (int k = 0; k < 3; ++k) mesh.twin.push_back(halfedge(twin_[3 * f + k]));
-  }
+  mesh.positions.resize(vertices);
+  mesh.outgoing.resize(vertices);
+  mesh.on_boundary.resize(vertices);
+  for_each(vertices, [&](Index i) {
+    const Index v = coarse.fine_vertex[i];
+    mesh.positions[i] = fine_.positions[v];
+    mesh.outgoing[i] = halfedge(outgoing_[v]);
+    mesh.on_boundary[i] = fine_.on_boundary[v];
+  });
+  mesh.faces.resize(faces);
+  mesh.twin.resize(3 * faces);
+  for_each(faces, [&](Index i) {
+    const Index f = coarse.fine_face[i];
+    for (int k = 0; k < 3; ++k) {
+      mesh.faces[i][k] = vertex[faces_[f][k]];
+      mesh.twin[3 * i + k] = halfedge(twin_[3 * f + k]);
+    }
+  });
   coarse.history = std::move(history_);
   return coarse;
 }
@@ -384,13 +445,13 @@ void run_sweeps(Index faces, Index target_faces, const Work& work, Sweeps& sweep
 }  // namespace
 
 CoarseSurface sweep_surface(const Surface& fine, Index target_faces, const Work& work) {
-  Sweeps sweeps(fine, true);
+  Sweeps sweeps(fine, true, work);
   run_sweeps(fine.face_count(), target_faces, work, sweeps);
   return sweeps.result(work);
 }
 
 CoarseDisk sweep_disk(const DiskMesh& fine, Index target_faces, const Work& work) {
-  Sweeps sweeps(fine, false);
+  Sweeps sweeps(fine, false, work);
   run_sweeps(fine.face_count(), target_faces, work, sweeps);
   CoarseSurface left = sweeps.result(work);
   return coarse_disk(std::move(left.mesh), std::move(left.fine_vertex), std::move(sweeps.into()),

@@ -1,0 +1,103 @@
+// Blocks of vertices that are simplified side by side; and what reaches from one into another, in
+// rounds of pairs of blocks of which no two have one in common. Neither depends on the number of
+// threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "base/types.h"
+
+namespace beltrami {
+
+/// The vertices that what is under way may look at and change: those of a block of 2^shift, or of
+/// two; or all.
+struct Territory {
+  int shift;
+  Index one, other;
+
+  static Territory of_block(int shift, Index block) { return {shift, block, block}; }
+  static Territory all() { return {0, kNone, kNone}; }
+
+  bool has(Index v) const {
+    const Index block = v >> shift;
+    return block == one || block == other || one == kNone;
+  }
+};
+
+/// What a block has left since it reaches out of it, by the block that it reaches into.
+template <class Item>
+class ReachingOut {
+ public:
+  struct Into {
+    Index block;
+    std::vector<Item> items;
+  };
+
+  void add(Index block, const Item& item) {
+    auto at =
+        std::find_if(into_.begin(), into_.end(), [&](const Into& i) { return i.block == block; });
+    if (at == into_.end()) at = into_.insert(at, Into{block, {}});
+    at->items.push_back(item);
+  }
+  const std::vector<Into>& into() const { return into_; }
+
+ private:
+  std::vector<Into> into_;  // few blocks lie next to one
+};
+
+/// Two blocks, and what each has that reaches into the other.
+template <class Item>
+struct BlockPair {
+  Index one, other;  ///< one < other
+  std::vector<const std::vector<Item>*> items;
+
+  std::size_t size() const {
+    std::size_t sum = 0;
+    for (const auto* list : items) sum += list->size();
+    return sum;
+  }
+};
+
+/// The pairs in rounds, those with most to do first; in a round no block is in two of them.
+template <class Item>
+std::vector<std::vector<BlockPair<Item>>> rounds_of_pairs(
+    const std::vector<ReachingOut<Item>>& of_block) {
+  std::vector<BlockPair<Item>> pairs;
+  for (Index b = 0; b < size_of(of_block); ++b) {
+    for (const auto& [block, items] : of_block[b].into()) {
+      pairs.push_back({std::min(b, block), std::max(b, block), {&items}});
+    }
+  }
+  const auto ends = [](const BlockPair<Item>& pair) { return std::pair(pair.one, pair.other); };
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [&](const auto& a, const auto& b) { return ends(a) < ends(b); });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (kept > 0 && ends(pairs[kept - 1]) == ends(pairs[i])) {
+      pairs[kept - 1].items.push_back(pairs[i].items.front());
+    } else {
+      if (kept != i) pairs[kept] = std::move(pairs[i]);
+      ++kept;
+    }
+  }
+  pairs.resize(kept);
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  std::vector<std::vector<BlockPair<Item>>> rounds;
+  std::vector<std::vector<bool>> taken;  // per round and block
+  for (BlockPair<Item>& pair : pairs) {
+    std::size_t round = 0;
+    while (round < rounds.size() && (taken[round][pair.one] || taken[round][pair.other])) ++round;
+    if (round == rounds.size()) {
+      rounds.emplace_back();
+      taken.emplace_back(of_block.size(), false);
+    }
+    taken[round][pair.one] = taken[round][pair.other] = true;
+    rounds[round].push_back(std::move(pair));
+  }
+  return rounds;
+}
+
+}  // namespace beltrami
