@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -13,17 +16,27 @@ namespace beltrami {
 
 /// The vertices that what is under way may look at and change: those of a block of 2^shift, or of
 /// two; or all.
-struct Territory {
-  int shift;
-  Index one, other;
-
-  static Territory of_block(int shift, Index block) { return {shift, block, block}; }
-  static Territory all() { return {0, kNone, kNone}; }
+class Territory {
+ public:
+  static Territory of_block(int shift, Index block) { return of_pair(shift, block, block); }
+  static Territory of_pair(int shift, Index one, Index other) {
+    return {shift, one << shift, other << shift, std::uint32_t{1} << shift};
+  }
+  static Territory all() { return {0, 0, 0, std::numeric_limits<std::uint32_t>::max()}; }
 
   bool has(Index v) const {
-    const Index block = v >> shift;
-    return block == one || block == other || one == kNone;
+    return static_cast<std::uint32_t>(v - one_) < size_ ||
+           static_cast<std::uint32_t>(v - other_) < size_;
   }
+  Index block_of(Index v) const { return v >> shift_; }
+
+ private:
+  Territory(int shift, Index one, Index other, std::uint32_t size)
+      : shift_(shift), one_(one), other_(other), size_(size) {}
+
+  int shift_;
+  Index one_, other_;   // the first vertices
+  std::uint32_t size_;  // of a block
 };
 
 /// What a block has left since it reaches out of it, by the block that it reaches into.

@@ -329,7 +329,7 @@ Left collapse_in_part(ShrinkingSurface& surface, std::vector<Candidate> candidat
       continue;
     }
     const Index outside = try_collapse(surface, candidate, asked, territory, done);
-    if (outside != kNone) left.reaching_out.add(outside >> territory.shift, candidate);
+    if (outside != kNone) left.reaching_out.add(territory.block_of(outside), candidate);
   }
   return left;
 }
@@ -375,7 +375,8 @@ Index collapse_in_parts(ShrinkingSurface& surface, Candidates candidates, const 
       std::vector<Candidate> both;
       for (const auto* items : pairs[p].items) add_to(both, *items);
       left[p] = collapse_in_part(surface, std::move(both), asked,
-                                 {candidates.shift, pairs[p].one, pairs[p].other}, of_pair[p]);
+                                 Territory::of_pair(candidates.shift, pairs[p].one, pairs[p].other),
+                                 of_pair[p]);
     });
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       collapsed += append(of_pair[p], surface);

@@ -109,8 +109,8 @@ class Sweeps {
   Star star_of(Index v, const Territory& territory) const;
   std::array<float, kMostFaces> costs_of(Index v, Star& star) const;
   float cheap_enough(const Work& work) const;
-  Index neighbour_outside(Index w, const Territory& territory) const;
-  bool is_granted(Index v, const Star& star, int k) const;
+  enum class Verdict { kGranted, kRefused, kReachesOut };
+  Verdict judge(Index v, const Star& star, int k, const Territory& territory, Index& outside) const;
   bool keeps_shape(const Star& star, int target) const;
   void collapse(Index v, const Star& star, int k, CollapseHistory& history);
   Index try_vertex(Index v, float max_cost, const Territory& territory, Collapses& done);
@@ -214,26 +214,23 @@ float Sweeps::cheap_enough(const Work& work) const {
   return *limit;
 }
 
-/// A neighbour of w out of the territory, or kNone.
-Index Sweeps::neighbour_outside(Index w, const Territory& territory) const {
-  Index outside = kNone;
+/// The link condition, no vertex of too few faces, and the shapes. `outside`: set to a neighbour of
+/// the target that is out of the territory, where there is one.
+Sweeps::Verdict Sweeps::judge(Index v, const Star& star, int k, const Territory& territory,
+                              Index& outside) const {
+  const Index h = star.halfedge[k], w = star.ring[k];
+  int common = 0;
   for_each_outgoing(w, [&](Index g) {
     const Index u = target(g);
     if (!territory.has(u)) outside = u;
+    common += star.has(u) ? 1 : 0;
   });
-  return outside;
-}
-
-/// The link condition, no vertex of too few faces, and the shapes.
-bool Sweeps::is_granted(Index v, const Star& star, int k) const {
-  const Index h = star.halfedge[k], w = star.ring[k];
-  int common = 0;
-  for_each_outgoing(w, [&](Index g) { common += star.has(target(g)) ? 1 : 0; });
-  if (common != 2 || valence_[v] + valence_[w] - 4 < 3) return false;
+  if (outside != kNone) return Verdict::kReachesOut;
+  if (common != 2 || valence_[v] + valence_[w] - 4 < 3) return Verdict::kRefused;
   for (const Index a : {apex(h), apex(twin_[h])}) {
-    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return false;
+    if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return Verdict::kRefused;
   }
-  return keeps_shape(star, k);
+  return keeps_shape(star, k) ? Verdict::kGranted : Verdict::kRefused;
 }
 
 /// Whether the faces left keep their shapes within the first limits of the passes (shape.h).
@@ -314,9 +311,10 @@ Index Sweeps::try_vertex(Index v, float max_cost, const Territory& territory, Co
       if (is_less) best = k;
     }
     if (best < 0) return kNone;
-    const Index outside = neighbour_outside(star.ring[best], territory);
-    if (outside != kNone) return outside;
-    if (is_granted(v, star, best)) {
+    Index outside = kNone;
+    const Verdict verdict = judge(v, star, best, territory, outside);
+    if (verdict == Verdict::kReachesOut) return outside;
+    if (verdict == Verdict::kGranted) {
       collapse(v, star, best, done.history);
       ++done.count;
       return kNone;
@@ -345,7 +343,7 @@ std::vector<Index> Sweeps::sweep_pairs(const std::vector<ReachingOut<Index>>& re
         for (const Index v : *vertices) {
           poll();
           if (!may_go(v) || locked_[v]) continue;
-          const Territory both{kShift, pairs[p].one, pairs[p].other};
+          const Territory both = Territory::of_pair(kShift, pairs[p].one, pairs[p].other);
           if (try_vertex(v, max_cost, both, of_pair[p]) != kNone) left[p].push_back(v);
         }
       }
@@ -373,7 +371,7 @@ Index Sweeps::sweep(const Work& work) {
     for (Index v = begin; v < end; ++v) {
       if (!may_go(v) || locked_[v]) continue;
       const Index outside = try_vertex(v, max_cost, territory, done);
-      if (outside != kNone) left.add(outside >> kShift, v);
+      if (outside != kNone) left.add(territory.block_of(outside), v);
     }
     of_block[block] = std::move(done);
     reaching_out[block] = std::move(left);
