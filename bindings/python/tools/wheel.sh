@@ -19,10 +19,11 @@ rm -rf "$OUT/sdist" "$OUT/wheel"
 tar -xzf "$OUT"/sdist/*.tar.gz -C "$outside" --strip-components=1
 
 cd "$outside"
-# Paths are relative to the folder, so that ccache knows the files again in the next one.
-CCACHE_DIR=$OUT/ccache CCACHE_BASEDIR=$outside CCACHE_NOHASHDIR=1 \
+# Sources are where they are seen from build/PRESET of the checkout, so that ccache knows what was
+# compiled there, or in the folder before this.
+CCACHE_DIR=${CCACHE_DIR:-$OUT/ccache} CCACHE_BASEDIR=$outside/native CCACHE_NOHASHDIR=1 \
   "$PYTHON" -m build --no-isolation --wheel --outdir "$outside/raw" \
-  --config-setting=build-dir=build \
+  --config-setting=build-dir=native/build/wheel \
   --config-setting=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache \
   --config-setting=cmake.define.BELTRAMI_WERROR=ON \
   --config-setting=cmake.define.BELTRAMI_OLD_GLIBC=ON .
