@@ -30,6 +30,8 @@ constexpr double kLeastShare = 0.12;
 constexpr double kSpareShare = 0.01;
 /// Of all charts: what room a split is to free, to be looked at.
 constexpr double kLeastSaved = 0.005;
+/// By so much a split may save more than its neck promises: packings tell.
+constexpr double kHope = 1.5;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
 /// Of all charts: smaller ones are not split.
@@ -192,7 +194,7 @@ class Splitter {
     const bool may_be_split = !piece.map.error && piece.map.outcome < Outcome::kNotInjective &&
                               piece.outline.area > kLeastPiece * covered_;
     if (may_be_split) {
-      const NeckOptions options{.worth = worth(utilisation_ * utilisation_ / covered_),
+      const NeckOptions options{.worth = kHope * worth(utilisation_ * utilisation_ / covered_),
                                 .page = covered_ / (kFull * options_.max_pages),
                                 .least_share = kLeastShare + kSpareShare,
                                 .most = kNecks};
@@ -269,9 +271,9 @@ class Splitter {
       const Piece& piece = pieces_[p];
       for (Index n = 0; n < size_of(piece.necks); ++n) {
         const Neck& neck = piece.necks[n];
-        const double gain = worth(utilisation_ * utilisation_ * neck.saved / covered_) - neck.cost;
-        if (!piece.is_used[n] && gain > 0 && cost + neck.cost <= room_) {
-          found.push_back({gain, p, n});
+        const double saved = worth(utilisation_ * utilisation_ * neck.saved / covered_);
+        if (!piece.is_used[n] && kHope * saved > neck.cost && cost + neck.cost <= room_) {
+          found.push_back({saved - neck.cost, p, n});
         }
       }
     }

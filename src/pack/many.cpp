@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "pack/greedy.h"
 #include "pack/mask.h"
 #include "pack/page.h"
@@ -72,11 +73,11 @@ class Strip {
   double next() {
     (height_ > 0 && height_ <= 1 + spare_ ? low_ : high_) = density_;
     if (height_ == 0) return kStepDown * density_;
-    const double error = std::log(height_);
+    const double error = portable::log(height_);
     const bool few = std::abs(error) > kErrorOfFew && error * last_error_ > 0;
     last_error_ = error;
     const double next =
-        problem_.density_by(density_, std::exp(-(few ? kLongerForFew : 1) * error - kBelow));
+        problem_.density_by(density_, portable::exp(-(few ? kLongerForFew : 1) * error - kBelow));
     if (low_ > 0 && high_ > low_ && (next <= low_ || next >= high_)) {
       return std::sqrt(low_ * high_);
     }

@@ -140,12 +140,11 @@ Sweeps::Sweeps(const Surface& fine, bool keeps_history, const Work& work)
     PollSometimes poll;  // a hub may have all faces
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       into_[v] = v;
-      Index faces = 0;
+      if (outgoing_[v] == kNone) continue;
       for_each_outgoing(v, [&](Index) {
         poll();
-        ++faces;
+        ++valence_[v];
       });
-      valence_[v] = faces;
     }
   });
 }

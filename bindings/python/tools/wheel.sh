@@ -19,9 +19,10 @@ rm -rf "$OUT/sdist" "$OUT/wheel"
 tar -xzf "$OUT"/sdist/*.tar.gz -C "$outside" --strip-components=1
 
 cd "$outside"
-# Sources are where they are seen from build/PRESET of the checkout, so that ccache knows what was
-# compiled there, or in the folder before this.
-CCACHE_DIR=${CCACHE_DIR:-$OUT/ccache} CCACHE_BASEDIR=$outside/native CCACHE_NOHASHDIR=1 \
+# The compiler that CMake would take, and sources where they are seen from build/PRESET of the
+# checkout: so ccache knows what was compiled there, or in the folder before this.
+CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_DIR=${CCACHE_DIR:-$OUT/ccache} \
+  CCACHE_BASEDIR=$outside/native CCACHE_NOHASHDIR=1 \
   "$PYTHON" -m build --no-isolation --wheel --outdir "$outside/raw" \
   --config-setting=build-dir=native/build/wheel \
   --config-setting=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER=ccache \
