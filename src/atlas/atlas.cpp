@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "atlas/chart_parts.h"
 #include "atlas/map_charts.h"
 #include "atlas/measure.h"
 #include "atlas/open.h"
@@ -280,6 +281,12 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
   atlas.utilisation = atlas.pages->utilisation;
 }
 
+/// As many charts as there may be; 0: any number.
+Index most_charts(const AtlasOptions& options, const Admitted& admitted) {
+  if (!options.target || options.target->max_charts == 0) return 0;
+  return std::max(options.target->max_charts, admitted.counts.components);
+}
+
 /// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
 /// their pages.
 double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOptions& options,
@@ -291,10 +298,8 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
     pack.texels_per_unit = std::clamp(scaled, kLeastDensity, 1 / kLeastDensity);
   }
   SplitRules rules{.price = options.split_price,
+                   .most_charts = most_charts(options, admitted),
                    .polygons = {options.admit.polygons, options.diagonals}};
-  if (options.target && options.target->max_charts > 0) {
-    rules.most_charts = std::max(options.target->max_charts, admitted.counts.components);
-  }
   if (options.target) rules.seam_budget = options.target->seam_budget;
   Pages& pages = atlas.pages.emplace(
       rules.price > 0 ? pack_split_maps(admitted, rules, pack, options.float32, charts, work)
@@ -346,6 +351,7 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   std::vector<MappedChart>& maps = mapped.maps;
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
+    separate_pieces(admitted, most_charts(options, admitted), opened.charts, maps, inner.aside());
     std::vector<double> scales = scale_by_density(input.densities, admitted, opened.charts, maps);
     double page_scale = 1;
     if (options.pack && input.pins.empty()) {

@@ -6,13 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "atlas/chart_parts.h"
 #include "atlas/measure.h"
 #include "atlas/pack_maps.h"
-#include "base/disjoint_sets.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "chart/flattening.h"
-#include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/necks.h"
 #include "mesh/chart.h"
@@ -67,17 +66,9 @@ struct Split {
 };
 
 /// Whether real faces are connected by themselves.
-bool is_connected(const DiskMesh& mesh, Index real_faces) {
-  if (real_faces == 0) return false;
-  DisjointSets sets(real_faces);
-  for (Index f = 0; f < real_faces; ++f) sets.make(f);
-  Index parts = real_faces;
-  for (Index h = 0; h < 3 * real_faces; ++h) {
-    const Index other = mesh.twin[h] / 3;
-    if (mesh.twin[h] == kNone || other >= real_faces) continue;
-    parts -= sets.unite(h / 3, other) ? 1 : 0;
-  }
-  return parts == 1;
+bool is_connected(const AtlasChart& chart) {
+  const std::vector<Index> pieces = real_pieces(chart);
+  return std::all_of(pieces.begin(), pieces.end(), [](Index p) { return p == 0; });
 }
 
 double utilisation_of(const std::vector<AtlasChart>& charts, const std::vector<MappedChart>& maps,
@@ -241,23 +232,15 @@ class Splitter {
     const DiskMesh& mesh = piece.chart.chart.mesh;
     EdgeMarks marks(mesh.twin.size(), false);
     for (const Index h : neck.halfedges) mark_edge(mesh, h, marks);
-    CutSurface cut = cut_into_charts(mesh, marks, work_.aside());
-    if (!cut.non_disks.empty() || cut.charts.size() != 2) return {};
+    std::vector<ChartPart> found = parts_along(piece.chart, piece.map, marks, work_.aside());
+    if (found.size() != 2) return {};
     std::vector<Piece> parts;
-    for (Chart& chart : cut.charts) {
+    for (ChartPart& half : found) {
       Piece& part = parts.emplace_back();
-      const auto first_virtual = std::lower_bound(chart.input_face.begin(), chart.input_face.end(),
-                                                  piece.chart.real_faces);
-      part.chart.real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
-      part.map.outcome = piece.map.outcome;
+      part.chart = std::move(half.chart);
+      part.map = std::move(half.map);
       part.scale = piece.scale;
-      for (Index& v : chart.input_vertex) {
-        part.map.uvs.push_back(piece.map.uvs[v]);
-        v = piece.chart.chart.input_vertex[v];
-      }
-      for (Index& f : chart.input_face) f = piece.chart.chart.input_face[f];
-      part.chart.chart = std::move(chart);
-      if (!is_connected(part.chart.chart.mesh, part.chart.real_faces)) return {};
+      if (!is_connected(part.chart)) return {};
       part.outline = outline_of(real_part(part.chart, part.map.uvs));
       if (part.outline.area < kLeastShare * piece.outline.area) return {};
     }
