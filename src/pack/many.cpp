@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "pack/greedy.h"
-#include "pack/mask.h"
+#include "pack/pack.h"
 #include "pack/page.h"
 
 namespace beltrami {
