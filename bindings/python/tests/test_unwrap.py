@@ -451,7 +451,7 @@ def test_an_atlas_that_is_not_injective_comes_with_a_warning_at_the_caller(bust)
         atlas = beltrami.unwrap(*bust, method="uv-prolongation")
     assert caught[0].filename == __file__
     assert not atlas.injective
-    assert {chart.status for chart in atlas.charts} == {"BELTRAMI_NOT_INJECTIVE"}
+    assert "BELTRAMI_NOT_INJECTIVE" in {chart.status for chart in atlas.charts}
 
 
 # ---- Checks -------------------------------------------------------------------------------
