@@ -25,24 +25,22 @@ EdgeMarks marks_between(const AtlasChart& chart, const std::vector<Index>& piece
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return size[a] > size[b]; });
   std::vector<Index> rank(piece.size());
   for (Index r = 0; r < size_of(order); ++r) rank[order[r]] = r;
-  std::vector<Index> faces(piece.size()), owner = piece;
-  for (Index f = 0; f < size_of(faces); ++f) faces[f] = f;
-  std::stable_sort(faces.begin(), faces.end(),
-                   [&](Index a, Index b) { return rank[piece[a]] < rank[piece[b]]; });
+  std::vector<Index> front(piece.size()), owner = piece;
+  for (Index f = 0; f < size_of(front); ++f) front[f] = f;
+  // From the back: all that the largest piece reaches is done before the next one has its turn.
+  std::stable_sort(front.begin(), front.end(),
+                   [&](Index a, Index b) { return rank[piece[a]] > rank[piece[b]]; });
   owner.resize(mesh.faces.size(), kNone);
   PollSometimes poll;
-  for (const Index from : faces) {
-    std::vector<Index> front{from};
-    while (!front.empty()) {
-      poll();
-      const Index f = front.back();
-      front.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        const Index twin = mesh.twin[3 * f + k];
-        if (twin == kNone || owner[twin / 3] != kNone) continue;
-        owner[twin / 3] = owner[f];
-        front.push_back(twin / 3);
-      }
+  while (!front.empty()) {
+    poll();
+    const Index f = front.back();
+    front.pop_back();
+    for (int k = 0; k < 3; ++k) {
+      const Index twin = mesh.twin[3 * f + k];
+      if (twin == kNone || owner[twin / 3] != kNone) continue;
+      owner[twin / 3] = owner[f];
+      front.push_back(twin / 3);
     }
   }
   EdgeMarks marks(mesh.twin.size(), false);

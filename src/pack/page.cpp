@@ -6,15 +6,6 @@
 
 #include "base/processor.h"
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#define BELTRAMI_DISPATCH_AVX2 1
-#else
-#define BELTRAMI_DISPATCH_AVX2 0
-#endif
-
-// What is inlined into a function for wider vectors is compiled for wider vectors.
-#define BELTRAMI_INLINE [[gnu::always_inline]] inline
-
 namespace beltrami {
 namespace {
 
