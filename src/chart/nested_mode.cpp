@@ -1,6 +1,6 @@
 // The method beltrami in levels: no factorization but that of the coarsest.
 #include <algorithm>
-#include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -40,14 +40,19 @@ namespace {
 constexpr Index kLeastFaces = 100000;
 /// Times the coarse faces, at least.
 constexpr Index kLeastRatio = 8;
-/// Faces of the coarsest level: usually, and where that turned out to be a hard one.
-constexpr std::array<Index, 2> kCoarsestFaces = {10000, 70000};
-constexpr int kSteps = 2;                 // of conjugate gradients from an interpolated map
-constexpr int kRounds = 3;                // of so many steps, while more than
-constexpr double kFewFlips = 5e-5;        // of the faces are flipped
-constexpr double kManyFlips = 1e-3;       // are those of a hard level, of which
-constexpr double kTooManyFlips = 2e-3;    // are more than is worth mending
-constexpr std::size_t kMostPatches = 30;  // beyond, a finer coarsest level is cheaper
+constexpr Index kCoarsestFaces = 10000;  // of the coarsest level
+/// Up to so many a factor of a level costs little beside the run.
+constexpr Index kMostFactored = 150000;
+constexpr int kSteps = 2;           // of conjugate gradients from an interpolated map
+constexpr int kRounds = 3;          // of so many steps, while more than
+constexpr double kFewFlips = 5e-5;  // of the faces are flipped
+/// Of the faces, what is flipped, and what is mended by patches, where a level is solved by its
+/// factor instead: where that is cheap, and in any case.
+struct Bearable {
+  double flips, patches;
+};
+constexpr Bearable kWhereCheap{1e-3, 1e-4}, kInAnyCase{2e-3, 5e-4};
+constexpr std::size_t kFewPatches = 30;  // are mended all the same
 /// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
 // Shares of the progress.
@@ -64,11 +69,15 @@ constexpr double kLevels = 1.0 / 7;
 
 /// A map on the way up, with what it took.
 struct Climb {
-  ChartMap map;        ///< of the level reached
-  double energy = 0;   ///< mean, of that level; at the end, of the one below the finest
-  bool hard = false;   ///< the polish of a level did not end stationary
-  bool failed = true;  ///< without an injective map, or far from the energy of the level below
+  ChartMap map;       ///< of the level reached
+  double energy = 0;  ///< mean, of that level
+  bool hard = false;  ///< a polish did not end stationary, or a level needed its factor
+  std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
+
+std::size_t share_of(const DiskMesh& mesh, double share) {
+  return static_cast<std::size_t>(share * mesh.face_count());
+}
 
 bool is_injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs, bool simple,
                   const Work& work) {
@@ -167,68 +176,127 @@ void polish_level(const Level& level, bool simple, PolishLength length, bool pre
   climb.map.statistics.append(polished.statistics);
 }
 
-/// From the map of a coarse level to that of the next finer one.
-void climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest, bool last,
-              const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
+/// From the map of a coarse level to that of the next finer one, by the V-cycle. Returns whether
+/// that led to an injective map, not far from the energy of the level below.
+bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearable& bearable,
+                    bool is_finest, const ChartOptions& options, const Work& work, Climb& climb) {
   const bool simple = keeps_boundary_simple(options);
+  VCycle& cycle = *climb.cycle;
   Level level = prepare_level(mesh, coarse, options, work.part(0, 0.3), cycle, climb);
   const bool pressed = climb.map.in_contact && simple;
   std::vector<bool> anchored;
   if (pressed) anchored = vertices_in_contact(coarse, climb.map.uvs, mesh.vertex_count());
+  const RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
+                          .global_fix = false};
   bool positive = false;
   const auto solve = [&] {
-    positive = solve_level(level, anchored, last ? kTooManyFlips : kManyFlips, work.part(0.3, 0.5),
-                           cycle, climb.map) &&
-               mend(level.problem, {.most_patches = kMostPatches, .global_fix = false}, options,
-                    work.part(0.5, 0.6), climb.map);
+    positive =
+        solve_level(level, anchored, bearable.flips, work.part(0.3, 0.5), cycle, climb.map) &&
+        mend(level.problem, how, options, work.part(0.5, 0.6), climb.map);
     return positive;
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
-  climb.failed = !solved || !positive;
-  if (climb.failed) return;
+  if (!solved || !positive) return false;
   level.equations = {};
   std::vector<Vec2>().swap(level.carried);
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches              ? PolishLength::kWhole
-                              : is_finest && !last ? PolishLength::kShort
-                                                   : PolishLength::kMiddling;
+  const PolishLength length = touches                    ? PolishLength::kWhole
+                              : is_finest && !climb.hard ? PolishLength::kShort
+                                                         : PolishLength::kMiddling;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;
-  if (converged && is_finest) return;
+  if (converged && is_finest) return true;
   const double below = climb.energy;
   climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
-  if (converged) return;
+  if (converged) return true;
   climb.hard = true;
-  climb.failed = to_dirichlet(options.energy, climb.energy) >
-                 kHopelessly * to_dirichlet(options.energy, below);
+  return to_dirichlet(options.energy, climb.energy) <=
+         kHopelessly * to_dirichlet(options.energy, below);
 }
 
-/// From the coarsest level to the finest. Ends early where a level is hard, but for the `last` try,
-/// which takes its time.
-Climb climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels, bool last,
-            const ChartOptions& options, const Work& work) {
+/// The same by a factor of the finer level: the metric way (metric_mode), from the map reached.
+bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartOptions& options,
+                     const Work& work, Climb& climb) {
+  FineProblem problem{.mesh = &mesh,
+                      .coarse = coarse,
+                      .coarse_uvs = std::move(climb.map.uvs),
+                      .in_contact = climb.map.in_contact};
+  problem.statistics.coarse_energy = climb.energy;
+  measure_fine("prolong", false, options, work.part(0, 0.2), problem);
+  ChartMap map = metric_mode(problem, options, work.part(0.2, 1));
+  climb.energy = mean_energy(options.energy, mesh.faces, problem.rest, map.uvs);
+  problem.statistics.coarse_energy = 0;  // of the coarsest level, that of the climb
+  const bool in_contact = climb.map.in_contact || map.in_contact;
+  map = joined(std::move(problem), std::move(map));
+  climb.map.uvs = std::move(map.uvs);
+  climb.map.converged = map.converged;
+  climb.map.in_contact = in_contact;
+  climb.map.statistics.append(map.statistics);
+  climb.hard = true;
+  return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
+}
+
+void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
+                 Climb& climb) {
+  const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
+  climb.cycle = std::make_unique<VCycle>(
+      mesh, energy_stiffness(options.energy, mesh.faces, rest, climb.map.uvs, work), work);
+}
+
+/// From the map of a coarse level to that of the next finer one; returns whether it is injective.
+/// A level that is hard for the V-cycle is solved by its factor, with which a new one begins.
+bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
+              const ChartOptions& options, const Work& work, Climb& climb) {
+  const ChartMap& reached = climb.map;
+  const std::vector<Vec2> from = reached.uvs;
+  const ChartStatistics before = reached.statistics;
+  const bool in_contact = reached.in_contact, was_hard = climb.hard;
+  const double energy = climb.energy;
+  const bool cheap = mesh.face_count() <= kMostFactored && !is_finest;
+  const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kInAnyCase, is_finest,
+                                   options, work.part(0, 0.5), climb);
+  if (done && (reached.converged || !cheap)) return true;
+  climb.cycle.reset();
+  ChartStatistics statistics = before;
+  const auto& stages = reached.statistics.stages;
+  statistics.stages.push_back(
+      given_up({stages.begin() + static_cast<std::ptrdiff_t>(before.stages.size()), stages.end()}));
+  climb.map = {};
+  climb.map.uvs = from;
+  climb.map.in_contact = in_contact;
+  climb.map.statistics = std::move(statistics);
+  climb.hard = was_hard;
+  climb.energy = energy;
+  if (!climb_by_factor(mesh, coarse, options, work.part(0.5, 1), climb)) return false;
+  if (!is_finest) begin_cycle(mesh, options, work, climb);
+  return true;
+}
+
+/// From the coarsest level to the finest. Without UVs where a level has no injective map.
+ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
+               const ChartOptions& options, const Work& work) {
   const DiskMesh& coarsest = levels.back().mesh;
   const Work begin = work.part(0, kStarted), rest = work.part(kStarted, 1);
   Climb climb;
   const Index faces = coarse_faces(coarsest.face_count(), options.coarse_faces);
   climb.map = beltrami_mode(coarsest, faces, {}, options, begin);
-  const bool simple = keeps_boundary_simple(options);
-  climb.failed = !is_injective(coarsest, climb.map.uvs, simple, begin);
-  climb.hard = climb.failed || !climb.map.converged;
-  if (climb.failed || (climb.hard && !last)) return climb;
-  const auto flat = rest_triangles(coarsest.positions, coarsest.faces, begin);
-  climb.energy = mean_energy(options.energy, coarsest.faces, flat, climb.map.uvs);
-  VCycle cycle(coarsest,
-               energy_stiffness(options.energy, coarsest.faces, flat, climb.map.uvs, begin), begin);
-  for (std::size_t l = levels.size(); l-- > 0;) {
+  bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);
+  if (injective) {
+    climb.hard = !climb.map.converged;
+    climb.energy =
+        mean_energy(options.energy, coarsest.faces,
+                    rest_triangles(coarsest.positions, coarsest.faces, begin), climb.map.uvs);
+    begin_cycle(coarsest, options, begin, climb);
+  }
+  for (std::size_t l = levels.size(); injective && l-- > 0;) {
     const DiskMesh& finer = l > 0 ? levels[l - 1].mesh : mesh;
     const double from = 1 - static_cast<double>(l + 1) / static_cast<double>(levels.size());
-    climb_to(finer, levels[l], l == 0, last, options, rest.part(from, 1), cycle, climb);
-    if (climb.failed || (climb.hard && !last)) return climb;
+    injective = climb_to(finer, levels[l], l == 0, options, rest.part(from, 1), climb);
   }
-  return climb;
+  if (!injective) climb.map.uvs.clear();
+  return std::move(climb.map);
 }
 
 }  // namespace
@@ -255,26 +323,18 @@ bool is_nested(Index faces, Index coarse, const ChartOptions& options) {
 
 ChartMap nested_mode(const DiskMesh& mesh, const Inherited& inherited, const ChartOptions& options,
                      const Work& work) {
-  ChartStatistics statistics;
-  Climb best;
-  for (const Index usual : kCoarsestFaces) {
-    const Index coarsest = std::max(usual, static_cast<Index>(options.coarse_faces));
-    std::vector<CoarseDisk> levels;
-    run_stage("simplify", work.part(0, kSimplified), statistics.stages,
-              [&](StageStatistics&, const Work& inner) {
-                levels = coarser_levels(mesh, inherited.level, coarsest, inner);
-              });
-    if (levels.empty()) continue;
-    const bool is_last = usual == kCoarsestFaces.back();
-    best = climb(mesh, levels, is_last, options, work.part(kSimplified, 1));
-    if (!best.failed && (is_last || !best.hard)) break;
-    statistics.stages.push_back(given_up(best.map.statistics.stages));
-    best = {};
-  }
-  if (best.failed) best.map.uvs.clear();
-  statistics.append(best.map.statistics);
-  best.map.statistics = std::move(statistics);
-  return std::move(best.map);
+  const Index coarsest = std::max(kCoarsestFaces, static_cast<Index>(options.coarse_faces));
+  ChartMap map;
+  std::vector<CoarseDisk> levels;
+  run_stage("simplify", work.part(0, kSimplified), map.statistics.stages,
+            [&](StageStatistics&, const Work& inner) {
+              levels = coarser_levels(mesh, inherited.level, coarsest, inner);
+            });
+  if (levels.empty()) return map;
+  ChartMap climbed = climb(mesh, levels, options, work.part(kSimplified, 1));
+  map.statistics.append(climbed.statistics);
+  climbed.statistics = std::move(map.statistics);
+  return climbed;
 }
 
 }  // namespace beltrami
