@@ -53,7 +53,7 @@ Bounds bounds_of(PolishLength length) {
     case PolishLength::kShort:
       return {4e-4, 1e-4, 8, 1e-3, false, true};
     case PolishLength::kMiddling:
-      return {1e-4, 2e-4, kMostSteps, 1e-3, false, false};
+      return {1e-4, 5e-4, kMostSteps, 1e-3, false, false};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, true, false};
   }
