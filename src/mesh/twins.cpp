@@ -22,7 +22,7 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 
 std::string quoted(Index index) {
   return std::to_string(index);

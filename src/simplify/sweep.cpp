@@ -51,7 +51,7 @@ constexpr Index kBlocks = 48;
 /// A sweep that takes away less than this share of the faces is the last.
 constexpr double kWorthSweep = 0.02;
 
-constexpr std::int64_t kGrain = 16384;  // bits of on_boundary of different chunks share no word
+constexpr std::int64_t kGrain = 4096;  // bits of on_boundary of different chunks share no word
 constexpr std::int64_t kSampleGrain = 128;
 
 using Vec3f = Eigen::Vector3f;
