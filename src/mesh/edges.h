@@ -44,8 +44,8 @@ inline std::array<Index, 2> ends_of(const std::vector<Triangle>& faces, Index h)
 HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
                                const Work& work);
 
-/// Sorts half-edges of one smaller end by the other one, and calls visit(std::span<const Spoke>) with
-/// those of each edge, in increasing order if they were.
+/// Sorts half-edges of one smaller end by the other one, and calls visit(std::span<const Spoke>)
+/// with those of each edge, in increasing order if they were.
 template <class Visit>
 void for_each_edge(std::span<Spoke> spokes, const Visit& visit) {
   constexpr std::size_t kFew = 32;  // that are sorted as they come

@@ -139,9 +139,8 @@ std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangl
                                    const Work& work) {
   std::vector<Index> start, sorted;
   parallel_assign(work, sorted, faces.size());
-  BucketSort<Index> sort(
-      work, size_of(faces), vertex_count, start,
-      [&](std::int64_t f, const auto& count) { count(least_vertex(faces[f])); });
+  BucketSort<Index> sort(work, size_of(faces), vertex_count, start,
+                         [&](std::int64_t f, const auto& count) { count(least_vertex(faces[f])); });
   sort.place([&](std::int64_t f, const auto& place) {
     sorted[place(least_vertex(faces[f]))] = static_cast<Index>(f);
   });

@@ -75,9 +75,9 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, const W
 
 /// The half-edges without a twin, increasing.
 std::vector<Index> boundary_halfedges(const Surface& surface, const Work& work) {
-  std::vector<Index> halfedges = parallel_filter(work, surface.vertex_count(), kGrain, [&](Index v) {
-    return surface.on_boundary[v] && surface.outgoing[v] != kNone;
-  });
+  std::vector<Index> halfedges = parallel_filter(
+      work, surface.vertex_count(), kGrain,
+      [&](Index v) { return surface.on_boundary[v] && surface.outgoing[v] != kNone; });
   for (Index& item : halfedges) item = surface.outgoing[item];
   sort_interruptibly(halfedges.begin(), halfedges.end(), std::less<>());
   return halfedges;

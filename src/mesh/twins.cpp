@@ -107,10 +107,10 @@ OppositeEdges opposite_edges(Index vertex_count, const std::vector<Triangle>& fa
     const int k = next_corner(least_corner(faces[f]));
     visit(static_cast<Index>(3 * f + k), faces[f][k], faces[f][next_corner(k)]);
   };
-  BucketSort<Index> sort(
-      work, size_of(faces), vertex_count, buckets.start, [&](std::int64_t f, const auto& count) {
-        edge(f, [&](Index, Index from, Index to) { count(std::min(from, to)); });
-      });
+  BucketSort<Index> sort(work, size_of(faces), vertex_count, buckets.start,
+                         [&](std::int64_t f, const auto& count) {
+                           edge(f, [&](Index, Index from, Index to) { count(std::min(from, to)); });
+                         });
   sort.place([&](std::int64_t f, const auto& place) {
     edge(f, [&](Index h, Index from, Index to) {
       buckets.spokes[place(std::min(from, to))] = Spoke(h, from, to);
@@ -163,9 +163,7 @@ class Matcher {
     bool leaves;
   };
 
-  std::uint64_t edge_to(Index far) const {
-    return vertex_ << 32 | static_cast<std::uint64_t>(far);
-  }
+  std::uint64_t edge_to(Index far) const { return vertex_ << 32 | static_cast<std::uint64_t>(far); }
 
   std::array<std::array<Slot, kSlots>, 2> slots_;
   std::array<Added, kFew + 1> added_;

@@ -48,6 +48,10 @@ constexpr Index kSample = 5000;
 /// Blocks that there are at least: enough for many threads, and for few deferred collapses.
 constexpr Index kBlocks = 48;
 
+/// Blocks of 2^kWider times the vertices are for what reaches into a third block: few of the places
+/// where three meet are on the borders of these.
+constexpr int kWider = 3;
+
 /// A sweep that takes away less than this share of the faces is the last.
 constexpr double kWorthSweep = 0.02;
 
@@ -66,7 +70,7 @@ struct Star {
   std::array<Index, kMostFaces> halfedge;  ///< outgoing, counter-clockwise
   std::array<Index, kMostFaces> ring;      ///< their targets
   // Measured by costs_of.
-  Row x, y, z;                     ///< of the ring from the vertex, the first one once more
+  Row x, y, z;                       ///< of the ring from the vertex, the first one once more
   Row normal_x, normal_y, normal_z;  ///< of the faces, as long as twice the area
   Row twice_area;
 
@@ -134,8 +138,11 @@ class Sweeps {
   bool keeps_shape(const Star& star, int target) const;
   void collapse(Index v, const Star& star, int k, CollapseHistory& history);
   Index try_vertex(Index v, float max_cost, const Territory& territory, Collapses& done);
+  std::vector<Index> try_all(const std::vector<Index>& vertices, float max_cost,
+                             const Territory& territory, Collapses& done);
   std::vector<Index> sweep_pairs(const std::vector<ReachingOut<Index>>& reaching_out,
                                  float max_cost, const Work& work, Collapses& all);
+  void sweep_rest(const std::vector<Index>& rest, float max_cost, const Work& work, Collapses& all);
   void append(Collapses& done, Collapses& all);
 
   const Surface& fine_;
@@ -236,8 +243,8 @@ Row Sweeps::costs_of(Index v, Star& star) const {
   Row costs;
   for_each_lanes(star, [&, xx = xx, xy = xy, xz = xz, yy = yy, yz = yz, zz = zz](int k) {
     const Lanes x = lanes_of(star.x, k), y = lanes_of(star.y, k), z = lanes_of(star.z, k);
-    const Lanes change = x * (xx * x + 2 * (xy * y + xz * z)) + y * (yy * y + 2 * yz * z) +
-                         z * zz * z;
+    const Lanes change =
+        x * (xx * x + 2 * (xy * y + xz * z)) + y * (yy * y + 2 * yz * z) + z * zz * z;
     costs.segment<kLanes>(k) = change.max(0.0F) + evenness * (x * x + (y * y + z * z));
   });
   return costs;
@@ -387,6 +394,19 @@ Index Sweeps::try_vertex(Index v, float max_cost, const Territory& territory, Co
   return kNone;
 }
 
+/// Returns those that reach out.
+std::vector<Index> Sweeps::try_all(const std::vector<Index>& vertices, float max_cost,
+                                   const Territory& territory, Collapses& done) {
+  std::vector<Index> left;
+  PollSometimes poll;
+  for (const Index v : vertices) {
+    poll();
+    if (!may_go(v) || locked_[v]) continue;
+    if (try_vertex(v, max_cost, territory, done) != kNone) left.push_back(v);
+  }
+  return left;
+}
+
 void Sweeps::append(Collapses& done, Collapses& all) {
   all.count += done.count;
   history_.append(done.history);
@@ -401,14 +421,10 @@ std::vector<Index> Sweeps::sweep_pairs(const std::vector<ReachingOut<Index>>& re
     std::vector<Collapses> of_pair(pairs.size());
     std::vector<std::vector<Index>> left(pairs.size());
     parallel_for(work, size_of(pairs), 1, [&](std::int64_t p, std::int64_t) {
-      PollSometimes poll;
+      const Territory both = Territory::of_pair(shift_, pairs[p].one, pairs[p].other);
       for (const std::vector<Index>* vertices : pairs[p].items) {
-        for (const Index v : *vertices) {
-          poll();
-          if (!may_go(v) || locked_[v]) continue;
-          const Territory both = Territory::of_pair(shift_, pairs[p].one, pairs[p].other);
-          if (try_vertex(v, max_cost, both, of_pair[p]) != kNone) left[p].push_back(v);
-        }
+        const std::vector<Index> out = try_all(*vertices, max_cost, both, of_pair[p]);
+        left[p].insert(left[p].end(), out.begin(), out.end());
       }
     });
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -417,6 +433,27 @@ std::vector<Index> Sweeps::sweep_pairs(const std::vector<ReachingOut<Index>>& re
     }
   }
   return rest;
+}
+
+/// What reaches into a third block, in wider ones, and what reaches out of these.
+void Sweeps::sweep_rest(const std::vector<Index>& rest, float max_cost, const Work& work,
+                        Collapses& all) {
+  const int shift = shift_ + kWider;
+  const Index blocks = ((fine_.vertex_count() - 1) >> shift) + 1;
+  std::vector<std::vector<Index>> of_block(blocks), left(blocks);
+  for (const Index v : rest) of_block[v >> shift].push_back(v);
+  std::vector<Collapses> done(blocks);
+  parallel_for(work, blocks, 1, [&](std::int64_t number, std::int64_t) {
+    const auto block = static_cast<Index>(number);
+    left[block] =
+        try_all(of_block[block], max_cost, Territory::of_block(shift, block), done[block]);
+  });
+  for (Collapses& of_one : done) append(of_one, all);
+  Collapses last;
+  for (const std::vector<Index>& vertices : left) {
+    try_all(vertices, max_cost, Territory::all(), last);
+  }
+  append(last, all);
 }
 
 Index Sweeps::sweep(const Work& work) {
@@ -441,13 +478,7 @@ Index Sweeps::sweep(const Work& work) {
   });
   Collapses all;
   for (Collapses& done : of_block) append(done, all);
-  Collapses last;
-  PollSometimes poll;
-  for (const Index v : sweep_pairs(reaching_out, max_cost, work, all)) {
-    poll();
-    if (may_go(v) && !locked_[v]) try_vertex(v, max_cost, Territory::all(), last);
-  }
-  append(last, all);
+  sweep_rest(sweep_pairs(reaching_out, max_cost, work, all), max_cost, work, all);
   return all.count;
 }
 
