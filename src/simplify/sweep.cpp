@@ -66,6 +66,7 @@ using Row = Eigen::Array<float, kMostFaces + kLanes, 1>;
 /// What is around a vertex. Face k lies between the half-edges k and k + 1.
 struct Star {
   int count = 0;                           ///< faces
+  std::uint64_t last_bits = 0;             ///< of the numbers in the ring: those that there are
   Index outside = kNone;                   ///< a neighbour out of the territory
   std::array<Index, kMostFaces> halfedge;  ///< outgoing, counter-clockwise
   std::array<Index, kMostFaces> ring;      ///< their targets
@@ -78,9 +79,16 @@ struct Star {
   Vec3f offset(int k) const { return {x[k], y[k], z[k]}; }
   Vec3f normal(int k) const { return {normal_x[k], normal_y[k], normal_z[k]}; }
 
-  bool has(Index v) const {
-    return std::find(ring.begin(), ring.begin() + count, v) != ring.begin() + count;
+  void add(Index h, Index v) {
+    halfedge[count] = h;
+    ring[count++] = v;
+    last_bits |= bit_of(v);
   }
+  bool has(Index v) const {
+    return (last_bits & bit_of(v)) != 0 &&
+           std::find(ring.begin(), ring.begin() + count, v) != ring.begin() + count;
+  }
+  static std::uint64_t bit_of(Index v) { return std::uint64_t{1} << (v % 64); }
 };
 
 /// Calls body(k) for the first of each kLanes faces.
@@ -193,8 +201,7 @@ Star Sweeps::star_of(Index v, const Territory& territory) const {
   for_each_outgoing(v, [&](Index h) {
     const Index u = target(h);
     if (!territory.has(u)) star.outside = u;
-    star.halfedge[star.count] = h;
-    star.ring[star.count++] = u;
+    star.add(h, u);
   });
   return star;
 }
@@ -275,6 +282,8 @@ float Sweeps::cheap_enough(const Work& work) const {
 /// the target that is out of the territory, where there is one.
 Sweeps::Verdict Sweeps::judge(Index v, const Star& star, int k, const Territory& territory,
                               Index& outside) const {
+  // The star is at hand: what it tells comes before the ring of the target.
+  if (!keeps_shape(star, k)) return Verdict::kRefused;
   const Index h = star.halfedge[k], w = star.ring[k];
   int common = 0;
   for_each_outgoing(w, [&](Index g) {
@@ -287,7 +296,7 @@ Sweeps::Verdict Sweeps::judge(Index v, const Star& star, int k, const Territory&
   for (const Index a : {apex(h), apex(twin_[h])}) {
     if (valence_[a] - 1 < (fine_.on_boundary[a] ? 2 : 3)) return Verdict::kRefused;
   }
-  return keeps_shape(star, k) ? Verdict::kGranted : Verdict::kRefused;
+  return Verdict::kGranted;
 }
 
 /// Of the faces of the star.
