@@ -2,8 +2,11 @@
 // handed out again to as many threads as are asked for, each to the one that is free first. What
 // lies between the loops is serial. No limit of the memory's bandwidth and no cost of starting
 // threads is counted, so that these are bounds; what two threads really take stands beside them.
+#include <beltrami/beltrami.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -14,14 +17,12 @@
 #include <utility>
 #include <vector>
 
+#include "abi/context.h"
 #include "base/loop_trace.h"
-#include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "chart/options.h"
-#include "mesh/disk_mesh.h"
-#include "mesh/locality.h"
 #include "records.h"
 #include "refine.h"
 #include "yardstick.h"
@@ -59,14 +60,15 @@ Flattening run_stages(const TriangleMesh& file, const Work& work, double& load) 
   const double begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
   const Work loading = work.part(0, 0).named("load");
   loading.report(0);
-  std::vector<Triangle> faces = faces_of(file);
-  std::vector<Vec3> positions = positions_of(file);
-  const Arrangement arranged = arrange(positions, faces, loading);
-  positions = in_order(positions, arranged.vertices, loading);
-  DiskMesh disk = build_disk(std::move(positions), std::move(faces), loading);
-  const Normalisation frame = normalise(disk.positions, disk.faces, loading);
+  beltrami_mesh mesh{};
+  mesh.struct_size = sizeof mesh;
+  mesh.vertex_count = file.vertex_count();
+  mesh.face_count = file.face_count();
+  mesh.positions = {file.positions.data(), 0, BELTRAMI_F64, 0};
+  mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
+  const LoadedMesh loaded = load_mesh(&mesh, loading, std::atomic<bool>{false});
   load = seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
-  return flatten(disk, frame, ChartOptions{}, work);
+  return flatten(loaded.input.disk, loaded.frame, ChartOptions{}, work);
 }
 
 /// `order`: of the stages, as they first begin.

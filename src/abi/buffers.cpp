@@ -77,15 +77,13 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
   std::vector<Triangle> faces;
   parallel_assign(work, faces, count);
   const auto items = static_cast<std::int64_t>(count);
-  parallel_for(work, items, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
-      for (int k = 0; k < 3; ++k) faces[f][k] = static_cast<Index>(reader.read<Integer>(f, k));
-    }
-  });
   const auto in_range = [&](std::int64_t f, int k) {
     return reader.read<Integer>(static_cast<std::size_t>(f), k) < vertex_count;
   };
   const auto outside = parallel_find(work, items, kGrain, [&](std::int64_t f) {
+    for (int k = 0; k < 3; ++k) {
+      faces[f][k] = static_cast<Index>(reader.read<Integer>(static_cast<std::size_t>(f), k));
+    }
     return !in_range(f, 0) || !in_range(f, 1) || !in_range(f, 2);
   });
   if (outside == items) return faces;
@@ -102,7 +100,10 @@ std::vector<Triangle> read_faces_as(const Reader& reader, std::uint64_t count,
 template <class Scalar, class Vector>
 std::vector<Vector> read_points(const Reader& reader, const std::vector<Index>& original,
                                 const Work& work) {
-  std::vector<Vector> points(original.size());
+  std::vector<Vector> points;
+  points.reserve(original.size());
+  touch_memory(work, points.data(), original.size() * sizeof(Vector));
+  points.resize(original.size());
   parallel_for(work, size_of(original), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       for (int k = 0; k < Vector::RowsAtCompileTime; ++k) {

@@ -39,7 +39,6 @@ InputDisk read_disk(const beltrami_mesh& mesh, const Work& work) {
   input.original = std::move(triangles.original);
   std::vector<Vec3> positions = read_positions(mesh, input.original, work);
   try {
-    validate_indices(size_of(positions), triangles.faces, RepeatedVertices::kRefused, work);
     validate_positions(positions, work);
     Arrangement arranged = arrange(positions, triangles.faces, work);
     input.original = in_order(input.original, arranged.vertices, work);

@@ -47,7 +47,7 @@ class BucketSort {
 
  private:
   // A part has counts of its own, one per bucket: as many as pay.
-  static constexpr std::int64_t kLeastPart = 1 << 16, kMostParts = 8;
+  static constexpr std::int64_t kLeastPart = 1 << 14, kMostParts = 16;
   static constexpr std::int64_t kGrain = 1 << 15;
 
   template <class Body>

@@ -1,14 +1,17 @@
 #include "mesh/disk_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 #include "base/error.h"
-#include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
+#include "mesh/locality.h"
 
 namespace beltrami {
 namespace {
@@ -73,24 +76,22 @@ double total_area(const std::vector<Vec3>& positions, const std::vector<Triangle
 
 std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& faces,
                                      const Work& work) {
-  std::vector<Index> renumbered(vertex_count, kNone);
+  std::vector<std::uint8_t> used;
+  parallel_assign(work, used, static_cast<std::size_t>(vertex_count));
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (const Index v : faces[f]) {
-        std::atomic_ref<Index>(renumbered[v]).store(0, std::memory_order_relaxed);
+        std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
       }
     }
   });
-  std::vector<Index> original;
-  original.reserve(vertex_count);
-  PollSometimes poll;
-  for (Index v = 0; v < vertex_count; ++v) {
-    poll();
-    if (renumbered[v] == kNone) continue;
-    renumbered[v] = size_of(original);
-    original.push_back(v);
-  }
+  std::vector<Index> original =
+      parallel_filter(work, vertex_count, kGrain, [&](Index v) { return used[v] != 0; });
   if (size_of(original) == vertex_count) return original;
+  Scratch<Index> renumbered(work, used.size());
+  parallel_for(work, size_of(original), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) renumbered[original[v]] = v;
+  });
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       for (Index& v : faces[f]) v = renumbered[v];
@@ -120,41 +121,33 @@ double surface_area(const Surface& surface, const Work& work) {
 
 Normalisation normalise(std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                         const Work& work) {
-  Vec3 low = positions.front(), high = positions.front();
-  PollSometimes poll;
-  for (const Vec3& p : positions) {
-    poll();
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const Eigen::AlignedBox3d box = bounding_box(positions, work);
   Normalisation frame;
-  frame.centre = 0.5 * low + 0.5 * high;
+  frame.centre = 0.5 * box.min() + 0.5 * box.max();
   // The extent first, so that the area of a mesh of any unit neither under- nor overflows.
-  const double extent = (0.5 * high - 0.5 * low).maxCoeff();
+  const double extent = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
   if (!(extent > 0)) {
     throw Error(Fault::kZeroArea, "all vertices coincide: the surface has no area");
   }
-  const auto for_each_position = [&](const auto& change) {
-    parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t v = begin; v < end; ++v) change(positions[v]);
-    });
-  };
-  const auto rescale = [&](int exponent) {
+  const auto rescale = [&](const Vec3& centre, int exponent) {
     frame.exponent += exponent;
     // Two factors, since one alone could leave the range of numbers that their product stays in.
     const double half = std::ldexp(1.0, exponent / 2),
                  rest = std::ldexp(1.0, exponent - exponent / 2);
-    for_each_position([=](Vec3& p) { p = p * half * rest; });
+    parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t v = begin; v < end; ++v) {
+        positions[v] = (positions[v] - centre) * half * rest;
+      }
+    });
   };
-  for_each_position([&](Vec3& p) { p -= frame.centre; });
-  rescale(-std::ilogb(extent));
+  rescale(frame.centre, -std::ilogb(extent));
   const double area = total_area(positions, faces, work);
   if (!(area > 0)) {
     throw Error(Fault::kZeroArea,
                 "the surface has no area: every face is degenerate (check the vertex positions)");
   }
   // Nearest power of two to 1/sqrt(area).
-  rescale(std::min(kMostGrowth, -((std::ilogb(area) + 1) >> 1)));
+  rescale(Vec3::Zero(), std::min(kMostGrowth, -((std::ilogb(area) + 1) >> 1)));
   return frame;
 }
 

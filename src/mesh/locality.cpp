@@ -3,118 +3,167 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 
 #include "base/bucket_sort.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
 
 namespace beltrami {
 namespace {
 
 constexpr int kBits = 11;  // per axis: vertices that share a cell stay in the order of the input
 constexpr int kDigit = 11;
+constexpr int kIndexBits = 31;  // with a key, those of a word
 constexpr std::int64_t kGrain = 16384;
+constexpr int kLanes = 8;
 
-using Cell = std::array<std::uint32_t, 3>;
+using Lanes = std::array<std::uint32_t, kLanes>;
 
-/// Where a cell comes on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
-std::uint64_t hilbert_key(Cell x) {
-  for (std::uint32_t q = 1u << (kBits - 1); q > 1; q >>= 1) {
-    const std::uint32_t below = q - 1;
-    for (int i = 0; i < 3; ++i) {
-      if (x[i] & q) {
-        x[0] ^= below;
-      } else {
-        const std::uint32_t swapped = (x[0] ^ x[i]) & below;
-        x[0] ^= swapped;
-        x[i] ^= swapped;
-      }
+template <class Body>
+void for_each_lane(const Body& body) {
+  for (int lane = 0; lane < kLanes; ++lane) body(lane);
+}
+
+/// The bits of numbers of kBits, two empty ones after each.
+Lanes spread(Lanes x) {
+  for_each_lane([&](int l) {
+    x[l] = (x[l] | x[l] << 16) & 0x070000FF;
+    x[l] = (x[l] | x[l] << 8) & 0x0700F00F;
+    x[l] = (x[l] | x[l] << 4) & 0x430C30C3;
+    x[l] = (x[l] | x[l] << 2) & 0x49249249;
+  });
+  return x;
+}
+
+/// Where cells come on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve"), without
+/// branches that half of the cells take.
+std::array<std::uint64_t, kLanes> hilbert_keys(std::array<Lanes, 3>& x) {
+  for (int bit = kBits; --bit > 0;) {
+    const std::uint32_t below = (1U << bit) - 1;
+    const auto all_of_bit = [bit](std::uint32_t word) { return 0U - (word >> bit & 1); };
+    for_each_lane([&](int l) { x[0][l] ^= below & all_of_bit(x[0][l]); });
+    for (int i = 1; i < 3; ++i) {
+      for_each_lane([&](int l) {
+        const std::uint32_t set = all_of_bit(x[i][l]);
+        const std::uint32_t swapped = (x[0][l] ^ x[i][l]) & below & ~set;
+        x[0][l] ^= (below & set) | swapped;
+        x[i][l] ^= swapped;
+      });
     }
   }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
-  std::uint32_t parity = 0;
-  for (std::uint32_t q = 1u << (kBits - 1); q > 1; q >>= 1) {
-    if (x[2] & q) parity ^= q - 1;
-  }
-  std::uint64_t key = 0;
-  for (int bit = kBits; bit-- > 0;) {
-    for (int i = 0; i < 3; ++i) key = key << 1 | ((x[i] ^ parity) >> bit & 1);
-  }
-  return key;
+  for_each_lane([&](int l) {
+    x[1][l] ^= x[0][l];
+    x[2][l] ^= x[1][l];
+    std::uint32_t parity = x[2][l] >> 1;
+    for (int shift = 1; shift < kBits; shift *= 2) parity ^= parity >> shift;
+    for (Lanes& xi : x) xi[l] ^= parity;
+  });
+  for (Lanes& xi : x) xi = spread(xi);
+  std::array<std::uint64_t, kLanes> keys;
+  for_each_lane([&](int l) { keys[l] = std::uint64_t{x[0][l]} << 2 | x[1][l] << 1 | x[2][l]; });
+  return keys;
+}
+
+/// Where the points come on the curve, with their numbers in the low bits.
+void number_cells(const std::vector<Vec3>& points, const Work& work, Scratch<std::uint64_t>& keys) {
+  const Eigen::AlignedBox3d box = bounding_box(points, work);
+  // Halves, since the sides of a box of the largest numbers overflow.
+  const Vec3 low = 0.5 * box.min();
+  const double side = (0.5 * box.max() - low).maxCoeff();
+  constexpr double kCells = (1 << kBits) - 1;
+  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t first = begin; first < end; first += kLanes) {
+      const auto lanes = static_cast<int>(std::min<std::int64_t>(kLanes, end - first));
+      std::array<Lanes, 3> cells{};
+      for (int l = 0; l < lanes && side > 0; ++l) {
+        for (int i = 0; i < 3; ++i) {
+          const double place = std::clamp((0.5 * points[first + l][i] - low[i]) / side, 0.0, 1.0);
+          cells[i][l] = static_cast<std::uint32_t>(place * kCells);
+        }
+      }
+      const auto own = hilbert_keys(cells);
+      for (int l = 0; l < lanes; ++l) {
+        keys[first + l] = own[l] << kIndexBits | static_cast<std::uint64_t>(first + l);
+      }
+    }
+  });
 }
 
 }  // namespace
 
+Eigen::AlignedBox3d bounding_box(const std::vector<Vec3>& points, const Work& work) {
+  std::vector<Eigen::AlignedBox3d> of_chunk((points.size() + kGrain - 1) / kGrain);
+  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Eigen::AlignedBox3d own;
+    for (std::int64_t v = begin; v < end; ++v) own.extend(points[v]);
+    of_chunk[begin / kGrain] = own;
+  });
+  Eigen::AlignedBox3d box;
+  for (const Eigen::AlignedBox3d& own : of_chunk) box.extend(own);
+  return box;
+}
+
 std::vector<Index> along_hilbert_curve(const std::vector<Vec3>& points, const Work& work) {
   if (points.empty()) return {};
-  Vec3 low = points.front(), high = points.front();
-  for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  // Halves, since the sides of a box of the largest numbers overflow.
-  const double side = (0.5 * high - 0.5 * low).maxCoeff();
-  constexpr double kCells = (1 << kBits) - 1;
-  using Keyed = std::pair<std::uint64_t, Index>;
-  std::vector<Keyed> keyed, sorted;
-  parallel_assign(work, keyed, points.size());
-  parallel_assign(work, sorted, points.size());
-  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      Cell cell{};
-      for (int i = 0; i < 3 && side > 0; ++i) {
-        cell[i] = static_cast<std::uint32_t>(
-            std::clamp((0.5 * points[v][i] - 0.5 * low[i]) / side, 0.0, 1.0) * kCells);
-      }
-      keyed[v] = {hilbert_key(cell), v};
-    }
-  });
-  std::vector<Index> start;
-  for (int shift = 0; shift < 3 * kBits; shift += kDigit) {
-    const auto digit = [&](std::int64_t i) {
-      return keyed[i].first >> shift & ((1u << kDigit) - 1);
-    };
-    BucketSort<Index> sort(work, size_of(keyed), 1 << kDigit, start,
-                           [&](std::int64_t i, const auto& count) { count(digit(i)); });
-    sort.place([&](std::int64_t i, const auto& place) { sorted[place(digit(i))] = keyed[i]; });
-    keyed.swap(sorted);
-  }
-  std::vector<Index> order;
+  Scratch<std::uint64_t> keys(work, points.size()), sorted(work, points.size());
+  number_cells(points, work, keys);
+  std::vector<Index> start, order;
   parallel_assign(work, order, points.size());
-  std::transform(keyed.begin(), keyed.end(), order.begin(),
-                 [](const Keyed& k) { return k.second; });
+  constexpr int kEnd = kIndexBits + 3 * kBits;
+  for (int shift = kIndexBits; shift < kEnd; shift += kDigit) {
+    const auto digit = [&](std::int64_t i) { return keys[i] >> shift & ((1U << kDigit) - 1); };
+    BucketSort<Index> sort(work, size_of(points), 1 << kDigit, start,
+                           [&](std::int64_t i, const auto& count) { count(digit(i)); });
+    if (shift + kDigit < kEnd) {
+      sort.place([&](std::int64_t i, const auto& place) { sorted[place(digit(i))] = keys[i]; });
+      keys.swap(sorted);
+    } else {
+      constexpr std::uint64_t kIndex = (std::uint64_t{1} << kIndexBits) - 1;
+      sort.place([&](std::int64_t i, const auto& place) {
+        order[place(digit(i))] = static_cast<Index>(keys[i] & kIndex);
+      });
+    }
+  }
   return order;
 }
 
+namespace {
+
+Index least_vertex(const Triangle& face) {
+  return std::min({face[0], face[1], face[2]});
+}
+
+}  // namespace
+
 std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangle>& faces,
                                    const Work& work) {
-  const auto least = [&](std::int64_t f) {
-    return std::min({faces[f][0], faces[f][1], faces[f][2]});
-  };
   std::vector<Index> start, sorted;
   parallel_assign(work, sorted, faces.size());
   BucketSort<Index> sort(work, size_of(faces), vertex_count, start,
-                         [&](std::int64_t f, const auto& count) { count(least(f)); });
-  sort.place(
-      [&](std::int64_t f, const auto& place) { sorted[place(least(f))] = static_cast<Index>(f); });
+                         [&](std::int64_t f, const auto& count) { count(least_vertex(faces[f])); });
+  sort.place([&](std::int64_t f, const auto& place) {
+    sorted[place(least_vertex(faces[f]))] = static_cast<Index>(f);
+  });
   return sorted;
 }
 
 Arrangement arrange(const std::vector<Vec3>& positions, std::vector<Triangle>& faces,
                     const Work& work) {
   Arrangement arranged{along_hilbert_curve(positions, work), {}};
-  std::vector<Index> place;
-  parallel_assign(work, place, positions.size());
-  parallel_for(work, size_of(place), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<Index>(begin); i < end; ++i) place[arranged.vertices[i]] = i;
+  Scratch<Index> number(work, positions.size());
+  parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) number[arranged.vertices[i]] = i;
   });
-  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      for (Index& v : faces[f]) v = place[v];
-    }
+  std::vector<Index> start;
+  parallel_assign(work, arranged.faces, faces.size());
+  BucketSort<Index> sort(work, size_of(faces), size_of(positions), start,
+                         [&](std::int64_t f, const auto& count) {
+                           for (Index& v : faces[f]) v = number[v];
+                           count(least_vertex(faces[f]));
+                         });
+  sort.place([&](std::int64_t f, const auto& place) {
+    arranged.faces[place(least_vertex(faces[f]))] = static_cast<Index>(f);
   });
-  arranged.faces = by_least_vertex(size_of(positions), faces, work);
   faces = in_order(faces, arranged.faces, work);
   return arranged;
 }

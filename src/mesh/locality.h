@@ -1,6 +1,7 @@
 // Numbering vertices and faces by where they are, so that neighbours lie close in memory.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "base/work.h"
 
 namespace beltrami {
+
+/// The least box around points.
+Eigen::AlignedBox3d bounding_box(const std::vector<Vec3>& points, const Work& work);
 
 /// Points in the order of a Hilbert curve through their bounding box: the index of the first point,
 /// of the second, and so on. Points in one cell (2^-11 of the longest side) keep their order.
@@ -24,7 +28,10 @@ std::vector<Index> by_least_vertex(Index vertex_count, const std::vector<Triangl
 template <class Item>
 std::vector<Item> in_order(const std::vector<Item>& items, const std::vector<Index>& order,
                            const Work& work) {
-  std::vector<Item> result(order.size());
+  std::vector<Item> result;
+  result.reserve(order.size());
+  touch_memory(work, result.data(), order.size() * sizeof(Item));
+  result.resize(order.size());
   constexpr std::int64_t kGrain = 16384;
   parallel_for(work, size_of(order), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) result[i] = items[order[i]];

@@ -2,168 +2,88 @@
 
 #include <algorithm>
 #include <atomic>
-#include <span>
+#include <functional>
 #include <string>
 #include <utility>
 
-#include "base/bucket_sort.h"
 #include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "mesh/edges.h"
+#include "mesh/twins.h"
 
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 
 std::string quoted(Index index) {
   return std::to_string(index);
-}
-
-/// Throws NON_MANIFOLD_EDGE or ORIENTATION with the later face concerned, at the first edge with
-/// more than two half-edges, or two in the same direction.
-[[noreturn]] void throw_edge_defect(const std::vector<Triangle>& faces,
-                                    const HalfedgeBuckets& buckets) {
-  // For the larger end vertex: the half-edges seen in the current bucket, in each direction.
-  struct Seen {
-    Index bucket = kNone, up = kNone, down = kNone;
-  };
-  const Index vertex_count = size_of(buckets.start) - 1;
-  std::vector<Seen> seen(vertex_count);
-  for (Index v = 0; v < vertex_count; ++v) {
-    for (Index i = buckets.start[v]; i < buckets.start[v + 1]; ++i) {
-      const Index h = buckets.spokes[i].halfedge();
-      const auto [from, to] = ends_of(faces, h);
-      Seen& other = seen[std::max(from, to)];
-      if (other.bucket != v) other = {v, kNone, kNone};
-      Index& same = from < to ? other.up : other.down;
-      const Index opposite = from < to ? other.down : other.up;
-      if (same == kNone) {
-        same = h;
-        continue;
-      }
-      const std::string edge = "the edge " + quoted(from) + "-" + quoted(to);
-      if (opposite != kNone) {
-        throw Error(Fault::kNonManifoldEdge,
-                    "face " + quoted(h / 3) + " is at least the third on " + edge +
-                        ": split the surface there, so that no edge has more than two faces",
-                    Element::face(h / 3));
-      }
-      // A third face on the edge makes it non-manifold, whichever way it runs.
-      const auto rest = buckets.spokes.begin() + i + 1;
-      const auto end = buckets.spokes.begin() + buckets.start[v + 1];
-      if (std::any_of(rest, end, [larger = std::max(from, to)](const Spoke& spoke) {
-            return spoke.far() == larger;
-          })) {
-        throw Error(Fault::kNonManifoldEdge,
-                    "more than two faces, " + quoted(h / 3) + " among them, share " + edge +
-                        ": split the surface there",
-                    Element::face(h / 3));
-      }
-      throw Error(Fault::kOrientation,
-                  "faces " + quoted(same / 3) + " and " + quoted(h / 3) + " run along " + edge +
-                      " in the same direction: orient all faces alike (or remove a duplicate)",
-                  Element::face(h / 3));
-    }
-  }
-  throw Error(Fault::kInternal, "half-edges could not be paired, please report it");
-}
-
-std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
-                                  const Work& work) {
-  HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
-  std::vector<Index> twin;
-  parallel_assign(work, twin, buckets.spokes.size(), kNone);
-  std::atomic<bool> sound{true};
-  for_each_edge(work, buckets, [&](std::span<const Spoke> edge) {
-    if (edge.size() == 1) return;
-    if (edge.size() > 2 || edge[0].outwards() == edge[1].outwards()) {
-      sound = false;
-      return;
-    }
-    twin[edge[0].halfedge()] = edge[1].halfedge();
-    twin[edge[1].halfedge()] = edge[0].halfedge();
-  });
-  if (!sound) throw_edge_defect(faces, sort_halfedges(vertex_count, faces, work));
-  return twin;
-}
-
-std::vector<Index> boundary_halfedges(const Surface& surface, const Work& work) {
-  return parallel_filter(work, size_of(surface.twin), kGrain,
-                         [&](Index h) { return surface.twin[h] == kNone; });
 }
 
 /// Fills `outgoing`, given the half-edges without a twin; throws NON_MANIFOLD_VERTEX where the
 /// faces of a vertex form several fans.
 void link_vertices(Surface& surface, const std::vector<Index>& boundary, const Work& work) {
   const Index vertex_count = surface.vertex_count();
-  surface.outgoing.assign(vertex_count, kNone);
-  // The first one, whichever thread comes first.
+  parallel_assign(work, surface.outgoing, surface.positions.size(), kNone);
+  // Any one, whichever thread comes last.
   parallel_for(work, surface.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
       for (int k = 0; k < 3; ++k) {
-        const Index h = 3 * f + k;
-        const std::atomic_ref<Index> outgoing(surface.outgoing[surface.faces[f][k]]);
-        Index known = outgoing.load(std::memory_order_relaxed);
-        while ((known == kNone || h < known) &&
-               !outgoing.compare_exchange_weak(known, h, std::memory_order_relaxed)) {
-        }
+        std::atomic_ref<Index>(surface.outgoing[surface.faces[f][k]])
+            .store(3 * f + k, std::memory_order_relaxed);
       }
     }
   });
   for (const Index h : boundary) surface.outgoing[surface.origin(h)] = h;
 
-  const auto fan = [&](Index v) {
-    Index faces = 0;
-    if (surface.outgoing[v] == kNone) return faces;
+  struct Fan {
+    Index faces = 0, least = kNone;  // half-edge
+  };
+  const auto fan_of = [&](Index v) {
+    Fan fan;
+    if (surface.outgoing[v] == kNone) return fan;
     PollSometimes poll;  // a hub may have all faces
-    surface.for_each_outgoing(v, [&](Index) {
+    fan.least = surface.outgoing[v];
+    surface.for_each_outgoing(v, [&](Index h) {
       poll();
-      ++faces;
+      fan.least = std::min(fan.least, h);
+      ++fan.faces;
     });
-    return faces;
+    return fan;
   };
   std::atomic<Index> in_fans{0};
   parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
     Index faces = 0;
-    for (auto v = static_cast<Index>(begin); v < end; ++v) faces += fan(v);
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      const Fan fan = fan_of(v);
+      faces += fan.faces;
+      if (!surface.on_boundary[v]) surface.outgoing[v] = fan.least;
+    }
     in_fans += faces;
   });
   if (in_fans == size_of(surface.twin)) return;
   std::vector<Index> valence(vertex_count, 0);
   for (Index h = 0; h < size_of(surface.twin); ++h) ++valence[surface.origin(h)];
   Index v = 0;
-  while (fan(v) == valence[v]) ++v;
+  while (fan_of(v).faces == valence[v]) ++v;
   throw Error(Fault::kNonManifoldVertex,
               "the faces around vertex " + quoted(v) +
                   " form more than one fan: duplicate the vertex, one copy for each fan",
               Element::vertex(v));
 }
 
-}  // namespace
-
-HalfedgeBuckets sort_halfedges(Index vertex_count, const std::vector<Triangle>& faces,
-                               const Work& work) {
-  HalfedgeBuckets buckets;
-  const auto for_each_halfedge = [&](std::int64_t f, const auto& visit) {
-    for (int k = 0; k < 3; ++k) {
-      visit(static_cast<Index>(3 * f + k), faces[f][k], faces[f][next_corner(k)]);
-    }
-  };
-  BucketSort<Index> sort(
-      work, size_of(faces), vertex_count, buckets.start, [&](std::int64_t f, const auto& count) {
-        for_each_halfedge(f, [&](Index, Index from, Index to) { count(std::min(from, to)); });
-      });
-  parallel_assign(work, buckets.spokes, 3 * faces.size());
-  sort.place([&](std::int64_t f, const auto& place) {
-    for_each_halfedge(f, [&](Index h, Index from, Index to) {
-      buckets.spokes[place(std::min(from, to))] = Spoke(h, from, to);
-    });
-  });
-  return buckets;
+/// The half-edges without a twin, increasing.
+std::vector<Index> boundary_halfedges(const Surface& surface, const Work& work) {
+  std::vector<Index> halfedges = parallel_filter(
+      work, surface.vertex_count(), kGrain,
+      [&](Index v) { return surface.on_boundary[v] && surface.outgoing[v] != kNone; });
+  for (Index& item : halfedges) item = surface.outgoing[item];
+  sort_interruptibly(halfedges.begin(), halfedges.end(), std::less<>());
+  return halfedges;
 }
+
+}  // namespace
 
 void validate_indices(Index vertex_count, const std::vector<Triangle>& faces,
                       RepeatedVertices repeated, const Work& work) {
@@ -202,30 +122,32 @@ void validate_positions(const std::vector<Vec3>& positions, const Work& work) {
 std::vector<Index> connected_faces(const Surface& surface, const Work& work) {
   // Chunks of faces side by side, then what connects them.
   const Index face_count = surface.face_count();
-  DisjointSets sets(face_count);
+  DisjointSets sets(face_count, work);
   std::vector<std::vector<std::array<Index, 2>>> across((face_count + kGrain - 1) / kGrain);
   parallel_for(work, face_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    const auto first = static_cast<Index>(3 * begin);
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
-      sets.make(f);
+      const Index* const twin = &surface.twin[3 * f];
+      const auto is_before = [&](Index t) { return t >= first && t < 3 * f; };
+      // Most have the set of whichever neighbour before them is looked at.
+      Index known = f;
+      for (int k = 0; k < 3; ++k) known = is_before(twin[k]) ? twin[k] / 3 : known;
+      sets.make(f, known == f ? f : sets.root(known));
       for (int k = 0; k < 3; ++k) {
-        const Index twin = surface.twin[3 * f + k];
-        if (twin == kNone || twin / 3 > f) continue;
-        if (twin / 3 >= begin) {
-          sets.unite(f, twin / 3);
-        } else {
-          across[begin / kGrain].push_back({f, twin / 3});
-        }
+        const Index other = is_before(twin[k]) ? twin[k] / 3 : known;
+        if (!sets.have_one_parent(f, other)) sets.unite(f, other);
+        if (twin[k] != kNone && twin[k] < first) across[begin / kGrain].push_back({f, twin[k] / 3});
       }
     }
   });
-  PollSometimes poll;
-  for (const auto& pairs : across) {
-    for (const auto& [one, other] : pairs) {
+  parallel_for(work, size_of(across), 1, [&](std::int64_t chunk, std::int64_t) {
+    PollSometimes poll;
+    for (const auto& [one, other] : across[chunk]) {
       poll();
-      sets.unite(one, other);
+      sets.unite_beside_others(one, other);
     }
-  }
-  return std::move(sets).roots();
+  });
+  return std::move(sets).roots(work);
 }
 
 BoundaryLoops boundary_loops(const Surface& surface, const Work& work) {
@@ -292,10 +214,11 @@ Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, 
   surface.positions = std::move(positions);
   surface.faces = std::move(faces);
   surface.twin = pair_halfedges(surface.vertex_count(), surface.faces, work);
-  const std::vector<Index> boundary = boundary_halfedges(surface, work);
-  link_vertices(surface, boundary, work);
+  const std::vector<Index> boundary = parallel_filter(
+      work, size_of(surface.twin), kGrain, [&](Index h) { return surface.twin[h] == kNone; });
   surface.on_boundary.assign(surface.vertex_count(), false);
   for (const Index h : boundary) surface.on_boundary[surface.origin(h)] = true;
+  link_vertices(surface, boundary, work);
   return surface;
 }
 

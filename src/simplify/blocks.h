@@ -14,6 +14,14 @@
 
 namespace beltrami {
 
+/// The greatest blocks of which there are so many; those of the least size may be fewer.
+inline int block_shift(Index vertices, Index blocks) {
+  constexpr int kLeast = 10, kMost = 14;
+  int shift = kMost;
+  while (shift > kLeast && vertices >> shift < blocks) --shift;
+  return shift;
+}
+
 /// The vertices that what is under way may look at and change: those of a block of 2^shift, or of
 /// two; or all.
 class Territory {

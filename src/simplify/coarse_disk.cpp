@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
@@ -16,13 +17,13 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 
 /// From the next vertex on the way to the coarse vertex at its end.
 std::vector<Index> follow_collapses(std::vector<Index> into, const std::vector<Index>& fine_vertex,
                                     const Work& work) {
-  std::vector<Index> coarse_vertex, nearby;
-  parallel_assign(work, coarse_vertex, into.size());
+  Scratch<Index> coarse_vertex(work, into.size());
+  std::vector<Index> nearby;
   parallel_assign(work, nearby, into.size());
   parallel_for(work, size_of(fine_vertex), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto c = static_cast<Index>(begin); c < end; ++c) coarse_vertex[fine_vertex[c]] = c;

@@ -39,11 +39,10 @@ constexpr Index kMaxTargetValence = 64;
 constexpr int kMaxAttempts = 3;
 
 /// Blocks are simplified side by side, then pairs of them; what reaches into a third block comes
-/// after them. There are at least so many where they have 2^kLeastShift vertices or more. Their
+/// after them. There are at least so many where they need not be smaller than the least. Their
 /// borders do not depend on the number of threads, so the result does not either; and they move
 /// from pass to pass, since vertices are renumbered.
 constexpr Index kBlocks = 24;
-constexpr int kLeastShift = 10, kMostShift = 14;
 
 /// Collapses that are left to the target, below which all of them go in one order.
 constexpr Index kFewCollapses = 256;
@@ -101,12 +100,6 @@ Candidate cheapest_collapse(const ShrinkingSurface& surface, Index v, const Cand
   return best;
 }
 
-int block_shift(Index vertices) {
-  int shift = kMostShift;
-  while (shift > kLeastShift && vertices >> shift < kBlocks) --shift;
-  return shift;
-}
-
 /// Those of a pass, block by block, in the order of the vertices.
 struct Candidates {
   int shift;
@@ -129,7 +122,7 @@ void for_each_block(const Candidates& candidates, const Work& work, const Body& 
 Candidates find_candidates(const ShrinkingSurface& surface, const Work& work) {
   const Candidate no_floor{-1, kNone, kNone};
   const Index count = surface.vertex_count();
-  const int shift = block_shift(count);
+  const int shift = block_shift(count, kBlocks);
   Candidates candidates{shift, {}};
   candidates.of_block.resize(((count - 1) >> shift) + 1);
   for_each_block(candidates, work, [&](Index block) {

@@ -165,7 +165,9 @@ ShrinkingSurface make_surface(const Surface& mesh, const VertexLoops& loops, con
   const Index vertex_count = mesh.vertex_count();
   ShrinkingSurface surface;
   parallel_assign(work, surface.site, mesh.positions.size());
-  for (Index v = 0; v < vertex_count; ++v) surface.site[v] = {mesh.positions[v], 0};
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) surface.site[v] = {mesh.positions[v], 0};
+  });
   surface.loop_next.assign(vertex_count, kNone);
   surface.loop_previous.assign(vertex_count, kNone);
   surface.fine_vertex.resize(vertex_count);
