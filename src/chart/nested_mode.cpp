@@ -102,8 +102,7 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
     const auto coarse_rest = rest_triangles(coarse.mesh.positions, coarse.mesh.faces, inner);
     const auto derivatives =
         carried(vertex_derivatives(coarse.mesh, coarse_rest, climb.map.uvs, inner), points, inner);
-    level.carried.reserve(points.size());
-    for (const Footpoint& at : points) level.carried.push_back(interpolated(at, climb.map.uvs));
+    level.carried = carried(climb.map.uvs, points, inner);
     level.equations = target_equations(options.energy, mesh, level.problem.rest, derivatives,
                                        level.carried, inner);
     cycle.add(mesh, std::move(points));
@@ -130,8 +129,9 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     cycle.set(level.equations.weights, springs_of(mesh, level.equations, anchored));
-    map.uvs = level.carried;
-    SingleField residual = level.equations.residual;
+    copy_field(inner, level.carried, map.uvs);
+    SingleField residual;
+    copy_field(inner, level.equations.residual, residual);
     for (int round = 0; round < kRounds; ++round) {
       cycle.improve(kSteps, residual, map.uvs);
       flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
@@ -151,10 +151,12 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
 /// Polishes where it is worth it; with contact where the boundary would cross itself.
 void polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
                   const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
-  std::vector<Vec2> start = climb.map.uvs;
+  const bool may_return = simple && !pressed;
+  std::vector<Vec2> start;
+  if (may_return) copy_field(work, climb.map.uvs, start);
   ChartMap polished = polish_map(level.problem, pressed ? &level.contact : nullptr, length, options,
                                  work, cycle, std::move(climb.map.uvs));
-  if (simple && !pressed && !level.contact.is_simple(polished.uvs)) {
+  if (may_return && !level.contact.is_simple(polished.uvs)) {
     const StageStatistics lost = given_up(polished.statistics.stages);
     polished = polish_map(level.problem, &level.contact, PolishLength::kWhole, options, work, cycle,
                           std::move(start));
@@ -198,7 +200,7 @@ void climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest, bo
   const bool converged = climb.map.converged;
   if (converged && is_finest) return;
   const double below = climb.energy;
-  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
+  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs, work);
   if (converged) return;
   climb.hard = true;
   climb.failed = to_dirichlet(options.energy, climb.energy) >
@@ -219,7 +221,7 @@ Climb climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels, bool la
   climb.hard = climb.failed || !climb.map.converged;
   if (climb.failed || (climb.hard && !last)) return climb;
   const auto flat = rest_triangles(coarsest.positions, coarsest.faces, begin);
-  climb.energy = mean_energy(options.energy, coarsest.faces, flat, climb.map.uvs);
+  climb.energy = mean_energy(options.energy, coarsest.faces, flat, climb.map.uvs, begin);
   VCycle cycle(coarsest,
                energy_stiffness(options.energy, coarsest.faces, flat, climb.map.uvs, begin), begin);
   for (std::size_t l = levels.size(); l-- > 0;) {
