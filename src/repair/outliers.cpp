@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "repair/hub_turns.h"
 #include "repair/patch.h"
 #include "repair/patch_work.h"
 
@@ -108,18 +109,42 @@ struct Try {
   bool is_cut() const { return !patch.faces.empty(); }
 };
 
-/// Takes patches out of `waiting`, in turn, none of which moves a vertex of another; those around
-/// `treated` faces go. Of the others most are around faces of those taken: they are not cut yet.
+/// Cuts the patches around the faces in turn that have no vertex beside those of another: what is
+/// nearer is in its patch.
+void cut_some(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+              const std::vector<Vec2>& uvs, const Work& work, std::vector<Try>& waiting) {
+  std::vector<std::size_t> chosen;
+  std::unordered_set<Index> around;  // vertices
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    const Triangle& corners = mesh.faces[waiting[i].face];
+    const bool near =
+        std::any_of(corners.begin(), corners.end(), [&](Index v) { return around.contains(v); });
+    if (near) continue;
+    for (const Index v : corners) {
+      around.insert(v);
+      if (is_hub(mesh, v, kManyFaces)) continue;
+      mesh.for_each_outgoing(v, [&](Index h) { around.insert(mesh.target(h)); });
+    }
+    if (!waiting[i].is_cut()) chosen.push_back(i);
+  }
+  parallel_for(work, size_of(chosen), 1, [&](std::int64_t i, std::int64_t) {
+    Try& next = waiting[chosen[i]];
+    next.patch = cut_patch(mesh, rest, uvs, next.face, kRings);
+  });
+}
+
+/// Takes patches out of `waiting`, in turn, none of which moves a vertex of another. Those around
+/// faces of patches that were `treated` go.
 std::vector<Try> take_apart(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                             const std::vector<Vec2>& uvs, const std::unordered_set<Index>& treated,
-                            std::vector<Try>& waiting) {
+                            const Work& work, std::vector<Try>& waiting) {
+  std::erase_if(waiting, [&](const Try& next) { return treated.contains(next.face); });
+  cut_some(mesh, rest, uvs, work, waiting);
   std::vector<Try> apart, later;
-  std::unordered_set<Index> faces, moving, present;  // the last two: vertices
+  std::unordered_set<Index> moving, present;  // vertices
   for (Try& next : waiting) {
-    if (treated.contains(next.face)) continue;
-    bool meets = faces.contains(next.face);
-    if (!meets && !next.is_cut()) next.patch = cut_patch(mesh, rest, uvs, next.face, kRings);
     const Patch& patch = next.patch;
+    bool meets = !next.is_cut();
     for (std::size_t i = 0; i < patch.mesh_vertices.size() && !meets; ++i) {
       meets = (patch.fixed[i] ? moving : present).contains(patch.mesh_vertices[i]);
     }
@@ -127,7 +152,6 @@ std::vector<Try> take_apart(const DiskMesh& mesh, const std::vector<RestTriangle
       later.push_back(std::move(next));
       continue;
     }
-    faces.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
     for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
       present.insert(patch.mesh_vertices[i]);
       if (!patch.fixed[i]) moving.insert(patch.mesh_vertices[i]);
@@ -173,7 +197,7 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
       while (!waiting.empty()) {
         if (work.out_of_time()) return patches;
         work.report((round + static_cast<double>(begin) / outliers.size()) / kRounds);
-        std::vector<Try> tries = take_apart(mesh, rest, uvs, treated, waiting);
+        std::vector<Try> tries = take_apart(mesh, rest, uvs, treated, work, waiting);
         minimise(energy, uvs, work, tries);
         for (Try& made : tries) {
           if (!made.positive || !taken.take(made.patch)) continue;
