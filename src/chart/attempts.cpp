@@ -75,7 +75,7 @@ JudgedMap attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& w
   if (options.refine) refine(disk, options, work.part(method_done, kMethod), made.map);
   {
     const auto rest = rest_triangles(disk.positions, disk.faces, work);
-    scale_best(disk, rest, options, made.map.uvs);
+    scale_best(disk, rest, options, work, made.map.uvs);
   }
   made.delivery = prepare(disk, frame, made.map.uvs, options, work.part(kMethod, 1),
                           made.map.statistics.stages);

@@ -28,7 +28,7 @@ ChartMap boundary_first_mode(const FineProblem& fine, const ChartOptions& option
     const auto lengths = metric_boundary_lengths(mesh, fine.rest, fine.metric);
     map.uvs = flatten_boundary_first(mesh, fine.rest, fine.metric, lengths, inner).uvs;
     // A conformal map is as good at any scale; the energies are not.
-    const double scale = best_scale(options.energy, mesh.faces, fine.rest, map.uvs);
+    const double scale = best_scale(options.energy, mesh.faces, fine.rest, map.uvs, inner);
     for (Vec2& w : map.uvs) w *= scale;
   });
   map.statistics.flips_before_repair = size_of(non_positive_faces(mesh.faces, map.uvs, work));

@@ -70,7 +70,7 @@ std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index targe
   } else {
     uvs = start_map(coarse, rest, options, work);
     if (!non_positive_faces(coarse.faces, uvs, work).empty()) return std::nullopt;
-    scale_best(coarse, rest, options, uvs);
+    scale_best(coarse, rest, options, work, uvs);
     minimum.uvs = descend(coarse, rest, std::move(uvs), newton, simple, options, work).uvs;
   }
   minimum.metric = prolong_metric(coarse, face_metrics(coarse.faces, rest, minimum.uvs), mesh,

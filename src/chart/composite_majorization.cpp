@@ -68,7 +68,7 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   if (!non_positive_faces(mesh.faces, uvs, work).empty()) {
     return {.uvs = std::move(uvs), .converged = true};
   }
-  scale_best(mesh, rest, options, uvs);
+  scale_best(mesh, rest, options, work, uvs);
   start_flat(mesh, rest, options, uvs, work);
   NewtonOptions newton = newton_options(options);
   newton.tolerance = tolerance;

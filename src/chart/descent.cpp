@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
+#include "base/parallel.h"
+#include "base/types.h"
 #include "chart/coarser_start.h"
 #include "descend/contact.h"
 #include "descend/tutte.h"
@@ -20,6 +23,7 @@ constexpr Index kContactFaces = 3000;
 constexpr double kFarStart = 1.1;
 /// Scales nearer to each other than that differ by 1e-11 of the energy: not worth a rounding.
 constexpr double kSameScale = 1e-6;
+constexpr std::int64_t kGrain = 16384;
 
 struct Led {
   NewtonResult newton;  ///< of the energy asked for
@@ -58,7 +62,7 @@ void start_nearer(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, d
                   const ChartOptions& options, const Work& work, std::vector<Vec2>& uvs) {
   if (mesh.face_count() < kContactFaces || work.out_of_time()) return;
   const auto energy = [&](const std::vector<Vec2>& map) {
-    return to_dirichlet(options.energy, mean_energy(options.energy, mesh.faces, rest, map));
+    return to_dirichlet(options.energy, mean_energy(options.energy, mesh.faces, rest, map, work));
   };
   if (!(energy(uvs) > kFarStart * to_dirichlet(options.energy, free_energy))) return;
   std::vector<Vec2> start = contact_from_coarser(mesh, rest, uvs, options, work);
@@ -76,10 +80,12 @@ NewtonOptions newton_options(const ChartOptions& options) {
 }
 
 void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                const ChartOptions& options, std::vector<Vec2>& uvs) {
-  const double scale = best_scale(options.energy, mesh.faces, rest, uvs);
+                const ChartOptions& options, const Work& work, std::vector<Vec2>& uvs) {
+  const double scale = best_scale(options.energy, mesh.faces, rest, uvs, work);
   if (std::abs(scale - 1) < kSameScale) return;
-  for (Vec2& w : uvs) w *= scale;
+  parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) uvs[v] *= scale;
+  });
 }
 
 Descent descend_led(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
@@ -109,7 +115,7 @@ Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   newton.contact = &contact;
   newton.tolerance = std::max(newton.tolerance, options.tolerance);
   const Led pressed = descend_with_lead(mesh, rest, newton, work, uvs);
-  scale_best(mesh, rest, options, uvs);  // without the barrier, which presses outwards
+  scale_best(mesh, rest, options, work, uvs);  // without the barrier, which presses outwards
   Descent done = ended(pressed, iterations, std::move(uvs));
   done.in_contact = contact.is_pressed(done.uvs);
   return done;

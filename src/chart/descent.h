@@ -27,7 +27,7 @@ NewtonOptions newton_options(const ChartOptions& options);
 
 /// Scales a map so that its mean energy is least.
 void scale_best(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                const ChartOptions& options, std::vector<Vec2>& uvs);
+                const ChartOptions& options, const Work& work, std::vector<Vec2>& uvs);
 
 /// From `start` with the contact of `newton`, if any; another energy than the symmetric Dirichlet
 /// one is led to by that. Precondition: every face is positive in `start`. Throws Error SOLVER.

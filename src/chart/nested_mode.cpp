@@ -111,8 +111,7 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
     const auto coarse_rest = rest_triangles(coarse.mesh.positions, coarse.mesh.faces, inner);
     const auto derivatives =
         carried(vertex_derivatives(coarse.mesh, coarse_rest, climb.map.uvs, inner), points, inner);
-    level.carried.reserve(points.size());
-    for (const Footpoint& at : points) level.carried.push_back(interpolated(at, climb.map.uvs));
+    level.carried = carried(climb.map.uvs, points, inner);
     level.equations = target_equations(options.energy, mesh, level.problem.rest, derivatives,
                                        level.carried, inner);
     cycle.add(mesh, std::move(points));
@@ -139,8 +138,9 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     cycle.set(level.equations.weights, springs_of(mesh, level.equations, anchored));
-    map.uvs = level.carried;
-    SingleField residual = level.equations.residual;
+    copy_field(inner, level.carried, map.uvs);
+    SingleField residual;
+    copy_field(inner, level.equations.residual, residual);
     for (int round = 0; round < kRounds; ++round) {
       cycle.improve(kSteps, residual, map.uvs);
       flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
@@ -160,10 +160,12 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
 /// Polishes where it is worth it; with contact where the boundary would cross itself.
 void polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
                   const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
-  std::vector<Vec2> start = climb.map.uvs;
+  const bool may_return = simple && !pressed;
+  std::vector<Vec2> start;
+  if (may_return) copy_field(work, climb.map.uvs, start);
   ChartMap polished = polish_map(level.problem, pressed ? &level.contact : nullptr, length, options,
                                  work, cycle, std::move(climb.map.uvs));
-  if (simple && !pressed && !level.contact.is_simple(polished.uvs)) {
+  if (may_return && !level.contact.is_simple(polished.uvs)) {
     const StageStatistics lost = given_up(polished.statistics.stages);
     polished = polish_map(level.problem, &level.contact, PolishLength::kWhole, options, work, cycle,
                           std::move(start));
@@ -209,7 +211,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool converged = climb.map.converged;
   if (converged && is_finest) return true;
   const double below = climb.energy;
-  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs);
+  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs, work);
   if (converged) return true;
   climb.hard = true;
   return to_dirichlet(options.energy, climb.energy) <=
@@ -226,7 +228,6 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   problem.statistics.coarse_energy = climb.energy;
   measure_fine("prolong", false, options, work.part(0, 0.2), problem);
   ChartMap map = metric_mode(problem, options, work.part(0.2, 1));
-  climb.energy = mean_energy(options.energy, mesh.faces, problem.rest, map.uvs);
   problem.statistics.coarse_energy = 0;  // of the coarsest level, that of the climb
   const bool in_contact = climb.map.in_contact || map.in_contact;
   map = joined(std::move(problem), std::move(map));
@@ -238,9 +239,11 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 
+/// A cycle of the level reached alone.
 void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
                  Climb& climb) {
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
+  climb.energy = mean_energy(options.energy, mesh.faces, rest, climb.map.uvs, work);
   climb.cycle = std::make_unique<VCycle>(
       mesh, energy_stiffness(options.energy, mesh.faces, rest, climb.map.uvs, work), work);
 }
@@ -285,9 +288,6 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
   bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);
   if (injective) {
     climb.hard = !climb.map.converged;
-    climb.energy =
-        mean_energy(options.energy, coarsest.faces,
-                    rest_triangles(coarsest.positions, coarsest.faces, begin), climb.map.uvs);
     begin_cycle(coarsest, options, begin, climb);
   }
   for (std::size_t l = levels.size(); injective && l-- > 0;) {

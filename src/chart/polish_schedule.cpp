@@ -207,7 +207,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
     end_with_newton(setting, state);
     // A map that no step has changed was cleaned when it was mended.
     if (state.iterations > 0) clean(setting, {}, state);
-    if (contact) scale_best(*fine.mesh, fine.rest, options, state.uvs);
+    if (contact) scale_best(*fine.mesh, fine.rest, options, inner, state.uvs);
     stage.iterations = state.iterations;
     map.uvs = std::move(state.uvs);
     map.converged = state.converged;

@@ -40,7 +40,7 @@ Descent descend_from_circle(const FineProblem& fine, bool simple, const ChartOpt
   if (!certify(mesh.faces, mesh.boundary, uvs, work).injective()) {
     uvs = grid_drawing(mesh);
   }
-  scale_best(mesh, fine.rest, options, uvs);
+  scale_best(mesh, fine.rest, options, work, uvs);
   start_flat(mesh, fine.rest, options, uvs, work);
   return descend(mesh, fine.rest, std::move(uvs), newton_options(options), simple, options, work);
 }

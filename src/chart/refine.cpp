@@ -19,8 +19,8 @@ void refine(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
   run_stage("refine", work, map.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
     const auto rest = rest_triangles(mesh.positions, mesh.faces, inner);
     const auto scaled_energy = [&](std::vector<Vec2>& uvs) {
-      scale_best(mesh, rest, options, uvs);
-      return mean_energy(options.energy, mesh.faces, rest, uvs);
+      scale_best(mesh, rest, options, inner, uvs);
+      return mean_energy(options.energy, mesh.faces, rest, uvs, inner);
     };
     const double before = scaled_energy(map.uvs);
     NewtonOptions newton = newton_options(options);

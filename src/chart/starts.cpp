@@ -24,12 +24,12 @@ std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle
 
 void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const ChartOptions& options, std::vector<Vec2>& uvs, const Work& work) {
-  double least = mean_energy(options.energy, mesh.faces, rest, uvs);
+  double least = mean_energy(options.energy, mesh.faces, rest, uvs, work);
   const std::vector<double> lengths = boundary_lengths(mesh);
   BoundaryContact contact(mesh.boundary, lengths, lengths);
   for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
-    scale_best(mesh, rest, options, start);
-    double energy = mean_energy(options.energy, mesh.faces, rest, start);
+    scale_best(mesh, rest, options, work, start);
+    double energy = mean_energy(options.energy, mesh.faces, rest, start, work);
     if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, work).injective()) continue;
     if (keeps_boundary_simple(options)) {
       contact.fit(start, 2);

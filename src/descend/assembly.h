@@ -83,7 +83,7 @@ void assemble(const std::vector<Triangle>& faces, const Model& model_of, MeshMat
       if (row == kNone) continue;
       const Vec2 term = model.gradient.template segment<2>(2 * k);
       if (chunks.shared(t[k])) {
-        aside[FaceChunks::of(f)].push_back({row, term});
+        aside[chunks.of(f)].push_back({row, term});
       } else {
         gradient.segment<2>(2 * row) += term;
       }

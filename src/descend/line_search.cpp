@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "mesh/face_chunks.h"
 
 namespace beltrami {
 namespace {
-
-constexpr std::int64_t kGrain = 8192;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -42,9 +41,10 @@ AreaPolynomial area_along(const Triangle& t, const std::vector<Vec2>& uvs,
 
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
                            const std::vector<Vec2>& direction, const Work& work) {
-  std::vector<double> smallest(faces.size() / kGrain + 1, std::numeric_limits<double>::infinity());
-  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    double& least = smallest[begin / kGrain];
+  const std::int64_t grain = FaceChunks::grain_of(size_of(faces));
+  std::vector<double> smallest(faces.size() / grain + 1, std::numeric_limits<double>::infinity());
+  parallel_for(work, size_of(faces), grain, [&](std::int64_t begin, std::int64_t end) {
+    double& least = smallest[begin / grain];
     for (std::int64_t f = begin; f < end; ++f) {
       const auto [c0, c1, c2] = area_along(faces[f], uvs, direction);
       least = std::min(least, smallest_positive_root(c0, c1, c2));
@@ -57,8 +57,9 @@ std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
                                          const std::vector<std::uint8_t>* among, const Work& work) {
-  std::vector<std::vector<SingularStep>> found(faces.size() / kGrain + 1);
-  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  const std::int64_t grain = FaceChunks::grain_of(size_of(faces));
+  std::vector<std::vector<SingularStep>> found(faces.size() / grain + 1);
+  parallel_for(work, size_of(faces), grain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
       const Triangle& t = faces[f];
       if (among && !((*among)[t[0]] | (*among)[t[1]] | (*among)[t[2]])) continue;
@@ -66,7 +67,7 @@ std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
       // Most faces are far from it, and need no root.
       if (c0 > limit * (std::max(0.0, -c1) + limit * std::max(0.0, -c2))) continue;
       const double root = smallest_positive_root(c0, c1, c2);
-      if (root < limit) found[begin / kGrain].push_back({static_cast<Index>(f), root});
+      if (root < limit) found[begin / grain].push_back({static_cast<Index>(f), root});
     }
   });
   std::vector<SingularStep> all;

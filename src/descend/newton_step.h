@@ -21,6 +21,7 @@
 #include "descend/newton_loop.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
+#include "mesh/face_chunks.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -76,7 +77,6 @@ class NewtonStepper {
   NewtonStep step_with(const Model& model, std::vector<Vec2>& uvs, double energy);
 
  private:
-  static constexpr std::int64_t kGrain = 8192;
   static constexpr double kJammed = 0.25;  // of a step, below which what touches first is stuck
   static constexpr double kFreed = 0.2;    // of the reach, beyond which it is no more
   static constexpr double kPatternMargin = 1.3;  // of the reach, up to which pairs have entries
@@ -126,7 +126,7 @@ double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
     }
     return sum;
   };
-  return parallel_sum(work_, size_of(faces_), kGrain, part);
+  return parallel_sum(work_, size_of(faces_), FaceChunks::grain_of(size_of(faces_)), part);
 }
 
 /// The projected Hessian is definite once a vertex is fixed, but barely so along nearly free
@@ -135,10 +135,12 @@ double NewtonStepper<Density>::mean_energy(const std::vector<Vec2>& uvs) const {
 template <class Density>
 bool NewtonStepper<Density>::factorize() {
   SparseMatrix& matrix = hessian_.matrix();
-  const Eigen::VectorXd diagonal = matrix.diagonal();
+  const int* const first = matrix.outerIndexPtr();  // of each column: the diagonal
+  Eigen::VectorXd diagonal(matrix.cols());
+  for (Eigen::Index c = 0; c < matrix.cols(); ++c) diagonal[c] = matrix.valuePtr()[first[c]];
   for (double shift = newton::kShift; shift <= newton::kLargestShift; shift *= 1e2) {
     for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
-      matrix.valuePtr()[matrix.outerIndexPtr()[c]] = diagonal[c] * (1 + shift);
+      matrix.valuePtr()[first[c]] = diagonal[c] * (1 + shift);
     }
     if (solver_->factorize(matrix)) return true;
   }

@@ -197,8 +197,12 @@ template <class Density>
 double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
                    const PolishOptions& options, Fields& fields, double& length, const Work& work) {
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
-    fields.trial = uvs;
-    add_multiple(length, fields.direction, fields.trial, work);
+    fields.trial.resize(uvs.size());
+    parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        fields.trial[i] = uvs[i] + length * fields.direction[i];
+      }
+    });
     const double after = objective.evaluate(fields.trial, fields.next_gradient);
     const bool low = after < before && after <= before + kArmijo * length * slope;
     if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;

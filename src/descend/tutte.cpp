@@ -1,13 +1,19 @@
 #include "descend/tutte.h"
 
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "descend/assembly.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
+#include "mesh/face_chunks.h"
 
 namespace beltrami {
 std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
@@ -44,36 +50,60 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
   return uvs;
 }
 
-double best_scale(Energy energy, const std::vector<Triangle>& faces,
-                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
-  bool positive = true;
-  const auto each_face = [&](const auto& body) {
-    for (Index f = 0; f < size_of(faces) && positive; ++f) {
+namespace {
+
+/// The sum over the faces of the array that `term(area, s1, s2)` returns, chunk by chunk; nothing
+/// where a face is not positive.
+template <class Term>
+auto sum_faces(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+               const std::vector<Vec2>& uvs, const Work& work, const Term& term) {
+  using Sum = decltype(term(0.0, 0.0, 0.0));
+  const std::int64_t grain = FaceChunks::grain_of(size_of(faces));
+  std::vector<Sum> partial(faces.size() / grain + 1, Sum{});
+  std::atomic<bool> positive{true};
+  parallel_for(work, size_of(faces), grain, [&](std::int64_t begin, std::int64_t end) {
+    Sum& sum = partial[begin / grain];
+    for (std::int64_t f = begin; f < end && positive; ++f) {
       const Triangle& t = faces[f];
       const SingularValues s =
           singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-      positive = s.s2 > 0;
-      if (positive) body(rest[f].area(), s.s1, s.s2);
+      if (!(s.s2 > 0)) positive = false;
+      const Sum of_face = term(rest[f].area(), s.s1, s.s2);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += of_face[k];
     }
+  });
+  std::optional<Sum> total;
+  if (!positive) return total;
+  total.emplace();
+  for (const Sum& sum : partial) {
+    for (std::size_t k = 0; k < sum.size(); ++k) (*total)[k] += sum[k];
+  }
+  return total;
+}
+
+}  // namespace
+
+double best_scale(Energy energy, const std::vector<Triangle>& faces,
+                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                  const Work& work) {
+  bool positive = true;
+  const auto sum = [&](const auto& term) {
+    const auto total = sum_faces(faces, rest, uvs, work, term);
+    positive = positive && total;
+    return total.value_or(decltype(term(0.0, 0.0, 0.0)){});
   };
-  const double scale =
-      with_density(energy, [&](auto density) { return density.best_scale(each_face); });
+  const double scale = with_density(energy, [&](auto density) { return density.best_scale(sum); });
   return positive && std::isfinite(scale) && scale > 0 ? scale : 1;
 }
 
 double mean_energy(Energy energy, const std::vector<Triangle>& faces,
-                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs) {
+                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                   const Work& work) {
   return with_density(energy, [&]<class Density>(Density) {
-    double sum = 0, area = 0;
-    for (Index f = 0; f < size_of(faces); ++f) {
-      const Triangle& t = faces[f];
-      const SingularValues s =
-          singular_values(linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]));
-      if (!(s.s2 > 0)) return std::numeric_limits<double>::infinity();
-      sum += rest[f].area() * Density::value(s.s1, s.s2);
-      area += rest[f].area();
-    }
-    return sum / area;
+    const auto sums = sum_faces(faces, rest, uvs, work, [](double area, double s1, double s2) {
+      return std::array{area * Density::value(s1, s2), area};
+    });
+    return sums ? (*sums)[0] / (*sums)[1] : std::numeric_limits<double>::infinity();
   });
 }
 

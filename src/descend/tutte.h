@@ -20,10 +20,12 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work);
 /// The global scale at which the mean energy of a map is least; 1 if a face is flipped or
 /// degenerate.
 double best_scale(Energy energy, const std::vector<Triangle>& faces,
-                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
+                  const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                  const Work& work);
 
 /// The mean energy of a map; infinite if a face is flipped or degenerate.
 double mean_energy(Energy energy, const std::vector<Triangle>& faces,
-                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
+                   const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+                   const Work& work);
 
 }  // namespace beltrami

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/portable_math.h"
@@ -63,20 +64,19 @@ struct ExponentialDirichlet {
 
   /// The sum is convex in the logarithm of the scale: Newton's method from the best one of
   /// symmetric Dirichlet, between bounds that close in.
-  template <class EachFace>
-  static double best_scale(const EachFace& each_face) {
-    const double start = SymmetricDirichlet::best_scale(each_face);
+  template <class Sum>
+  static double best_scale(const Sum& sum) {
+    const double start = SymmetricDirichlet::best_scale(sum);
     double low = -kFarthest, high = kFarthest, at = 0;
     for (double step = 1; std::abs(step) > kSameScale;) {
       const double scale = portable::exp(at) * start;
-      double slope = 0, curvature = 0;
-      each_face([&](double area, double s1, double s2) {
+      const auto [slope, curvature] = sum([&](double area, double s1, double s2) {
         const double square1 = scale * s1 * scale * s1, square2 = scale * s2 * scale * s2;
         const double rising = square1 + square2, falling = 1 / square1 + 1 / square2;
         const Growth g = growth(0.5 * (rising + falling));
         const double change = rising - falling;
-        slope += area * g.slope * change;
-        curvature += area * (g.curvature * change * change + 2 * g.slope * (rising + falling));
+        return std::array{area * g.slope * change, area * (g.curvature * change * change +
+                                                           2 * g.slope * (rising + falling))};
       });
       if (!std::isfinite(curvature)) return start;
       (slope > 0 ? high : low) = at;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/portable_math.h"
@@ -59,15 +60,12 @@ struct SymmetricArap {
   }
 
   /// The root of a s^4 - b s^3 + d s - c = 0, by bisection of the derivative's sign in log s.
-  template <class EachFace>
-  static double best_scale(const EachFace& each_face) {
-    double sum_s1 = 0, s1_sq = 0, inverse_s2 = 0, inverse_s2_sq = 0;
-    each_face([&](double area, double s1, double s2) {
-      sum_s1 += area * s1;
-      s1_sq += area * s1 * s1;
-      inverse_s2 += area / s2;
-      inverse_s2_sq += area / (s2 * s2);
-    });
+  template <class Sum>
+  static double best_scale(const Sum& sum) {
+    const auto [sum_s1, s1_sq, inverse_s2, inverse_s2_sq] =
+        sum([](double area, double s1, double s2) {
+          return std::array{area * s1, area * s1 * s1, area / s2, area / (s2 * s2)};
+        });
     double low = -60, high = 60;
     for (int i = 0; i < 100; ++i) {
       const double middle = 0.5 * (low + high), s = portable::exp(middle);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "energy/density.h"
@@ -54,12 +55,10 @@ struct SymmetricDirichlet {
   }
 
   /// s^4 = sum(A / sigma^2) / sum(A sigma^2) over both singular values.
-  template <class EachFace>
-  static double best_scale(const EachFace& each_face) {
-    double norm_sq = 0, inverse_norm_sq = 0;
-    each_face([&](double area, double s1, double s2) {
-      norm_sq += area * (s1 * s1 + s2 * s2);
-      inverse_norm_sq += area / (s1 * s1) + area / (s2 * s2);
+  template <class Sum>
+  static double best_scale(const Sum& sum) {
+    const auto [norm_sq, inverse_norm_sq] = sum([](double area, double s1, double s2) {
+      return std::array{area * (s1 * s1 + s2 * s2), area / (s1 * s1) + area / (s2 * s2)};
     });
     return std::sqrt(std::sqrt(inverse_norm_sq / norm_sq));
   }

@@ -159,7 +159,7 @@ void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
     apply(levels_.size(), residual, z);
     const double now = dot(residual, z, work_);
     if (step == 0) {
-      direction = z;
+      copy_field(work_, z, direction);
     } else {
       const auto beta = static_cast<float>(now / before);
       add_up([&](std::int64_t v) { direction[v] = z[v] + beta * direction[v]; });

@@ -7,7 +7,7 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 8192;
+constexpr std::int64_t kGrain = 1024;
 
 }  // namespace
 
@@ -80,7 +80,7 @@ MeshMatrix::MeshMatrix(Index vertex_count, const std::vector<Triangle>& faces,
 }
 
 void MeshMatrix::set_zero(const Work& work) {
-  parallel_for(work, matrix_.nonZeros(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, matrix_.nonZeros(), 8 * kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::fill(matrix_.valuePtr() + begin, matrix_.valuePtr() + end, 0.0);
   });
 }

@@ -1,6 +1,8 @@
 // Symmetric matrices with the pattern of a mesh, assembled face by face without sorting triplets.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "base/parallel.h"
@@ -122,13 +124,16 @@ void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, co
     double* entry;
     double term;
   };
-  std::vector<std::vector<Aside>> aside(chunks_.count());
-  parallel_for(work, static_cast<std::int64_t>(faces.size()), FaceChunks::kGrain,
+  // Per chunk and run of vertices, so that runs can be added up side by side.
+  constexpr std::size_t kRuns = 16;
+  const std::size_t run_length = row_.size() / kRuns + 1;
+  std::vector<std::array<std::vector<Aside>, kRuns>> aside(chunks_.count());
+  parallel_for(work, static_cast<std::int64_t>(faces.size()), chunks_.grain(),
                [&](std::int64_t begin, std::int64_t end) {
-                 std::vector<Aside>& later = aside[FaceChunks::of(begin)];
+                 auto& later = aside[chunks_.of(begin)];
                  const auto put = [&](Index vertex, double& entry, double term) {
                    if (chunks_.shared(vertex)) {
-                     later.push_back({&entry, term});
+                     later[vertex / run_length].push_back({&entry, term});
                    } else {
                      entry += term;
                    }
@@ -140,9 +145,11 @@ void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, co
                    });
                  }
                });
-  for (const std::vector<Aside>& later : aside) {
-    for (const Aside& a : later) *a.entry += a.term;
-  }
+  parallel_for(work, kRuns, 1, [&](std::int64_t run, std::int64_t) {
+    for (const auto& later : aside) {
+      for (const Aside& a : later[run]) *a.entry += a.term;
+    }
+  });
 }
 
 }  // namespace beltrami

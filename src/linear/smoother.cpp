@@ -1,5 +1,6 @@
 #include "linear/smoother.h"
 
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -26,16 +27,21 @@ void for_each_edge(const Surface& mesh, Index v, const Visit& visit) {
 Smoother::Smoother(const Surface& mesh, const Work& work) : work_(work) {
   const Index count = mesh.vertex_count();
   parallel_assign(work, rows_, static_cast<std::size_t>(count) + 1);
-  for (const Triangle& face : mesh.faces) {
-    for (const Index v : face) ++rows_[v].begin;
-  }
-  Index total = 0;
-  for (Index v = 0; v <= count; ++v) {
-    // The ring of a vertex on the boundary has one more than it has faces.
-    const Index size = rows_[v].begin + (v < count && mesh.on_boundary[v] ? 1 : 0);
-    rows_[v].begin = total;
-    total += size;
-  }
+  std::vector<Index> before(static_cast<std::size_t>(count / kBlock) + 2, 0);  // each block
+  parallel_for(work, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    Index total = 0;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      rows_[v].begin = total;
+      for_each_edge(mesh, v, [&](Index, Index, Index) { ++total; });
+    }
+    before[begin / kBlock + 1] = total;
+  });
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  const Index total = before.back();
+  parallel_for(work, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) rows_[v].begin += before[begin / kBlock];
+  });
+  rows_[count].begin = total;
   parallel_assign(work, column_, static_cast<std::size_t>(total));
   parallel_assign(work, weight_, static_cast<std::size_t>(total));
   parallel_assign(work, inverse_diagonal_, static_cast<std::size_t>(count));
@@ -127,7 +133,7 @@ void Smoother::residual_after_forward(const SingleField& x, SingleField& residua
 }
 
 void Smoother::sweep_backward(const SingleField& rhs, SingleField& x, SingleField& before) const {
-  before = x;
+  copy_field(work_, x, before);
   parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = end; v-- > begin;) {
       const Row& row = rows_[v];

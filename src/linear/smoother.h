@@ -2,9 +2,12 @@
 // Gauss-Seidel step on them.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/surface.h"
@@ -13,6 +16,16 @@ namespace beltrami {
 
 /// One entry per vertex.
 using SingleField = std::vector<Eigen::Vector2f>;
+
+/// copy = field, of vectors, which std::vector leaves as they are: the threads touch them first.
+template <class Field>
+void copy_field(const Work& work, const Field& field, Field& copy) {
+  constexpr std::int64_t kGrain = 16384;
+  copy.resize(field.size());
+  parallel_for(work, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::copy(field.begin() + begin, field.begin() + end, copy.begin() + begin);
+  });
+}
 
 /// A Laplacian A = D - W of a mesh. Its sweeps are Gauss-Seidel within fixed blocks of vertices and
 /// Jacobi between them: with M the diagonal and, within the blocks, the lower triangle of A.

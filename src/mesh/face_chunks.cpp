@@ -7,11 +7,13 @@
 namespace beltrami {
 
 FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, const Work& work)
-    : count_(of(size_of(faces)) + 1), shared_(static_cast<std::size_t>(vertex_count), 0) {
+    : grain_(grain_of(size_of(faces))),
+      count_(of(size_of(faces)) + 1),
+      shared_(static_cast<std::size_t>(vertex_count), 0) {
   if (count_ == 1) return;
   // Whichever chunks come first at a vertex: one of them finds the mark of another.
   std::vector<Index> last_chunk(shared_.size(), kNone);
-  parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, size_of(faces), grain_, [&](std::int64_t begin, std::int64_t end) {
     const auto chunk = static_cast<Index>(of(begin));
     for (std::int64_t f = begin; f < end; ++f) {
       for (const Index v : faces[f]) {

@@ -1,6 +1,7 @@
 // Fixed chunks of faces, for sums at vertices that are made in parallel.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -15,16 +16,22 @@ namespace beltrami {
 /// surface.
 class FaceChunks {
  public:
-  static constexpr std::int64_t kGrain = 8192;
+  /// Of a chunk: small meshes are parted, too, but not into less than is worth a thread.
+  static std::int64_t grain_of(std::int64_t faces) {
+    constexpr std::int64_t kLeast = 512, kMost = 8192, kChunks = 16;
+    return std::clamp((faces + kChunks - 1) / kChunks, kLeast, kMost);
+  }
 
   FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, const Work& work);
 
   std::size_t count() const { return count_; }
-  static std::size_t of(std::int64_t face) { return static_cast<std::size_t>(face / kGrain); }
+  std::int64_t grain() const { return grain_; }
+  std::size_t of(std::int64_t face) const { return static_cast<std::size_t>(face / grain_); }
   /// Whether faces of several chunks touch the vertex.
   bool shared(Index v) const { return shared_[v] != 0; }
 
  private:
+  std::int64_t grain_;
   std::size_t count_;
   std::vector<std::uint8_t> shared_;
 };

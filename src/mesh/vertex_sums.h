@@ -41,7 +41,6 @@ class VertexSums {
   void add_up_lanes(const Give& give, std::vector<Vec2>& sums);
 
  private:
-  static constexpr std::int64_t kGrain = FaceChunks::kGrain;
   struct Aside {
     Index vertex;
     Vec2 term;
@@ -69,16 +68,16 @@ class VertexSums {
 template <class AddChunk>
 double VertexSums::sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk) {
   sums.resize(vertex_count_);
-  parallel_for(work_, static_cast<std::int64_t>(sums.size()), kGrain,
+  parallel_for(work_, static_cast<std::int64_t>(sums.size()), chunks_.grain(),
                [&](std::int64_t begin, std::int64_t end) {
                  std::fill(sums.begin() + begin, sums.begin() + end, Vec2::Zero());
                });
-  const double total =
-      parallel_sum(work_, size_of(faces_), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<Aside>& aside = aside_[FaceChunks::of(begin)];
-        aside.clear();
-        return add_chunk(begin, end, aside);
-      });
+  const double total = parallel_sum(work_, size_of(faces_), chunks_.grain(),
+                                    [&](std::int64_t begin, std::int64_t end) {
+                                      std::vector<Aside>& aside = aside_[chunks_.of(begin)];
+                                      aside.clear();
+                                      return add_chunk(begin, end, aside);
+                                    });
   for (const std::vector<Aside>& aside : aside_) {
     for (const Aside& a : aside) sums[a.vertex] += a.term;
   }

@@ -121,15 +121,6 @@ std::vector<VertexDerivative> vertex_derivatives(const DiskMesh& mesh,
   return result;
 }
 
-std::vector<VertexDerivative> carried(const std::vector<VertexDerivative>& coarse,
-                                      const std::vector<Footpoint>& points, const Work& work) {
-  std::vector<VertexDerivative> fine(points.size());
-  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) fine[v] = interpolated(points[v], coarse);
-  });
-  return fine;
-}
-
 CarriedMaps carried_maps(const DiskMesh& mesh, const std::array<Index, kLanes>& faces,
                          const std::vector<RestTriangle>& rest,
                          const std::vector<VertexDerivative>& derivatives) {

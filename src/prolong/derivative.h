@@ -9,7 +9,6 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
-#include "prolong/interpolation.h"
 
 namespace beltrami {
 
@@ -19,6 +18,7 @@ namespace beltrami {
 class VertexDerivative : public Eigen::Matrix<float, 10, 1> {
  public:
   using Eigen::Matrix<float, 10, 1>::Matrix;
+  VertexDerivative() {}  // NOLINT(modernize-use-equals-default): leaves the numbers as they are
 
   auto gradient_u() const { return segment<3>(0); }
   auto gradient_v() const { return segment<3>(3); }
@@ -30,10 +30,6 @@ class VertexDerivative : public Eigen::Matrix<float, 10, 1> {
 std::vector<VertexDerivative> vertex_derivatives(const DiskMesh& mesh,
                                                  const std::vector<RestTriangle>& rest,
                                                  const std::vector<Vec2>& uvs, const Work& work);
-
-/// The same at the footpoints of a finer mesh.
-std::vector<VertexDerivative> carried(const std::vector<VertexDerivative>& coarse,
-                                      const std::vector<Footpoint>& points, const Work& work);
 
 /// The maps of kLanes faces, each in the frame of its rest triangle, whose first edge counts as 1.
 struct CarriedMaps {

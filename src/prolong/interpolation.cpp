@@ -92,7 +92,7 @@ std::vector<Footpoint> footpoints(const DiskMesh& coarse, const std::vector<Inde
                                   const Work& work) {
   std::vector<Footpoint> points;
   parallel_assign(work, points, fine.positions.size());
-  const SurfaceWalk walk(coarse);
+  const SurfaceWalk walk(coarse, work);
   parallel_for(work, fine.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Index last = kNone;  // the face found last, near the next vertex more often than not
     for (auto v = static_cast<Index>(begin); v < end; ++v) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
@@ -34,6 +36,18 @@ Value interpolated(const Footpoint& at, const std::vector<Value>& values) {
   const Value& first = values[at.corners[0]];
   return first + at.shares[0] * (values[at.corners[1]] - first) +
          at.shares[1] * (values[at.corners[2]] - first);
+}
+
+/// The same at all of them.
+template <class Value>
+std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Footpoint>& points,
+                           const Work& work) {
+  constexpr std::int64_t kGrain = 4096;
+  std::vector<Value> fine(points.size());
+  parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) fine[v] = interpolated(points[v], values);
+  });
+  return fine;
 }
 
 }  // namespace beltrami

@@ -123,7 +123,7 @@ std::vector<FaceMetric> prolong_metric(const DiskMesh& coarse,
   for (Index f = 0; f < coarse.face_count(); ++f) coarse_frames[f] = frame_of(coarse, f);
   const auto corners = average_at_vertices(coarse, coarse_frames, metrics);
   const ClosestPoint tree(coarse.positions, coarse.faces);
-  const SurfaceWalk walk(coarse);
+  const SurfaceWalk walk(coarse, work);
   std::vector<Index> valence(coarse.vertex_count(), 0);
   for (const Triangle& t : coarse.faces) {
     for (const Index v : t) ++valence[v];

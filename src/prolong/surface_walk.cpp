@@ -2,33 +2,40 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
+#include "base/parallel.h"
 #include "base/types.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
 namespace {
 
+constexpr std::int64_t kGrain = 4096;
 constexpr int kMaxSteps = 40;
 constexpr double kFar = 0.25;  // of the longest edge, squared
 
 }  // namespace
 
-SurfaceWalk::SurfaceWalk(const DiskMesh& mesh) : mesh_(mesh), planes_(mesh.faces.size()) {
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triangle& t = mesh.faces[f];
-    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-    const Vec3 u = b - a, w = c - a;
-    Vec3 normal = u.cross(w);
-    const double longest_sq = std::max({u.squaredNorm(), w.squaredNorm(), (c - b).squaredNorm()});
-    if (is_degenerate(a, b, c)) {
-      planes_[f] = {a, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), -1};
-      continue;
+SurfaceWalk::SurfaceWalk(const DiskMesh& mesh, const Work& work) : mesh_(mesh) {
+  parallel_assign(work, planes_, mesh.faces.size());
+  parallel_for(work, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t f = begin; f < end; ++f) {
+      const Triangle& t = mesh.faces[f];
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      const Vec3 u = b - a, w = c - a;
+      Vec3 normal = u.cross(w);
+      const double longest_sq = std::max({u.squaredNorm(), w.squaredNorm(), (c - b).squaredNorm()});
+      if (is_degenerate(a, b, c)) {
+        planes_[f] = {a, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), -1};
+        continue;
+      }
+      const double inverse_sq = 1 / normal.squaredNorm();
+      const Vec3 dual1 = inverse_sq * w.cross(normal), dual2 = inverse_sq * normal.cross(u);
+      planes_[f] = {a, dual1, dual2, normal * std::sqrt(inverse_sq), longest_sq};
     }
-    const double inverse_sq = 1 / normal.squaredNorm();
-    const Vec3 dual1 = inverse_sq * w.cross(normal), dual2 = inverse_sq * normal.cross(u);
-    planes_[f] = {a, dual1, dual2, normal * std::sqrt(inverse_sq), longest_sq};
-  }
+  });
 }
 
 SurfacePoint SurfaceWalk::find(const Vec3& point, const Vec3& normal, Index start) const {

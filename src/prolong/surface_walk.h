@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
 
@@ -13,7 +14,7 @@ namespace beltrami {
 /// a face or over the ridge between two. Keeps a reference to the mesh.
 class SurfaceWalk {
  public:
-  explicit SurfaceWalk(const DiskMesh& mesh);
+  SurfaceWalk(const DiskMesh& mesh, const Work& work);
 
   /// The point below `point`, starting at face `start`. Its face is kNone where the walk gets
   /// nowhere: after a few dozen faces, far from the surface (by the size of the face), at the

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "repair/hub_turns.h"
 #include "repair/patch.h"
 #include "repair/patch_work.h"
 
@@ -22,6 +24,7 @@ constexpr double kTimesMean = 4;
 constexpr int kRounds = 3;
 constexpr int kRings = 3;
 constexpr int kNewtonSteps = 10;
+constexpr std::size_t kTogether = 256;  // outliers whose patches are kept at once
 /// A round that finds more than this share of the faces is no longer about outliers: the global
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
@@ -44,25 +47,29 @@ class FaceEnergies {
 
   /// Sets the limit by the mean over all positive faces. Returns the faces above it.
   std::vector<Index> find_all(const Work& work) {
-    std::vector<double> energies(mesh_.faces.size());
-    std::vector<double> sums(energies.size() / kGrain + 1, 0), areas(sums);
+    const double least = from_dirichlet<Density>(kLeastEnergy);
+    std::vector<double> sums(mesh_.faces.size() / kGrain + 1, 0), areas(sums);
+    std::vector<std::vector<std::pair<Index, double>>> high(sums.size());
     parallel_for(work, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       double sum = 0, area = 0;
-      for (std::int64_t f = begin; f < end; ++f) {
-        energies[f] = of(f);
-        if (!std::isfinite(energies[f])) continue;
-        sum += rest_[f].area() * energies[f];
+      for (auto f = static_cast<Index>(begin); f < end; ++f) {
+        const double energy = of(f);
+        if (!std::isfinite(energy)) continue;
+        sum += rest_[f].area() * energy;
         area += rest_[f].area();
+        if (energy > least) high[begin / kGrain].emplace_back(f, energy);
       }
       sums[begin / kGrain] = sum;
       areas[begin / kGrain] = area;
     });
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) /
                         std::accumulate(areas.begin(), areas.end(), 0.0);
-    limit_ = std::max(from_dirichlet<Density>(kLeastEnergy), kTimesMean * mean);
+    limit_ = std::max(least, kTimesMean * mean);
     std::vector<Index> found;
-    for (std::size_t f = 0; f < energies.size(); ++f) {
-      if (is_outlier(energies[f])) found.push_back(static_cast<Index>(f));
+    for (const auto& of_chunk : high) {
+      for (const auto& [f, energy] : of_chunk) {
+        if (is_outlier(energy)) found.push_back(f);
+      }
     }
     return found;
   }
@@ -93,6 +100,83 @@ class FaceEnergies {
   double limit_ = 0;
 };
 
+/// The patch around a face, once it is cut, and what came of it.
+struct Try {
+  Index face;
+  Patch patch;
+  bool positive = false;
+
+  bool is_cut() const { return !patch.faces.empty(); }
+};
+
+/// Cuts the patches around the faces in turn that have no vertex beside those of another: what is
+/// nearer is in its patch.
+void cut_some(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+              const std::vector<Vec2>& uvs, const Work& work, std::vector<Try>& waiting) {
+  std::vector<std::size_t> chosen;
+  std::unordered_set<Index> around;  // vertices
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    const Triangle& corners = mesh.faces[waiting[i].face];
+    const bool near =
+        std::any_of(corners.begin(), corners.end(), [&](Index v) { return around.contains(v); });
+    if (near) continue;
+    for (const Index v : corners) {
+      around.insert(v);
+      if (is_hub(mesh, v, kManyFaces)) continue;
+      mesh.for_each_outgoing(v, [&](Index h) { around.insert(mesh.target(h)); });
+    }
+    if (!waiting[i].is_cut()) chosen.push_back(i);
+  }
+  parallel_for(work, size_of(chosen), 1, [&](std::int64_t i, std::int64_t) {
+    Try& next = waiting[chosen[i]];
+    next.patch = cut_patch(mesh, rest, uvs, next.face, kRings);
+  });
+}
+
+/// Takes patches out of `waiting`, in turn, none of which moves a vertex of another. Those around
+/// faces of patches that were `treated` go.
+std::vector<Try> take_apart(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                            const std::vector<Vec2>& uvs, const std::unordered_set<Index>& treated,
+                            const Work& work, std::vector<Try>& waiting) {
+  std::erase_if(waiting, [&](const Try& next) { return treated.contains(next.face); });
+  cut_some(mesh, rest, uvs, work, waiting);
+  std::vector<Try> apart, later;
+  std::unordered_set<Index> moving, present;  // vertices
+  for (Try& next : waiting) {
+    const Patch& patch = next.patch;
+    bool meets = !next.is_cut();
+    for (std::size_t i = 0; i < patch.mesh_vertices.size() && !meets; ++i) {
+      meets = (patch.fixed[i] ? moving : present).contains(patch.mesh_vertices[i]);
+    }
+    if (meets) {
+      later.push_back(std::move(next));
+      continue;
+    }
+    for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
+      present.insert(patch.mesh_vertices[i]);
+      if (!patch.fixed[i]) moving.insert(patch.mesh_vertices[i]);
+    }
+    apart.push_back(std::move(next));
+  }
+  waiting.swap(later);
+  return apart;
+}
+
+/// Minimises the energy of each patch from the map as it is now, side by side.
+void minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
+              std::vector<Try>& tries) {
+  NewtonOptions options;
+  options.energy = energy;
+  options.max_iterations = kNewtonSteps;
+  const Work alone = work.aside();
+  parallel_for(work, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
+    Patch& patch = tries[i].patch;
+    for (std::size_t v = 0; v < patch.uvs.size(); ++v) patch.uvs[v] = uvs[patch.mesh_vertices[v]];
+    minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+    tries[i].positive = non_positive_faces(patch.faces, patch.uvs, alone).empty();
+  });
+}
+
 template <class Density>
 std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                    std::vector<Vec2>& uvs, const std::vector<Index>& also, const Work& work) {
@@ -105,20 +189,22 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
   std::unordered_set<Index> treated;
   for (int round = 0; round < kRounds && !outliers.empty(); ++round) {
     treated.clear();
-    std::size_t done = 0;
-    for (const Index face : outliers) {
-      if (work.out_of_time()) return patches;
-      work.report((round + static_cast<double>(done++) / outliers.size()) / kRounds);
-      if (treated.contains(face)) continue;
-      Patch patch = cut_patch(mesh, rest, uvs, face, kRings);
-      NewtonOptions options;
-      options.energy = energy;
-      options.max_iterations = kNewtonSteps;
-      minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, work.aside());
-      if (!non_positive_faces(patch.faces, patch.uvs, work.aside()).empty()) continue;
-      if (!taken.take(patch)) continue;
-      ++patches;
-      treated.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
+    for (std::size_t begin = 0; begin < outliers.size(); begin += kTogether) {
+      const std::span<const Index> all = outliers;
+      const auto some = all.subspan(begin, std::min(kTogether, all.size() - begin));
+      std::vector<Try> waiting;
+      for (const Index face : some) waiting.push_back({face, {}});
+      while (!waiting.empty()) {
+        if (work.out_of_time()) return patches;
+        work.report((round + static_cast<double>(begin) / outliers.size()) / kRounds);
+        std::vector<Try> tries = take_apart(mesh, rest, uvs, treated, work, waiting);
+        minimise(energy, uvs, work, tries);
+        for (Try& made : tries) {
+          if (!made.positive || !taken.take(made.patch)) continue;
+          ++patches;
+          treated.insert(made.patch.mesh_faces.begin(), made.patch.mesh_faces.end());
+        }
+      }
     }
     // No other face has changed.
     outliers.insert(outliers.end(), treated.begin(), treated.end());

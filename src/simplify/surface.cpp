@@ -140,18 +140,17 @@ std::vector<Quadric> vertex_quadrics(const Surface& mesh, FacePlanes planes, con
   parallel_assign(work, quadrics, mesh.positions.size());
   const FaceChunks chunks(mesh.vertex_count(), mesh.faces, work);
   std::vector<std::vector<Index>> faces_of_shared(chunks.count());
-  parallel_for(work, mesh.face_count(), FaceChunks::kGrain,
-               [&](std::int64_t begin, std::int64_t end) {
-                 for (auto f = static_cast<Index>(begin); f < end; ++f) {
-                   bool all = true;
-                   add_face_quadrics(mesh, f, planes, [&](Index v) {
-                     const bool own = !chunks.shared(v);
-                     all &= own;
-                     return own ? &quadrics[v] : nullptr;
-                   });
-                   if (!all) faces_of_shared[FaceChunks::of(f)].push_back(f);
-                 }
-               });
+  parallel_for(work, mesh.face_count(), chunks.grain(), [&](std::int64_t begin, std::int64_t end) {
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      bool all = true;
+      add_face_quadrics(mesh, f, planes, [&](Index v) {
+        const bool own = !chunks.shared(v);
+        all &= own;
+        return own ? &quadrics[v] : nullptr;
+      });
+      if (!all) faces_of_shared[chunks.of(f)].push_back(f);
+    }
+  });
   for (const std::vector<Index>& faces : faces_of_shared) {
     for (const Index f : faces) {
       add_face_quadrics(mesh, f, planes,

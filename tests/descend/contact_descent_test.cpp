@@ -56,7 +56,7 @@ Minimum minimise(const DiskMesh& mesh, std::vector<Vec2> uvs, const NewtonOption
 
 std::vector<Vec2> start_of(const DiskMesh& mesh, Energy energy) {
   std::vector<Vec2> uvs = tutte_embedding(mesh, Work(1));
-  const double scale = best_scale(energy, mesh.faces, disks::rest_of(mesh), uvs);
+  const double scale = best_scale(energy, mesh.faces, disks::rest_of(mesh), uvs, Work(1));
   for (Vec2& w : uvs) w *= scale;
   return uvs;
 }
@@ -145,7 +145,8 @@ TEST(MinimiseEnergyWithContact, EndsNearTheBestScale) {
                       const NewtonOptions& options, const Way& way) {
     const Minimum minimum = minimise(mesh, way.start, options);
     const auto rest = disks::rest_of(mesh);
-    EXPECT_NEAR(best_scale(options.energy, mesh.faces, rest, minimum.uvs), 1, 2e-3) << where;
+    EXPECT_NEAR(best_scale(options.energy, mesh.faces, rest, minimum.uvs, Work(1)), 1, 2e-3)
+        << where;
   });
 }
 

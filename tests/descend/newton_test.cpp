@@ -65,7 +65,7 @@ std::vector<Vec2> scaled(std::vector<Vec2> uvs, double factor) {
 
 double scale_of(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                 Energy energy = Energy::kSymmetricDirichlet) {
-  return best_scale(energy, mesh.faces, disks::rest_of(mesh), uvs);
+  return best_scale(energy, mesh.faces, disks::rest_of(mesh), uvs, Work(1));
 }
 
 /// Tutte's embedding at its best scale.
@@ -171,15 +171,17 @@ TEST(BestScale, UndoesAScale) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
   for (const double s : {1e-6, 0.3, 1e5}) {
     const std::vector<Vec2> uvs = scaled(disks::flat_uvs(mesh), s);
-    EXPECT_NEAR(best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs) * s,
-                1, 1e-12);
+    EXPECT_NEAR(
+        best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs, Work(1)) * s,
+        1, 1e-12);
   }
 }
 
 TEST(BestScale, IsOneWhereAFaceIsFlipped) {
   const DiskMesh mesh = disks::disk(meshes::quad());
   const std::vector<Vec2> uvs = {{0, 0}, {3, 0}, {3, 3}, {2, 1}};
-  EXPECT_EQ(best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs), 1);
+  EXPECT_EQ(best_scale(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh), uvs, Work(1)),
+            1);
 }
 
 // ---- Line search ----------------------------------------------------------------------------

@@ -212,11 +212,11 @@ TEST(ExponentialDirichlet, IsLeastAtItsBestScaleWhateverTheScaleBefore) {
       const Vec2 p = w;
       w = {p.x() * (1 + bend * p.x() * p.x()), p.y() * (1 + bend * p.x())};
     }
-    const double best = best_scale(kEnergy, mesh.faces, rest, uvs);
+    const double best = best_scale(kEnergy, mesh.faces, rest, uvs, Work(1));
     const auto energy_at = [&](double scale) {
       std::vector<Vec2> scaled = uvs;
       for (Vec2& w : scaled) w *= scale;
-      return mean_energy(kEnergy, mesh.faces, rest, scaled);
+      return mean_energy(kEnergy, mesh.faces, rest, scaled, Work(1));
     };
     for (const double off : {0.9, 0.999, 1.001, 1.1}) {
       EXPECT_LT(energy_at(best), energy_at(off * best)) << bend << ' ' << off;
@@ -224,7 +224,7 @@ TEST(ExponentialDirichlet, IsLeastAtItsBestScaleWhateverTheScaleBefore) {
     for (const double before : {1e-8, 0.1, 3.0, 1e12}) {
       std::vector<Vec2> scaled = uvs;
       for (Vec2& w : scaled) w *= before;
-      EXPECT_NEAR(before * best_scale(kEnergy, mesh.faces, rest, scaled) / best, 1, 1e-8);
+      EXPECT_NEAR(before * best_scale(kEnergy, mesh.faces, rest, scaled, Work(1)) / best, 1, 1e-8);
     }
   }
 }

@@ -359,7 +359,8 @@ TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
       EXPECT_TRUE(std::is_sorted(energies.rbegin(), energies.rend()));
       EXPECT_LT(energies.back(), energies.front());
       EXPECT_TRUE(non_positive_faces(mesh.faces, polished.uvs, Work(1)).empty());
-      const double measured = mean_energy(energy, mesh.faces, disks::rest_of(mesh), polished.uvs);
+      const double measured =
+          mean_energy(energy, mesh.faces, disks::rest_of(mesh), polished.uvs, Work(1));
       EXPECT_NEAR(energies.back(), measured, 1e-9 * measured);
     }
   }

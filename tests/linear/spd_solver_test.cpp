@@ -184,7 +184,7 @@ TEST(MeshMatrix, IsTheSumOfItsBlocksWithRandomVerticesFixed) {
 
 TEST(MeshMatrix, AddsUpManyChunksToTheSameBitsAtAnyNumberOfThreads) {
   const DiskMesh mesh = disks::disk(meshes::grid(120, 110));
-  ASSERT_GT(mesh.face_count(), 3 * FaceChunks::kGrain);
+  ASSERT_GT(mesh.face_count(), 3 * FaceChunks::grain_of(mesh.face_count()));
   for (const int size : {1, 2}) {
     const auto block = [](Index f, int i, int j) {
       return [=](int r, int c) { return std::sin(1.0 + f + 7 * i * j + 3 * (r + c)); };

@@ -439,7 +439,7 @@ TEST(ProlongMetric, IsTheSameFromANearbyVertexAsFromASearch) {
 TEST(SurfaceWalk, FindsThePointBelowFromAnyFace) {
   Random random(16);
   const DiskMesh mesh = disks::disk(meshes::grid(10, 10));
-  const SurfaceWalk walk(mesh);
+  const SurfaceWalk walk(mesh, Work(1));
   for (int i = 0; i < 100; ++i) {
     const auto face = static_cast<Index>(random.below(mesh.face_count()));
     const Triangle& t = mesh.faces[face];
@@ -455,7 +455,7 @@ TEST(SurfaceWalk, FindsThePointBelowFromAnyFace) {
 
 TEST(SurfaceWalk, GivesUpOutsideFarAwayAndOnTheOtherSide) {
   const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
-  const SurfaceWalk walk(mesh);
+  const SurfaceWalk walk(mesh, Work(1));
   const Triangle& t = mesh.faces[0];
   const Vec3 centre = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
   EXPECT_EQ(walk.find(centre, Vec3::UnitZ(), 7).face, 0);

@@ -418,10 +418,11 @@ bool factorize(Vectors vectors, T* panel, int height, int width, T* update, T* b
       return;
     }
     // Rows further down are longer: chunks of one block of rows balance by themselves.
-    constexpr int kBlock = kRowBlock / kGroup;
-    for_chunks((last - first + kBlock - 1) / kBlock, [&](int begin, int end) {
-      kernel.update(buffer, depth, target, first + begin * kBlock,
-                    std::min(first + end * kBlock, last));
+    constexpr int kLeast = 32 / kGroup, kMost = kRowBlock / kGroup, kChunks = 16;
+    const int block = std::clamp((last - first) / kChunks, kLeast, kMost);
+    for_chunks((last - first + block - 1) / block, [&](int begin, int end) {
+      kernel.update(buffer, depth, target, first + begin * block,
+                    std::min(first + end * block, last));
     });
   };
   // The first block is the odd one: the rest starts on whole groups for every block.

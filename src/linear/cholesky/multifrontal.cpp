@@ -15,9 +15,11 @@ namespace beltrami {
 namespace {
 
 /// Fronts of one depth above the tasks that take so many multiplications are worth several threads.
-constexpr double kParallelWave = 2e7;
-/// Times a thread's share of the fronts at one depth: larger ones get all threads.
+constexpr double kParallelWave = 1e6;
+/// Times a thread's share of the fronts at one depth: larger ones get all threads, if they take so
+/// many multiplications.
 constexpr double kDominant = 1.5;
+constexpr double kParallelFront = 4e6;
 
 /// Where the update matrices of a task are: on two stacks, of even and of odd depth in the tree. So
 /// a front's update goes where its children's are not, and those are freed without moving anything.
@@ -124,7 +126,8 @@ class Numeric {
       wave.worth_threads = work[d] > kParallelWave;
       const int threads = wave.worth_threads ? work_.threads() : 1;
       // What is much more than a thread's share of its wave would keep the others waiting.
-      const bool dominates = work_of(s) * threads > kDominant * work[d];
+      const bool dominates =
+          work_of(s) > kParallelFront && work_of(s) * threads > kDominant * work[d];
       (dominates ? wave.alone : wave.side_by_side).push_back(s);
     }
     return waves;

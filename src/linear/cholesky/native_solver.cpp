@@ -132,7 +132,7 @@ class NativeSolver final : public SpdSolver {
   bool factorize_double(const double* values) {
     std::vector<double> gathered;
     parallel_assign(work_, gathered, pattern_.source.size());
-    parallel_for(work_, static_cast<std::int64_t>(gathered.size()), 4 * kGrain,
+    parallel_for(work_, static_cast<std::int64_t>(gathered.size()), kGrain,
                  [&](std::int64_t begin, std::int64_t end) {
                    for (std::int64_t e = begin; e < end; ++e) {
                      gathered[e] = values[pattern_.source[e]];
