@@ -45,7 +45,7 @@ constexpr Index kCoarsestFaces = 10000;  // of the coarsest level
 constexpr Index kMostFactored = 150000;
 constexpr int kSteps = 2;           // of conjugate gradients from an interpolated map
 constexpr int kRounds = 3;          // of so many steps, while more than
-constexpr double kFewFlips = 5e-5;  // of the faces are flipped
+constexpr double kFewFlips = 2e-5;  // of the faces are flipped
 /// Of the faces, what is flipped, and what is mended by patches, where a level is solved by its
 /// factor instead: where that is cheap, and in any case.
 struct Bearable {

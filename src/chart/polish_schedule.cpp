@@ -147,7 +147,10 @@ void take_rounds(const Setting& setting, State& state) {
   for (int round = 0; round < kMostSteps; ++round) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
-    if (setting.bounds.in_haste && is_stationary(setting, state) && is_kept(setting, state)) return;
+    if (setting.bounds.in_haste && is_kept(setting, state) &&
+        (is_stationary(setting, state) || state.iterations == 0)) {
+      return;  // what a few faces held up at once has been cleaned
+    }
     fit_factor(setting, state);
     take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
     if (!state.last.blocked) return;
