@@ -76,6 +76,7 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   const Eigen::VectorXd softness =
       (area.array().max(kLeastArea * area.mean()) / whole).inverse().matrix();
   bilaplacian_ = laplacian * softness.asDiagonal() * laplacian;
+  lower_ = bilaplacian_.triangularView<Eigen::Lower>();
 }
 
 ElasticModel::Sheet ElasticModel::unpinned() const {
@@ -83,7 +84,7 @@ ElasticModel::Sheet ElasticModel::unpinned() const {
   sheet.solver = make_spd_solver({}, work_);
   std::vector<Place> places;
   for (const Vec3& p : surface_.positions) places.push_back(place_of(p));
-  sheet.solver->analyze(bilaplacian_.triangularView<Eigen::Lower>(), places);
+  sheet.solver->analyze(lower_, places);
   return sheet;
 }
 
@@ -96,12 +97,12 @@ void ElasticModel::pin(std::vector<bool> pinned) {
   if (pinned == now_.pinned) return;
   if (!now_.solver) now_ = unpinned();
   now_.pinned.clear();
-  SparseMatrix held = bilaplacian_.triangularView<Eigen::Lower>();
+  SparseMatrix held = lower_;
   const double spring = kPinned * bilaplacian_.diagonal().mean();
   Eigen::VectorXd force = defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
     if (!pinned[v]) continue;
-    held.coeffRef(v, v) += spring;
+    held.valuePtr()[held.outerIndexPtr()[v]] += spring;  // the first of its column
     force[v] = 0;
   }
   poll_interrupt();

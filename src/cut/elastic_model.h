@@ -88,6 +88,7 @@ class ElasticModel {
   const Work work_;
   Eigen::VectorXd defect_;    ///< per vertex: K
   SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
+  SparseMatrix lower_;        ///< its lower triangle, diagonal included
   Sheet now_, before_;
 };
 
