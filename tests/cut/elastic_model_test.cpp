@@ -172,8 +172,9 @@ TEST(ElasticModel, PinsThatAreTakenBackLeaveNoTrace) {
     model.pin(one);
     const std::vector<double> stress = model.stress();
     const double energy = model.energy();
-    for (const auto& tried : {std::vector{other}, std::vector{one}, std::vector{other, one, other},
-                              std::vector{other, random_pins(surface, 5, generator)}}) {
+    using Pins = std::vector<std::vector<bool>>;
+    for (const Pins& tried : {Pins{other}, Pins{one}, Pins{other, one, other},
+                              Pins{other, random_pins(surface, 5, generator)}}) {
       for (const std::vector<bool>& pinned : tried) model.pin(pinned);
       model.pin(one);
       EXPECT_EQ(model.stress(), stress);
