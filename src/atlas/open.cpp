@@ -186,7 +186,7 @@ Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
                            const SeamWeights& weights, const InputHints& hints,
-                           const AnchoredSeams& begun, const Work& work) {
+                           const BegunSearch& begun, const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {
@@ -212,7 +212,7 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
                          hints_for(filled, vertices, admitted, hints), begun,
                          work.part(kFilled, kOpened));
     opened.predicted_energy = found.energy;
-    opened.coarse_seams = std::move(found.coarse);
+    opened.search = std::move(found.search);
     cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
     if (!cut.non_disks.empty()) {
       found.maps.clear();
@@ -228,8 +228,10 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
     throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
   }
   opened.filled_holes = filled.filled_loops;
-  std::vector<std::vector<Index>> collapsed =
-      inherited_collapses(filled.surface, cut.charts, found.history);
+  std::vector<std::vector<Index>> collapsed;
+  if (opened.search.level) {
+    collapsed = inherited_collapses(filled.surface, cut.charts, opened.search.level->history);
+  }
   for (std::size_t c = 0; c < cut.charts.size(); ++c) {
     Chart& chart = cut.charts[c];
     const auto first_virtual =

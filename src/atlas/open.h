@@ -13,7 +13,6 @@
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
-#include "cut/search_level.h"
 #include "mesh/chart.h"
 
 namespace beltrami {
@@ -45,7 +44,7 @@ struct OpenedSurface {
   std::vector<AtlasChart> charts;  ///< by their least face of the input
   Index filled_holes = 0;
   double predicted_energy = 2;  ///< of seams that were searched
-  AnchoredSeams coarse_seams;   ///< of these, where the surface was simplified for the search
+  BegunSearch search;           ///< of these
 };
 
 /// Which faces of the input are parts of polygons, and where.
@@ -61,12 +60,11 @@ bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, I
 
 /// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
 /// the root of their component's area, and cuts what there is then along the seams that are
-/// searched for `target`, or without one what is no disk along a short cut graph. The search goes
-/// on from `begun`, the coarse seams found for another target, or begins. No cut divides a polygon,
-/// if there is a way.
+/// searched for `target`, or without one what is no disk along a short cut graph. `begun`: as
+/// search_seams has it, of the same. No cut divides a polygon, if there is a way.
 OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
                            const PolygonParts& polygons, const std::optional<SeamTarget>& target,
                            const SeamWeights& weights, const InputHints& hints,
-                           const AnchoredSeams& begun, const Work& work);
+                           const BegunSearch& begun, const Work& work);
 
 }  // namespace beltrami

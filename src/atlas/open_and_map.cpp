@@ -9,7 +9,6 @@
 #include "base/types.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
-#include "cut/search_level.h"
 
 namespace beltrami {
 namespace {
@@ -57,7 +56,7 @@ void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& a
 /// One try, at one target; `begun` as open_surface has it.
 Mapped open_and_map_for(const AtlasInput& input, const Admitted& admitted, int exponent,
                         const std::optional<SeamTarget>& target, const AtlasOptions& options,
-                        const AnchoredSeams& begun, const Work& work,
+                        const BegunSearch& begun, const Work& work,
                         std::vector<StageStatistics>& stages) {
   Mapped mapped;
   OpenedSurface& opened = mapped.opened;
@@ -116,7 +115,7 @@ std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& m
   const double asked = target.energy - 2;
   const double coarse = (mapped.opened.predicted_energy - 2) / asked;
   const double fine = (mapped.energy.symmetric_dirichlet - 2) / asked;
-  const EdgeMarks& seams = mapped.opened.coarse_seams.seams;
+  const EdgeMarks& seams = mapped.opened.search.seams.seams;
   const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
   if (!is_cut || target.p99 > 0 || fine > kUnused || coarse < kUsed) return std::nullopt;
   SeamTarget higher = target;
@@ -170,7 +169,7 @@ bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
 Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                     const AtlasOptions& options, const Work& work,
                     std::vector<StageStatistics>& stages) {
-  const auto run = [&](const std::optional<SeamTarget>& target, const AnchoredSeams& begun,
+  const auto run = [&](const std::optional<SeamTarget>& target, const BegunSearch& begun,
                        const Work& part) {
     return open_and_map_for(input, admitted, exponent, target, options, begun, part, stages);
   };
@@ -178,7 +177,7 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
   const SeamTarget& target = *options.target;
   const Index faces = admitted.surface.face_count();
   std::optional<SeamTarget> aim = target;
-  AnchoredSeams begun;
+  BegunSearch begun;
   std::optional<Mapped> best;
   Tries tries;
   const int most = faces <= kThoroughFaces ? kTries : kFewTries;
@@ -186,7 +185,7 @@ Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int expon
     const double from = i == 0 ? 0 : kFirstTry + (1 - kFirstTry) * (i - 1) / (most - 1);
     const double to = kFirstTry + (1 - kFirstTry) * i / (most - 1);
     Mapped mapped = run(aim, begun, work.part(from, to));
-    begun = mapped.opened.coarse_seams;
+    begun = mapped.opened.search;
     tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
     aim = aimed_again(target, *aim, mapped, tries, faces);
     if (!best || is_better(mapped, *best, target, admitted.input_vertex)) best = std::move(mapped);

@@ -31,6 +31,8 @@ constexpr double kLeadTolerance = 1e-3;  // of a minimum that another one starts
 constexpr Index kFewestFaces = 20;
 /// With a tenth of the faces the boundary crosses itself too often when it is carried over.
 constexpr Index kContactReduction = 4;
+/// Of a trial's patches: what these do not mend takes seconds with wider ones.
+constexpr int kTrialRings = 2;
 
 /// The minimum on a coarser mesh, as the start of that on a finer one.
 struct CoarserMinimum {
@@ -129,7 +131,8 @@ std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh, const std::vector<R
     uvs = carried;
     solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false, uvs, work);
     put_in_place(anchored, carried, uvs);
-    const RepairOptions mend{.global_fix = false};
+    RepairOptions mend{.global_fix = false};
+    if (options.is_trial) mend.most_rings = kTrialRings;
     return repair(mesh, rest, uvs, mend, still).flips_after == 0;
   };
   try {

@@ -17,7 +17,7 @@ enum class Flatten { kMetric, kDirichlet, kGif, kFlim, kBff };
 /// literature has it.
 enum class Injectivity { kAuto, kGlobal, kLocal };
 
-/// Each has the meaning of the public option of its name.
+/// Each has the meaning of the public option of its name, but for the last.
 struct ChartOptions {
   Method method = Method::kBeltrami;
   Flatten flatten = Flatten::kMetric;
@@ -31,6 +31,9 @@ struct ChartOptions {
   bool delaunay = false;      ///< flatten on the intrinsic Delaunay triangulation
   bool unit_square = false;
   bool float32 = false;  ///< deliver single-precision numbers
+  /// No public option: the map only tells what a cut is worth, and starts that are hard to mend are
+  /// given up.
+  bool is_trial = false;
 };
 
 /// Whether the boundary may not cross itself.

@@ -42,9 +42,7 @@ double ModelChange::energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const 
 }
 
 ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work& work)
-    : surface_(surface),
-      defect_(Eigen::VectorXd::Zero(surface.vertex_count())),
-      solver_(make_spd_solver({}, work)) {
+    : surface_(surface), work_(work), defect_(Eigen::VectorXd::Zero(surface.vertex_count())) {
   const Index count = surface.vertex_count();
   const auto rest = rest_triangles(surface.positions, surface.faces, work);
   Eigen::VectorXd area = Eigen::VectorXd::Zero(count);
@@ -78,29 +76,43 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   const Eigen::VectorXd softness =
       (area.array().max(kLeastArea * area.mean()) / whole).inverse().matrix();
   bilaplacian_ = laplacian * softness.asDiagonal() * laplacian;
-  std::vector<Place> places;
-  for (const Vec3& p : surface.positions) places.push_back(place_of(p));
-  solver_->analyze(bilaplacian_.triangularView<Eigen::Lower>(), places);
+  lower_ = bilaplacian_.triangularView<Eigen::Lower>();
 }
 
-void ElasticModel::pin(const std::vector<bool>& pinned) {
-  pinned_ = pinned;
-  SparseMatrix held = bilaplacian_.triangularView<Eigen::Lower>();
+ElasticModel::Sheet ElasticModel::unpinned() const {
+  Sheet sheet;
+  sheet.solver = make_spd_solver({}, work_);
+  std::vector<Place> places;
+  for (const Vec3& p : surface_.positions) places.push_back(place_of(p));
+  sheet.solver->analyze(lower_, places);
+  return sheet;
+}
+
+void ElasticModel::pin(std::vector<bool> pinned) {
+  for (Index v = 0; v < surface_.vertex_count(); ++v) {
+    if (surface_.on_boundary[v] || surface_.outgoing[v] == kNone) pinned[v] = true;
+  }
+  if (pinned == now_.pinned) return;
+  std::swap(now_, before_);
+  if (pinned == now_.pinned) return;
+  if (!now_.solver) now_ = unpinned();
+  now_.pinned.clear();
+  SparseMatrix held = lower_;
   const double spring = kPinned * bilaplacian_.diagonal().mean();
   Eigen::VectorXd force = defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
-    if (surface_.on_boundary[v] || surface_.outgoing[v] == kNone) pinned_[v] = true;
-    if (!pinned_[v]) continue;
-    held.coeffRef(v, v) += spring;
+    if (!pinned[v]) continue;
+    held.valuePtr()[held.outerIndexPtr()[v]] += spring;  // the first of its column
     force[v] = 0;
   }
   poll_interrupt();
-  if (factorize_shifted(*solver_, held) < 0) {
+  if (factorize_shifted(*now_.solver, held) < 0) {
     throw Error(Fault::kSolver, "the model of the coarse surface is not definite");
   }
-  const Eigen::VectorXd stress = solver_->solve(force);
-  stress_.assign(stress.begin(), stress.end());
-  energy_ = 2 + 2 * std::max(force.dot(stress), 0.0);
+  const Eigen::VectorXd stress = now_.solver->solve(force);
+  now_.stress.assign(stress.begin(), stress.end());
+  now_.energy = 2 + 2 * std::max(force.dot(stress), 0.0);
+  now_.pinned = std::move(pinned);
 }
 
 ModelChange ElasticModel::with(std::span<const Index> vertices) const {
@@ -109,12 +121,12 @@ ModelChange ElasticModel::with(std::span<const Index> vertices) const {
   Eigen::VectorXd there(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     unit.insert(vertices[i], i) = 1;
-    there[i] = stress_[vertices[i]];
+    there[i] = now_.stress[vertices[i]];
   }
   unit.makeCompressed();
   poll_interrupt();
-  DenseMatrix among = solver_->solve_rows(unit, {vertices.begin(), vertices.end()});
-  return {energy_, std::move(there), std::move(among), -1};
+  DenseMatrix among = now_.solver->solve_rows(unit, {vertices.begin(), vertices.end()});
+  return {now_.energy, std::move(there), std::move(among), -1};
 }
 
 ModelChange ElasticModel::without(std::span<const Index> vertices) const {
@@ -125,7 +137,7 @@ ModelChange ElasticModel::without(std::span<const Index> vertices) const {
   for (Eigen::Index i = 0; i < count; ++i) {
     for (SparseMatrix::InnerIterator entry(bilaplacian_, vertices[i]); entry; ++entry) {
       const auto other = static_cast<Index>(entry.row());
-      if (!pinned_[other]) {
+      if (!now_.pinned[other]) {
         coupling.insert(other, i) = entry.value();
         around.push_back(other);
       } else {
@@ -145,15 +157,15 @@ ModelChange ElasticModel::without(std::span<const Index> vertices) const {
     }
   }
   poll_interrupt();
-  among -= near.transpose() * solver_->solve_rows(coupling, around);
+  among -= near.transpose() * now_.solver->solve_rows(coupling, around);
   Eigen::VectorXd force(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     force[i] = defect_[vertices[i]];
     for (SparseMatrix::InnerIterator entry(coupling, i); entry; ++entry) {
-      force[i] -= entry.value() * stress_[entry.row()];
+      force[i] -= entry.value() * now_.stress[entry.row()];
     }
   }
-  return {energy_, std::move(force), std::move(among), 1};
+  return {now_.energy, std::move(force), std::move(among), 1};
 }
 
 }  // namespace beltrami

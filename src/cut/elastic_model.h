@@ -54,16 +54,17 @@ class ElasticModel {
   ElasticModel(const Surface& surface, Index real_faces, const Work& work);
 
   /// Takes the vertices that seams are at, `pinned`: per vertex, those of borders need not be. Each
-  /// component with a face must have one. Throws Error SOLVER.
-  void pin(const std::vector<bool>& pinned);
+  /// component with a face must have one. Those taken last before cost nothing: what is tried is
+  /// often taken back. Throws Error SOLVER.
+  void pin(std::vector<bool> pinned);
 
   /// Per vertex, the stress function: greatest in magnitude where a seam relieves most.
-  const std::vector<double>& stress() const { return stress_; }
+  const std::vector<double>& stress() const { return now_.stress; }
 
   /// What a real map's symmetric Dirichlet energy is taken for, at least 2. Of 17 scans, sculpted
   /// meshes and CAD parts with seams for 2.05 the excess over 2 of real maps was .83 to 1.05 times
   /// the model's, and up to 2 times where most vertices lie on seams.
-  double energy() const { return energy_; }
+  double energy() const { return now_.energy; }
 
   /// Where `vertices` are pinned, too. Precondition: none of them is.
   ModelChange with(std::span<const Index> vertices) const;
@@ -73,13 +74,22 @@ class ElasticModel {
   ModelChange without(std::span<const Index> vertices) const;
 
  private:
+  /// What follows from the vertices that are pinned.
+  struct Sheet {
+    std::vector<bool> pinned;  ///< empty: none has been taken
+    std::unique_ptr<SpdSolver> solver;
+    std::vector<double> stress;
+    double energy = 2;
+  };
+
+  Sheet unpinned() const;
+
   const Surface& surface_;
+  const Work work_;
   Eigen::VectorXd defect_;    ///< per vertex: K
   SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
-  std::vector<bool> pinned_;
-  std::unique_ptr<SpdSolver> solver_;
-  std::vector<double> stress_;
-  double energy_ = 2;
+  SparseMatrix lower_;        ///< its lower triangle, diagonal included
+  Sheet now_, before_;
 };
 
 }  // namespace beltrami

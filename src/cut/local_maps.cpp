@@ -48,6 +48,7 @@ std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injecti
   ChartOptions options;
   options.injectivity = injectivity;
   options.tolerance = tolerance;
+  options.is_trial = true;
   for (Vec2& w : start) w *= std::ldexp(1.0, frame.exponent);
   Descent done;
   if (!start.empty() && non_positive_faces(mesh.faces, start, work).empty()) {

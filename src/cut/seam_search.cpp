@@ -91,7 +91,7 @@ void SeamSearch::mark(Index halfedge, bool is) {
 void SeamSearch::refresh() {
   std::vector<bool> pinned(degree_.size());
   for (std::size_t v = 0; v < degree_.size(); ++v) pinned[v] = degree_[v] > 0;
-  model_.pin(pinned);
+  model_.pin(std::move(pinned));
 }
 
 /// Local extremes of the stress, and of what pinning them would gain, the best for their cost. In a

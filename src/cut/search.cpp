@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <thread>
 #include <utility>
@@ -123,12 +124,16 @@ void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
                            const SeamWeights& weights, const SeamHints& hints,
-                           const AnchoredSeams& begun, const Work& work) {
-  SearchLevel coarse = coarser_level(surface, real_faces, topology, locked, kCoarseFaces, weights,
-                                     hints, work.part(0, 0.3));
+                           const BegunSearch& begun, const Work& work) {
+  SearchedSeams searched;
+  searched.search.level = begun.level ? begun.level
+                                      : std::make_shared<const SearchLevel>(coarser_level(
+                                            surface, real_faces, topology, locked, kCoarseFaces,
+                                            weights, hints, work.part(0, 0.3)));
+  const SearchLevel& coarse = *searched.search.level;
   Attempt found;
-  if (begun.seams.size() == coarse.surface.twin.size()) {
-    found = LevelSearch(coarse, begun, Start(), target, work.part(0.3, 0.9)).run(true);
+  if (!begun.seams.seams.empty()) {
+    found = LevelSearch(coarse, begun.seams, Start(), target, work.part(0.3, 0.9)).run(true);
   } else {
     const bool is_thorough = surface.face_count() <= kThoroughFaces;
     found = search_level(coarse, is_thorough, target, weights, work.part(0.3, 0.8));
@@ -136,7 +141,6 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       LevelSearch(coarse, found.seams, Start(), target, work.part(0.8, 0.9)).join_charts(found);
     }
   }
-  SearchedSeams searched;
   searched.energy = found.energy;
   if (coarse.fine_vertex.empty()) {
     const EdgeMarks& seams = found.seams.seams;
@@ -145,13 +149,12 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
     searched.seams = std::move(found.seams.seams);
     return searched;
   }
-  searched.coarse = found.seams;
+  searched.search.seams = found.seams;
   hold_bends(coarse, work.aside(), found);
   searched.seams = carry_to_finer(coarse, surface,
                                   finer_costs(coarse, surface, real_faces, weights, hints, work),
                                   locked, found.seams, work.part(0.9, 1))
                        .seams;
-  searched.history = std::move(coarse.history);
   return searched;
 }
 

@@ -1,6 +1,7 @@
 // The shortest seams with which a surface flattens to a distortion that is asked for.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/types.h"
@@ -9,7 +10,6 @@
 #include "cut/seam_costs.h"
 #include "cut/search_level.h"
 #include "mesh/surface.h"
-#include "simplify/history.h"
 
 namespace beltrami {
 
@@ -26,11 +26,16 @@ struct SeamTarget {
 /// half of the flattening.
 inline constexpr Index kThoroughFaces = 100'000;
 
+/// What a search leaves to one of the same surface for another target.
+struct BegunSearch {
+  std::shared_ptr<const SearchLevel> level;  ///< on which seams were decided; null: none were
+  AnchoredSeams seams;  ///< what was found there; empty where the surface is its own coarse one
+};
+
 struct SearchedSeams {
-  EdgeMarks seams;          ///< on the surface given
-  double energy = 2;        ///< of the coarse maps along them
-  CollapseHistory history;  ///< of the surface on its way to the coarse one; empty: it is its own
-  AnchoredSeams coarse;     ///< what was found there; empty where it is its own
+  EdgeMarks seams;    ///< on the surface given
+  double energy = 2;  ///< of the coarse maps along them
+  BegunSearch search;
   /// The maps, where the surface is its own coarse one and is cut at all: per chart of it cut along
   /// the seams.
   std::vector<std::vector<Vec2>> maps;
@@ -41,12 +46,12 @@ struct SearchedSeams {
 /// cannot leave them, these are left out, and a piece may be no disk.) All of it is decided on a
 /// coarse surface, by a model of the maps and then by maps, and carried to the fine one.
 /// `real_faces`: those after them are virtual, they weigh and cost nothing. `locked`: edges that
-/// are not to be cut where there is a way, or none. `begun`: coarse seams that were found for
-/// another target, from which the search goes on; empty: it begins. Preconditions: `topology` is
-/// the surface's; hints are of its vertices and faces; area about 1. Throws Error SOLVER.
+/// are not to be cut where there is a way, or none. `begun`: the search of the same for another
+/// target, from whose seams this one goes on, if there are any. Preconditions: `topology` is the
+/// surface's; hints are of its vertices and faces; area about 1. Throws Error SOLVER.
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
                            const SeamWeights& weights, const SeamHints& hints,
-                           const AnchoredSeams& begun, const Work& work);
+                           const BegunSearch& begun, const Work& work);
 
 }  // namespace beltrami

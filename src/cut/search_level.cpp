@@ -32,19 +32,25 @@ void cheapen_virtual(const Surface& surface, Index real_faces, std::vector<doubl
   }
 }
 
-std::vector<double> costs_of(const Surface& surface, Index real_faces, const SeamWeights& weights,
-                             const SeamHints& hints, const Work& work) {
-  std::vector<double> cost = seam_costs(surface, weights, hints, work);
-  cheapen_virtual(surface, real_faces, cost);
-  return cost;
-}
-
-/// Per vertex, what the edges at it cost for their length, without paint and labels.
-std::vector<double> factors_of_shape(const Surface& surface, const SeamWeights& weights,
-                                     double hard_angle, const Work& work) {
+/// Without paint and labels.
+std::vector<double> costs_of_shape(const Surface& surface, const SeamWeights& weights,
+                                   double hard_angle, const Work& work) {
   SeamHints hints;
   hints.hard_angle = hard_angle;
-  const std::vector<double> cost = seam_costs(surface, weights, hints, work);
+  return seam_costs(surface, weights, hints, work);
+}
+
+/// Paint and labels, and what is virtual.
+void weigh_hints(const Surface& surface, Index real_faces, const SeamWeights& weights,
+                 const SeamHints& hints, const Work& work, std::vector<double>& cost) {
+  if (!hints.labels.empty()) weigh_labels(surface, hints.labels, weights.materials, cost, work);
+  weigh_paint(surface, hints.vertex_paint, hints.edge_paint, cost, work);
+  cheapen_virtual(surface, real_faces, cost);
+}
+
+/// Per vertex, what the edges at it cost for their length.
+std::vector<double> factors_of(const Surface& surface, const std::vector<double>& cost,
+                               const Work& work) {
   const std::vector<double> length = edge_lengths(surface, work);
   std::vector<Vec2> sums(surface.positions.size(), Vec2::Zero());
   for (Index h = 0; h < size_of(cost); ++h) sums[surface.origin(h)] += Vec2(cost[h], length[h]);
@@ -103,7 +109,8 @@ SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology&
     coarse.real_faces = real_faces;
     coarse.locked = locked;
     coarse.hints = hints;
-    coarse.cost = costs_of(fine, real_faces, weights, hints, work);
+    coarse.cost = costs_of_shape(fine, weights, hints.hard_angle, work);
+    weigh_hints(fine, real_faces, weights, hints, work, coarse.cost);
     return coarse;
   }
   CoarseSurface simple = simplify_surface(fine, topology.loops, target, work);
@@ -111,8 +118,9 @@ SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology&
       std::lower_bound(simple.fine_face.begin(), simple.fine_face.end(), real_faces) -
       simple.fine_face.begin());
   coarse.hints = coarse_hints(hints, simple, fine.vertex_count());
-  coarse.cost = costs_of(simple.mesh, coarse.real_faces, weights, coarse.hints, work);
-  coarse.factor = factors_of_shape(simple.mesh, weights, hints.hard_angle, work);
+  coarse.cost = costs_of_shape(simple.mesh, weights, hints.hard_angle, work);
+  coarse.factor = factors_of(simple.mesh, coarse.cost, work);
+  weigh_hints(simple.mesh, coarse.real_faces, weights, coarse.hints, work, coarse.cost);
   coarse.surface = std::move(simple.mesh);
   coarse.fine_vertex = std::move(simple.fine_vertex);
   coarse.history = std::move(simple.history);
@@ -136,9 +144,7 @@ std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, I
       cost[h] *= std::sqrt(factor[fine.origin(h)] * factor[fine.target(h)]);
     }
   });
-  if (!hints.labels.empty()) weigh_labels(fine, hints.labels, weights.materials, cost, work);
-  weigh_paint(fine, hints.vertex_paint, hints.edge_paint, cost, work);
-  cheapen_virtual(fine, real_faces, cost);
+  weigh_hints(fine, real_faces, weights, hints, work, cost);
   return cost;
 }
 

@@ -73,6 +73,7 @@ class Repair {
     if (bad.size() > options_.most_patches) return false;
     PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
+      if (kPatchRings[level] > options_.most_rings) break;
       std::size_t done = 0;
       for (const Index face : bad) {
         const double share = (static_cast<double>(level) +

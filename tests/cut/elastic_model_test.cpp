@@ -162,6 +162,27 @@ TEST(ElasticModel, FewerPinsAreJudgedAsIfTheyWereGone) {
   }
 }
 
+TEST(ElasticModel, PinsThatAreTakenBackLeaveNoTrace) {
+  std::mt19937_64 generator(4);
+  for (const TriangleList& mesh : surfaces()) {
+    const Surface surface = built(mesh);
+    ElasticModel model(surface, surface.face_count(), Work(1));
+    const std::vector<bool> one = random_pins(surface, 20, generator);
+    const std::vector<bool> other = random_pins(surface, 30, generator);
+    model.pin(one);
+    const std::vector<double> stress = model.stress();
+    const double energy = model.energy();
+    using Pins = std::vector<std::vector<bool>>;
+    for (const Pins& tried : {Pins{other}, Pins{one}, Pins{other, one, other},
+                              Pins{other, random_pins(surface, 5, generator)}}) {
+      for (const std::vector<bool>& pinned : tried) model.pin(pinned);
+      model.pin(one);
+      EXPECT_EQ(model.stress(), stress);
+      EXPECT_EQ(model.energy(), energy);
+    }
+  }
+}
+
 TEST(ElasticModel, RealMapsHaveAboutItsEnergy) {
   const TriangleList mesh = disks::blob(4);
   const Surface surface = built(mesh);

@@ -194,14 +194,15 @@ TEST(Search, CarriesTheSeamsOfACoarseSurfaceToTheFineOne) {
 
 TEST(Search, GoesOnFromWhatWasFoundForAnotherTarget) {
   const Surface surface = built(meshes::torus(82));
-  const auto go_on = [&](double energy, const AnchoredSeams& begun) {
+  const auto go_on = [&](double energy, const BegunSearch& begun) {
     return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), {},
                         {.energy = energy}, kLengths, {}, begun, Work(1));
   };
   const SearchedSeams found = go_on(2.05, {});
-  ASSERT_FALSE(found.coarse.seams.empty());
+  ASSERT_FALSE(found.search.seams.seams.empty());
   for (const double energy : {2.03, 2.08}) {
-    const SearchedSeams other = go_on(energy, found.coarse);
+    const SearchedSeams other = go_on(energy, found.search);
+    EXPECT_EQ(other.search.level, found.search.level);  // not simplified again
     EXPECT_EQ(charts(surface, other.seams), 1);
     EXPECT_LE(other.energy, energy);
     EXPECT_GE(other.energy, 2 + 0.8 * (energy - 2));

@@ -255,6 +255,12 @@ TEST(NativeSolver, GivesSingleRowsOfTheSolution) {
             << system.name;
       }
       EXPECT_EQ(solver->solve_rows(rhs, {}).rows(), 0);
+      // Columns do not see what lies beside them.
+      for (const int count : {1, 5, 12}) {
+        const SparseMatrix last = rhs.rightCols(count);
+        EXPECT_TRUE(same_bits(solver->solve_rows(last, rows), some.rightCols(count)))
+            << system.name;
+      }
     }
   }
 }

@@ -181,9 +181,9 @@ class PrunedSolve {
   /// Columns that are solved together: each entry of the factor is loaded once for all of them.
   static constexpr int kBlock = 16;
 
-  PrunedSolve(const Symbolic& symbolic, const T* factor, const SparseMatrix& rhs,
-              const std::vector<int>& rows)
-      : symbolic_(symbolic), factor_(factor), rhs_(rhs), rows_(rows) {
+  PrunedSolve(front::Vectors vectors, const Symbolic& symbolic, const T* factor,
+              const SparseMatrix& rhs, const std::vector<int>& rows)
+      : vectors_(vectors), symbolic_(symbolic), factor_(factor), rhs_(rhs), rows_(rows) {
     supernode_.resize(symbolic.column_count());
     for (int s = 0; s < symbolic.supernode_count(); ++s) {
       std::fill(supernode_.begin() + symbolic.first_column[s],
@@ -214,25 +214,34 @@ class PrunedSolve {
 
   /// Columns [first, first + count) of the result; count <= kBlock.
   void run(Eigen::Index first, Eigen::Index count, DenseMatrix& result) const {
-    std::vector<T> work(static_cast<std::size_t>(slots_) * kBlock, T(0));
+    const int lanes = count <= 4 ? 4 : count <= 8 ? 8 : kBlock;
+    std::vector<T> work(static_cast<std::size_t>(slots_) * lanes, T(0));
     std::vector<bool> reached(visited_.size(), false);
     for (Eigen::Index c = 0; c < count; ++c) {
       for (SparseMatrix::InnerIterator entry(rhs_, first + c); entry; ++entry) {
         const int column = column_of(static_cast<int>(entry.row()));
-        work[slot_of(column) * kBlock + c] += static_cast<T>(entry.value());
+        work[slot_of(column) * lanes + c] += static_cast<T>(entry.value());
         int s = supernode_[column / symbolic_.block_size];
         for (; s >= 0 && !reached[rank_[s]]; s = symbolic_.parent[s]) reached[rank_[s]] = true;
       }
     }
-    std::vector<T*> lanes;
+    std::vector<T*> at;
     for (std::size_t i = 0; i < visited_.size(); ++i) {
-      if (reached[i]) forward(visited_[i], lanes, work.data());
+      if (!reached[i]) continue;
+      const int s = visited_[i];
+      collect_rows(s, lanes, work.data(), at);
+      front::solve_forward_side_by_side(vectors_, factor_ + symbolic_.value_start[s],
+                                        symbolic_.height(s), symbolic_.width(s), at.data(), lanes);
     }
     for (std::size_t i = visited_.size(); i-- > 0;) {
-      if (wanted_[i]) backward(visited_[i], lanes, work.data());
+      if (!wanted_[i]) continue;
+      const int s = visited_[i];
+      collect_rows(s, lanes, work.data(), at);
+      front::solve_backward_side_by_side(vectors_, factor_ + symbolic_.value_start[s],
+                                         symbolic_.height(s), symbolic_.width(s), at.data(), lanes);
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const T* values = work.data() + slot_of(column_of(rows_[i])) * kBlock;
+      const T* values = work.data() + slot_of(column_of(rows_[i])) * lanes;
       for (Eigen::Index c = 0; c < count; ++c) {
         result(static_cast<Eigen::Index>(i), first + c) = values[c];
       }
@@ -240,7 +249,6 @@ class PrunedSolve {
   }
 
  private:
-  using Lane = Eigen::Map<Eigen::Array<T, kBlock, 1>>;
   enum : std::uint8_t { kUnused, kWanted, kReached };
 
   int column_of(int row) const {
@@ -252,41 +260,20 @@ class PrunedSolve {
     return static_cast<std::size_t>(slot_[column / block]) + column % block;
   }
 
-  void collect_lanes(int s, std::vector<T*>& lanes, T* work) const {
+  /// Where the lanes of each row of a supernode's panel are.
+  void collect_rows(int s, int lanes, T* work, std::vector<T*>& at) const {
     const int block = symbolic_.block_size;
-    lanes.clear();
+    at.clear();
     const auto add = [&](int column) {
       for (int b = 0; b < block; ++b) {
-        lanes.push_back(work + (static_cast<std::size_t>(slot_[column]) + b) * kBlock);
+        at.push_back(work + (static_cast<std::size_t>(slot_[column]) + b) * lanes);
       }
     };
     for (int c = symbolic_.first_column[s]; c < symbolic_.first_column[s + 1]; ++c) add(c);
     for (const int row : symbolic_.rows_of(s)) add(row);
   }
 
-  void forward(int s, std::vector<T*>& lanes, T* work) const {
-    collect_lanes(s, lanes, work);
-    const int height = symbolic_.height(s), width = symbolic_.width(s);
-    const T* column = factor_ + symbolic_.value_start[s];
-    for (int j = 0; j < width; ++j, column += height) {
-      Lane source(lanes[j]);
-      source /= column[j];
-      for (int i = j + 1; i < height; ++i) Lane(lanes[i]) -= source * column[i];
-    }
-  }
-
-  void backward(int s, std::vector<T*>& lanes, T* work) const {
-    collect_lanes(s, lanes, work);
-    const int height = symbolic_.height(s), width = symbolic_.width(s);
-    for (int j = width; j-- > 0;) {
-      const T* column = factor_ + symbolic_.value_start[s] + static_cast<std::int64_t>(j) * height;
-      Eigen::Array<T, kBlock, 1> sum = Lane(lanes[j]);
-      for (int i = j + 1; i < height; ++i) sum -= column[i] * Lane(lanes[i]);
-      Lane target(lanes[j]);
-      target = sum / column[j];
-    }
-  }
-
+  const front::Vectors vectors_;
   const Symbolic& symbolic_;
   const T* factor_;
   const SparseMatrix& rhs_;
@@ -308,11 +295,11 @@ void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T
 }
 
 template <class T>
-DenseMatrix solve_rows_with_factor(const Symbolic& symbolic, const T* factor,
-                                   const SparseMatrix& rhs, const std::vector<int>& rows,
-                                   const Work& work) {
+DenseMatrix solve_rows_with_factor(front::Vectors vectors, const Symbolic& symbolic,
+                                   const T* factor, const SparseMatrix& rhs,
+                                   const std::vector<int>& rows, const Work& work) {
   DenseMatrix result(static_cast<Eigen::Index>(rows.size()), rhs.cols());
-  const PrunedSolve<T> pruned(symbolic, factor, rhs, rows);
+  const PrunedSolve<T> pruned(vectors, symbolic, factor, rhs, rows);
   parallel_for(work, rhs.cols(), PrunedSolve<T>::kBlock, [&](std::int64_t begin, std::int64_t end) {
     pruned.run(begin, end - begin, result);
   });
@@ -323,9 +310,11 @@ template void solve_with_factor(front::Vectors, const Symbolic&, const float*, f
                                 const Work&);
 template void solve_with_factor(front::Vectors, const Symbolic&, const double*, double*, int,
                                 const Work&);
-template DenseMatrix solve_rows_with_factor(const Symbolic&, const float*, const SparseMatrix&,
-                                            const std::vector<int>&, const Work&);
-template DenseMatrix solve_rows_with_factor(const Symbolic&, const double*, const SparseMatrix&,
-                                            const std::vector<int>&, const Work&);
+template DenseMatrix solve_rows_with_factor(front::Vectors, const Symbolic&, const float*,
+                                            const SparseMatrix&, const std::vector<int>&,
+                                            const Work&);
+template DenseMatrix solve_rows_with_factor(front::Vectors, const Symbolic&, const double*,
+                                            const SparseMatrix&, const std::vector<int>&,
+                                            const Work&);
 
 }  // namespace beltrami

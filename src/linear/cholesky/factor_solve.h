@@ -19,8 +19,8 @@ void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T
 /// rows(A^-1 rhs), in the order of the matrix, like SpdSolver::solve_rows. Only the supernodes
 /// that right-hand sides or wanted rows reach are visited.
 template <class T>
-DenseMatrix solve_rows_with_factor(const Symbolic& symbolic, const T* factor,
-                                   const SparseMatrix& rhs, const std::vector<int>& rows,
-                                   const Work& work);
+DenseMatrix solve_rows_with_factor(front::Vectors vectors, const Symbolic& symbolic,
+                                   const T* factor, const SparseMatrix& rhs,
+                                   const std::vector<int>& rows, const Work& work);
 
 }  // namespace beltrami

@@ -198,6 +198,8 @@ struct Kernels {
   void (*update)(const T* packed, int depth, const Target<T>& target, int begin, int end);
   void (*forward)(const T* panel, int height, int width, T* x, int columns);
   void (*backward)(const T* panel, int height, int width, T* x, int columns);
+  void (*forward_rows)(const T* panel, int height, int width, T* const* rows, int columns);
+  void (*backward_rows)(const T* panel, int height, int width, T* const* rows, int columns);
 };
 
 /// Eliminates the columns [begin, end) of a panel that is up to date there. If they are one inner
@@ -364,6 +366,74 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
   }
 }
 
+/// Entries of one row that lie side by side.
+template <class T, int kLanes, int kColumns>
+struct Row {
+  static constexpr int kWidth = kLanes < kColumns ? kLanes : kColumns;
+  static constexpr int kVectors = kColumns / kWidth;
+  Vector<T, kWidth> part[kVectors];
+
+  BELTRAMI_INLINE explicit Row(const T* from) {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) part[v] = Vector<T, kWidth>::load(from + v * kWidth);
+  }
+  BELTRAMI_INLINE void store(T* to) const {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) part[v].store(to + v * kWidth);
+  }
+  BELTRAMI_INLINE void subtract_product(const Row& row, T factor) {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) part[v].subtract_product(row.part[v], factor);
+  }
+  BELTRAMI_INLINE void divide(T by) {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) part[v].v /= by;
+  }
+};
+
+template <class T, int kLanes, int kColumns>
+BELTRAMI_INLINE void forward_rows(const T* panel, int height, int width, T* const* rows) {
+  using Entries = Row<T, kLanes, kColumns>;
+  for (int j = 0; j < width; ++j, panel += height) {
+    Entries source(rows[j]);
+    source.divide(panel[j]);
+    source.store(rows[j]);
+    for (int i = j + 1; i < height; ++i) {
+      Entries target(rows[i]);
+      target.subtract_product(source, panel[i]);
+      target.store(rows[i]);
+    }
+  }
+}
+
+template <class T, int kLanes, int kColumns>
+BELTRAMI_INLINE void backward_rows(const T* panel, int height, int width, T* const* rows) {
+  using Entries = Row<T, kLanes, kColumns>;
+  for (int j = width; j-- > 0;) {
+    const T* column = panel + static_cast<std::int64_t>(j) * height;
+    Entries sum(rows[j]);
+    for (int i = j + 1; i < height; ++i) sum.subtract_product(Entries(rows[i]), column[i]);
+    sum.divide(column[j]);
+    sum.store(rows[j]);
+  }
+}
+
+template <class T, int kLanes>
+BELTRAMI_INLINE void forward_rows(const T* panel, int height, int width, T* const* rows,
+                                  int columns) {
+  if (columns == 4) return forward_rows<T, kLanes, 4>(panel, height, width, rows);
+  if (columns == 8) return forward_rows<T, kLanes, 8>(panel, height, width, rows);
+  forward_rows<T, kLanes, 16>(panel, height, width, rows);
+}
+
+template <class T, int kLanes>
+BELTRAMI_INLINE void backward_rows(const T* panel, int height, int width, T* const* rows,
+                                   int columns) {
+  if (columns == 4) return backward_rows<T, kLanes, 4>(panel, height, width, rows);
+  if (columns == 8) return backward_rows<T, kLanes, 8>(panel, height, width, rows);
+  backward_rows<T, kLanes, 16>(panel, height, width, rows);
+}
+
 // The bodies above for one width of vectors: NAME and what the compiler may use.
 // NOLINTBEGIN(bugprone-macro-parentheses): an attribute cannot be put in parentheses
 #define BELTRAMI_KERNELS(NAME, TARGET, BYTES)                                                     \
@@ -384,7 +454,16 @@ BELTRAMI_INLINE void backward_all(const T* panel, int height, int width, T* x, i
     TARGET static void run_backward(const T* panel, int height, int width, T* x, int columns) {   \
       backward_all<T, kLanes>(panel, height, width, x, columns);                                  \
     }                                                                                             \
-    static constexpr Kernels<T> kAll = {run_eliminate, run_update, run_forward, run_backward};    \
+    TARGET static void run_forward_rows(const T* panel, int height, int width, T* const* rows,    \
+                                        int columns) {                                            \
+      forward_rows<T, kLanes>(panel, height, width, rows, columns);                               \
+    }                                                                                             \
+    TARGET static void run_backward_rows(const T* panel, int height, int width, T* const* rows,   \
+                                         int columns) {                                           \
+      backward_rows<T, kLanes>(panel, height, width, rows, columns);                              \
+    }                                                                                             \
+    static constexpr Kernels<T> kAll = {run_eliminate, run_update,       run_forward,             \
+                                        run_backward,  run_forward_rows, run_backward_rows};      \
   };
 
 // NOLINTEND(bugprone-macro-parentheses)
@@ -457,11 +536,27 @@ void solve_backward(Vectors vectors, const T* panel, int height, int width, T* x
   kernels<T>(vectors).backward(panel, height, width, x, columns);
 }
 
+template <class T>
+void solve_forward_side_by_side(Vectors vectors, const T* panel, int height, int width,
+                                T* const* rows, int columns) {
+  kernels<T>(vectors).forward_rows(panel, height, width, rows, columns);
+}
+
+template <class T>
+void solve_backward_side_by_side(Vectors vectors, const T* panel, int height, int width,
+                                 T* const* rows, int columns) {
+  kernels<T>(vectors).backward_rows(panel, height, width, rows, columns);
+}
+
 template bool factorize(Vectors, float*, int, int, float*, float*, const ForChunks&);
 template bool factorize(Vectors, double*, int, int, double*, double*, const ForChunks&);
 template void solve_forward(Vectors, const float*, int, int, float*, int);
 template void solve_forward(Vectors, const double*, int, int, double*, int);
 template void solve_backward(Vectors, const float*, int, int, float*, int);
 template void solve_backward(Vectors, const double*, int, int, double*, int);
+template void solve_forward_side_by_side(Vectors, const float*, int, int, float* const*, int);
+template void solve_forward_side_by_side(Vectors, const double*, int, int, double* const*, int);
+template void solve_backward_side_by_side(Vectors, const float*, int, int, float* const*, int);
+template void solve_backward_side_by_side(Vectors, const double*, int, int, double* const*, int);
 
 }  // namespace beltrami::front

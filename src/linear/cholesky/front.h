@@ -47,4 +47,13 @@ void solve_forward(Vectors vectors, const T* panel, int height, int width, T* x,
 template <class T>
 void solve_backward(Vectors vectors, const T* panel, int height, int width, T* x, int columns);
 
+/// The same for `columns` right-hand sides, 4, 8 or 16, whose entries in one row lie side by side:
+/// rows[i] has those of row i of the panel. No entry depends on how many there are beside it.
+template <class T>
+void solve_forward_side_by_side(Vectors vectors, const T* panel, int height, int width,
+                                T* const* rows, int columns);
+template <class T>
+void solve_backward_side_by_side(Vectors vectors, const T* panel, int height, int width,
+                                 T* const* rows, int columns);
+
 }  // namespace beltrami::front

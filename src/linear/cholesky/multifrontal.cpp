@@ -348,7 +348,7 @@ void Factor<T>::solve(const Symbolic& symbolic, T* x, int columns, const Work& w
 template <class T>
 DenseMatrix Factor<T>::solve_rows(const Symbolic& symbolic, const SparseMatrix& rhs,
                                   const std::vector<int>& rows, const Work& work) const {
-  return solve_rows_with_factor<T>(symbolic, values_.get(), rhs, rows, work);
+  return solve_rows_with_factor<T>(vectors_, symbolic, values_.get(), rhs, rows, work);
 }
 
 template class Factor<float>;
