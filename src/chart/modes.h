@@ -90,7 +90,7 @@ double metric_bytes(const MeshCounts& n, int threads);
 double metric_factor_bytes(const MeshCounts& n, int threads);
 /// The harmonic map beside another.
 double harmonic_bytes(const MeshCounts& n, int threads);
-/// Of a mode in levels that need not be begun anew.
+/// In levels, where the finest needs no factor.
 double nested_bytes(const MeshCounts& n, int threads);
 double dirichlet_bytes(const MeshCounts& n, int threads);
 double reduced_bytes(const MeshCounts& n, int threads);

@@ -308,8 +308,8 @@ double nested_bytes(const MeshCounts& n, int threads) {
   const double climb = n.faces * sizeof(RestTriangle) +
                        n.vertices * (kPolishFields * sizeof(Vec2) + row + single + sizeof(Index)) +
                        kLevels * n.vertices * kLevel;
-  // The coarsest level, with room for a larger one; so it never takes less than a disk that has no
-  // levels yet.
+  // The coarsest level, or a hard one with its factor; so it never takes less than a disk that has
+  // no levels yet.
   const double share = std::min(1.0, kLeastFaces / n.faces);
   const MeshCounts coarsest{share * n.vertices, share * n.faces, share * n.boundary, n.regular,
                             n.metas};
