@@ -30,6 +30,7 @@
 #include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
 #include "prolong/interpolation.h"
+#include "repair/repair.h"
 #include "simplify/levels.h"
 #include "simplify/simplify.h"
 
