@@ -47,12 +47,12 @@ constexpr Index kMostFactored = 150000;
 constexpr int kSteps = 2;           // of conjugate gradients from an interpolated map
 constexpr int kRounds = 3;          // of so many steps, while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped
-/// Of the faces, what is flipped, and what is mended by patches, where a level is solved by its
-/// factor instead: where that is cheap, and in any case.
+/// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
+/// solved by its factor instead. Where a factor is cheap, and on any level.
 struct Bearable {
   double flips, patches;
 };
-constexpr Bearable kWhereCheap{1e-3, 1e-4}, kInAnyCase{2e-3, 5e-4};
+constexpr Bearable kWhereCheap{1e-3, 1e-4}, kOnAnyLevel{2e-3, 5e-4};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
 /// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
@@ -259,7 +259,7 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
   const bool in_contact = reached.in_contact, was_hard = climb.hard;
   const double energy = climb.energy;
   const bool cheap = mesh.face_count() <= kMostFactored && !is_finest;
-  const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kInAnyCase, is_finest,
+  const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kOnAnyLevel, is_finest,
                                    options, work.part(0, 0.5), climb);
   if (done && (reached.converged || !cheap)) return true;
   climb.cycle.reset();

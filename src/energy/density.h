@@ -9,9 +9,8 @@
 //   model(s1, s2)            value, derivatives and a positive semi-definite model of the Hessian
 //   Proxy                    a type with another model(s1, s2) of the same density, for the start
 //   slopes(map)              value and gradient by fz and fzbar alone
-//   best_scale(sum)          the global scale at which its sum over a map is least; sum(term) is
-//   the
-//                            sum over the faces of the array that term(area, s1, s2) returns
+//   best_scale(sum)          the global scale at which its sum over a map is least; sum(term) adds
+//                            up over the faces the array that term(area, s1, s2) returns for each
 // and, where it grows otherwise than quadratically with lengths and their inverses,
 //   to_dirichlet(energy)     the symmetric Dirichlet energy of an even map of that value
 //   from_dirichlet(energy)   the value of a face of that symmetric Dirichlet energy
