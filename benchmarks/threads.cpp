@@ -55,11 +55,14 @@ struct StageTimes {
 
 using Times = std::map<std::string, StageTimes>;
 
+/// What is done outside of the stages.
+constexpr const char* kBetween = "between";
+
 /// Loads and flattens the mesh as the library does for its callers.
 Flattening run_stages(const TriangleMesh& file, const Work& work, double& load) {
   const double begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
   const Work loading = work.part(0, 0).named("load");
-  loading.report(0);
+  if (work.trace()) work.trace()->enter("load");
   beltrami_mesh mesh{};
   mesh.struct_size = sizeof mesh;
   mesh.vertex_count = file.vertex_count();
@@ -68,6 +71,7 @@ Flattening run_stages(const TriangleMesh& file, const Work& work, double& load) 
   mesh.indices = {file.faces.data(), 0, BELTRAMI_U32, 0};
   const LoadedMesh loaded = load_mesh(&mesh, loading, std::atomic<bool>{false});
   load = seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
+  if (work.trace()) work.trace()->enter("");
   return flatten(loaded.input.disk, loaded.frame, ChartOptions{}, work);
 }
 
@@ -75,13 +79,8 @@ Flattening run_stages(const TriangleMesh& file, const Work& work, double& load) 
 Times trace_run(const TriangleMesh& file, const std::vector<int>& threads,
                 std::vector<std::string>& order) {
   Times times;
-  std::string present;  // stage
-  const auto note_stage = [&](double, const char* name) {
-    present = name;
-    return false;
-  };
-  LoopTrace trace([&](const std::vector<double>& chunks) {
-    StageTimes& of = times[present];
+  LoopTrace trace([&](const char* stage, const std::vector<double>& chunks) {
+    StageTimes& of = times[*stage == '\0' ? kBetween : stage];
     of.loops.resize(threads.size());
     double longest = 0;
     for (const double time : chunks) {
@@ -94,8 +93,9 @@ Times trace_run(const TriangleMesh& file, const std::vector<int>& threads,
   });
   const int most = *std::max_element(threads.begin(), threads.end());
   double load = 0;
-  const Flattening done =
-      run_stages(file, Work({.threads = most, .trace = &trace}, note_stage), load);
+  const double begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
+  const Flattening done = run_stages(file, Work({.threads = most, .trace = &trace}, nullptr), load);
+  double between = seconds(CLOCK_PROCESS_CPUTIME_ID) - begin - load;
   order = {"load"};
   times["load"].work = load;
   for (const StageStatistics& stage : done.statistics.stages) {
@@ -103,7 +103,10 @@ Times trace_run(const TriangleMesh& file, const std::vector<int>& threads,
       order.emplace_back(stage.name);
     }
     times[stage.name].work += stage.cpu_seconds;
+    between -= stage.cpu_seconds;
   }
+  order.emplace_back(kBetween);
+  times[kBetween].work = between;
   for (auto& [name, of] : times) of.loops.resize(threads.size());
   return times;
 }

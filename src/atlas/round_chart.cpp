@@ -25,7 +25,7 @@ void round_chart(const DiskMesh& mesh, const std::vector<Vec2>& placed, const Nu
   const Numbers floats{.single = true, .exponent = format.exponent};
   const bool was_injective = map.outcome <= Outcome::kNotConverged;
   const auto note = [&](const Numbers& numbers, const Certificate& certificate, Outcome outcome) {
-    if (was_injective && !(numbers.hold(map.uvs) && certificate.injective())) {
+    if (was_injective && !(numbers.hold(map.uvs, work) && certificate.injective())) {
       map.outcome = outcome;
     }
   };

@@ -15,14 +15,17 @@ namespace beltrami {
 /// chunks of another count as a part of these.
 class LoopTrace {
  public:
-  /// Called after each loop with the CPU seconds of its chunks, in the order in which they are
-  /// handed out.
-  using Listener = std::function<void(const std::vector<double>& chunks)>;
+  /// Called after each loop with the stage that it belongs to, or "" between stages, and the CPU
+  /// seconds of its chunks, in the order in which they are handed out.
+  using Listener = std::function<void(const char* stage, const std::vector<double>& chunks)>;
 
   explicit LoopTrace(Listener listener) : listener_(std::move(listener)) {}
 
   /// Whether a loop is under way, so that this one is within a chunk of it.
   bool is_inside() const { return inside_; }
+
+  /// The loops to come belong to `stage`; returns the one before.
+  const char* enter(const char* stage) { return std::exchange(stage_, stage); }
 
   /// Runs chunk(i) for i in [0, count).
   template <class Chunk>
@@ -40,11 +43,12 @@ class LoopTrace {
       throw;
     }
     inside_ = false;
-    listener_(seconds);
+    listener_(stage_, seconds);
   }
 
  private:
   Listener listener_;
+  const char* stage_ = "";
   bool inside_ = false;
 };
 

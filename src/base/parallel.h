@@ -23,16 +23,29 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
 /// Lets several threads be the first to touch memory, which costs more than to fill it.
 void touch_memory(const Work& work, void* memory, std::size_t bytes);
 
-/// items.assign(count, value) for large arrays, with memory that several threads have touched.
+/// Empties a large array, with room for `count` items in memory that several threads have touched.
 template <class T>
-void parallel_assign(const Work& work, std::vector<T>& items, std::size_t count,
-                     const T& value = T()) {
-  if (items.capacity() < count) {
-    std::vector<T>().swap(items);
-    items.reserve(count);
-    touch_memory(work, items.data(), count * sizeof(T));
-  }
+void parallel_reserve(const Work& work, std::vector<T>& items, std::size_t count) {
+  items.clear();
+  if (items.capacity() >= count) return;
+  std::vector<T>().swap(items);
+  items.reserve(count);
+  touch_memory(work, items.data(), count * sizeof(T));
+}
+
+/// items.assign(count, value) for large arrays.
+template <class T>
+void parallel_assign(const Work& work, std::vector<T>& items, std::size_t count, const T& value) {
+  parallel_reserve(work, items, count);
   items.assign(count, value);
+}
+
+/// `count` items as their default constructor leaves them: numbers are zero, which one thread alone
+/// sees to; of Vec2, Vec3 and the like, which are left as they are, nothing is filled.
+template <class T>
+void parallel_assign(const Work& work, std::vector<T>& items, std::size_t count) {
+  parallel_reserve(work, items, count);
+  items.resize(count);
 }
 
 /// copy = items for large arrays.

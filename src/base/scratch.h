@@ -14,6 +14,7 @@ namespace beltrami {
 template <class T>
 class Scratch {
  public:
+  Scratch() = default;
   Scratch(const Work& work, std::size_t count)
       : items_(std::make_unique_for_overwrite<T[]>(count)) {
     touch_memory(work, items_.get(), count * sizeof(T));

@@ -80,7 +80,7 @@ JudgedMap attempt(const DiskMesh& mesh, const Normalisation& frame, const Way& w
   made.delivery = prepare(disk, frame, made.map.uvs, options, work.part(kMethod, 1),
                           made.map.statistics.stages);
   made.map.uvs = {};
-  made.broken = promises(options) ? broken_promises(made.delivery, frame, options) : 0;
+  made.broken = promises(options) ? broken_promises(made.delivery, frame, options, work) : 0;
   return made;
 }
 

@@ -52,9 +52,11 @@ void run_stage(const char* name, const Work& work, std::vector<StageStatistics>&
   const Work inner = work.named(name);
   const double wall = wall_seconds(), cpu = cpu_seconds();
   StageStatistics statistics{name};
+  const char* before = work.trace() ? work.trace()->enter(name) : "";
   inner.report(0);
   std::forward<Body>(body)(statistics, inner);
   inner.report(1);
+  if (work.trace()) work.trace()->enter(before);
   statistics.seconds = wall_seconds() - wall;
   statistics.cpu_seconds = cpu_seconds() - cpu;
   stages.push_back(statistics);

@@ -1,5 +1,6 @@
 #include "chart/delivery.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "base/parallel.h"
@@ -23,23 +24,24 @@ Numbers numbers(const Normalisation& frame, const ChartOptions& options, bool si
 
 /// The map with its bounding box around the origin, or in the unit square; in the unit of the
 /// normalised mesh, from which that of the caller is a power of two away.
-std::vector<Vec2> placed(const std::vector<Vec2>& uvs, bool unit_square) {
-  Vec2 low = uvs.front(), high = uvs.front();
-  for (const Vec2& w : uvs) {
-    low = low.cwiseMin(w);
-    high = high.cwiseMax(w);
-  }
+std::vector<Vec2> placed(const std::vector<Vec2>& uvs, bool unit_square, const Work& work) {
+  std::vector<Eigen::AlignedBox2d> of_chunk(uvs.size() / kGrain + 1);
+  parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Eigen::AlignedBox2d box;
+    for (std::int64_t v = begin; v < end; ++v) box.extend(uvs[v]);
+    of_chunk[begin / kGrain] = box;
+  });
+  Eigen::AlignedBox2d box;
+  for (const Eigen::AlignedBox2d& own : of_chunk) box.extend(own);
+  // Around the origin floats are densest, above all in single precision. The scale is one ulp
+  // short, so that no rounding leaves the square.
+  const Vec2 from = unit_square ? box.min() : Vec2(0.5 * (box.min() + box.max()));
+  const double scale = unit_square ? (1 - 0x1p-52) / box.sizes().maxCoeff() : 1;
   std::vector<Vec2> placed;
-  placed.reserve(uvs.size());
-  if (unit_square) {
-    // One ulp short, so that no rounding leaves the square.
-    const double scale = (1 - 0x1p-52) / (high - low).maxCoeff();
-    for (const Vec2& w : uvs) placed.push_back(scale * (w - low));
-  } else {
-    // Where floats are densest, above all in single precision.
-    const Vec2 centre = 0.5 * (low + high);
-    for (const Vec2& w : uvs) placed.push_back(w - centre);
-  }
+  parallel_assign(work, placed, uvs.size());
+  parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) placed[v] = scale * (uvs[v] - from);
+  });
   return placed;
 }
 
@@ -79,7 +81,7 @@ Delivery prepare(const DiskMesh& mesh, const Normalisation& frame, const std::ve
                  std::vector<StageStatistics>& stages) {
   Delivery made;
   run_stage("certify", work, stages, [&](StageStatistics&, const Work& inner) {
-    Rounded rounded = round_map(mesh, uvs, placed(uvs, options.unit_square),
+    Rounded rounded = round_map(mesh, uvs, placed(uvs, options.unit_square, inner),
                                 numbers(frame, options, false), inner.part(0, 0.5));
     inner.report(0.5);
     made.certificate = rounded.certificate;
@@ -93,8 +95,8 @@ Delivery prepare(const DiskMesh& mesh, const Normalisation& frame, const std::ve
 }
 
 std::int64_t broken_promises(const Delivery& made, const Normalisation& frame,
-                             const ChartOptions& options) {
-  const bool single = made.single && numbers(frame, options, true).hold(made.uvs);
+                             const ChartOptions& options, const Work& work) {
+  const bool single = made.single && numbers(frame, options, true).hold(made.uvs, work);
   return faults(single ? made.single->certificate : made.certificate,
                 keeps_boundary_simple(options));
 }
@@ -105,7 +107,7 @@ Flattening deliver(const DiskMesh& mesh, const Normalisation& frame, Delivery ma
   result.status = converged ? Outcome::kOk : Outcome::kNotConverged;
   const Numbers asked = numbers(frame, options, options.float32);
   const Numbers floats = numbers(frame, options, true);
-  const bool held = asked.hold(made.uvs);
+  const bool held = asked.hold(made.uvs, work);
   run_stage("certify", work, result.statistics.stages, [&](StageStatistics&, const Work& inner) {
     result.certificate = made.certificate;
     Rounded single = made.single ? *std::move(made.single)

@@ -33,7 +33,7 @@ Delivery prepare(const DiskMesh& mesh, const Normalisation& frame, const std::ve
 /// where the boundary was to stay simple. Where single precision cannot hold the map at all,
 /// another one would be no better: then in double precision.
 std::int64_t broken_promises(const Delivery& made, const Normalisation& frame,
-                             const ChartOptions& options);
+                             const ChartOptions& options, const Work& work);
 
 /// The map in the unit that was asked for, its verdicts and its energies: of the result uvs,
 /// certificates, float32_moves, single_moves, distortion, face_energies and the status, which is

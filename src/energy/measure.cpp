@@ -107,9 +107,16 @@ Distortion measure_distortion(const std::vector<Vec3>& positions,
     double area = 0;
     Distortion sum;
   };
-  double size = 0;
-  for (const Vec3& p : positions) size = std::max(size, p.cwiseAbs().maxCoeff());
-  const int unit = unit_of(size);  // in which areas are neither too small nor too great to add
+  std::vector<double> sizes(positions.size() / kGrain + 1, 0);
+  parallel_for(work, size_of(positions), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double size = 0;
+    for (std::int64_t v = begin; v < end; ++v) {
+      size = std::max(size, positions[v].cwiseAbs().maxCoeff());
+    }
+    sizes[begin / kGrain] = size;
+  });
+  const int unit = unit_of(*std::max_element(
+      sizes.begin(), sizes.end()));  // in which areas are neither too small nor too great to add
   std::vector<Partial> partials(faces.size() / kGrain + 1);
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Partial& part = partials[begin / kGrain];

@@ -24,11 +24,13 @@ void for_each_edge(const Surface& mesh, Index v, const Visit& visit) {
 
 }  // namespace
 
-Smoother::Smoother(const Surface& mesh, const Work& work) : work_(work) {
-  const Index count = mesh.vertex_count();
-  parallel_assign(work, rows_, static_cast<std::size_t>(count) + 1);
-  std::vector<Index> before(static_cast<std::size_t>(count / kBlock) + 2, 0);  // each block
-  parallel_for(work, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+Smoother::Smoother(const Surface& mesh, const Work& work)
+    : work_(work),
+      count_(mesh.vertex_count()),
+      rows_(work, static_cast<std::size_t>(count_) + 1),
+      inverse_diagonal_(work, static_cast<std::size_t>(count_)) {
+  std::vector<Index> before(static_cast<std::size_t>(count_ / kBlock) + 2, 0);  // each block
+  parallel_for(work, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
     Index total = 0;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       rows_[v].begin = total;
@@ -38,13 +40,12 @@ Smoother::Smoother(const Surface& mesh, const Work& work) : work_(work) {
   });
   std::partial_sum(before.begin(), before.end(), before.begin());
   const Index total = before.back();
-  parallel_for(work, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(work, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) rows_[v].begin += before[begin / kBlock];
   });
-  rows_[count].begin = total;
-  parallel_assign(work, column_, static_cast<std::size_t>(total));
-  parallel_assign(work, weight_, static_cast<std::size_t>(total));
-  parallel_assign(work, inverse_diagonal_, static_cast<std::size_t>(count));
+  rows_[count_].begin = total;
+  column_ = Scratch<Index>(work, static_cast<std::size_t>(total));
+  weight_ = Scratch<float>(work, static_cast<std::size_t>(total));
 }
 
 void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>& weights,
@@ -84,15 +85,13 @@ void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>&
 
 void Smoother::set_springs(const std::vector<float>& springs) {
   springs_ = springs;
-  parallel_for(work_, size_of(inverse_diagonal_), kBlock,
-               [&](std::int64_t begin, std::int64_t end) {
-                 for (std::int64_t v = begin; v < end; ++v) {
-                   float diagonal = springs_.empty() ? 0 : springs_[v];
-                   for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i)
-                     diagonal += weight_[i];
-                   inverse_diagonal_[v] = diagonal > 0 ? 1 / diagonal : 0;
-                 }
-               });
+  parallel_for(work_, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      float diagonal = springs_.empty() ? 0 : springs_[v];
+      for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i) diagonal += weight_[i];
+      inverse_diagonal_[v] = diagonal > 0 ? 1 / diagonal : 0;
+    }
+  });
 }
 
 void Smoother::multiply(const SingleField& x, SingleField& product) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/scratch.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/surface.h"
@@ -61,11 +62,12 @@ class Smoother {
   };
 
   Work work_;
-  std::vector<Row> rows_;  ///< and one more
-  std::vector<Index> column_;
-  std::vector<float> weight_;            ///< W
-  std::vector<float> springs_;           ///< or empty
-  std::vector<float> inverse_diagonal_;  ///< 0 where that is not positive
+  Index count_;        ///< of vertices
+  Scratch<Row> rows_;  ///< and one more
+  Scratch<Index> column_;
+  Scratch<float> weight_;            ///< W
+  std::vector<float> springs_;       ///< or empty
+  Scratch<float> inverse_diagonal_;  ///< 0 where that is not positive
 };
 
 }  // namespace beltrami

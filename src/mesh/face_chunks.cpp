@@ -3,8 +3,14 @@
 #include <atomic>
 
 #include "base/parallel.h"
+#include "base/scratch.h"
 
 namespace beltrami {
+namespace {
+
+constexpr std::int64_t kGrain = 16384;
+
+}  // namespace
 
 FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, const Work& work)
     : grain_(grain_of(size_of(faces))),
@@ -12,7 +18,10 @@ FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, c
       shared_(static_cast<std::size_t>(vertex_count), 0) {
   if (count_ == 1) return;
   // Whichever chunks come first at a vertex: one of them finds the mark of another.
-  std::vector<Index> last_chunk(shared_.size(), kNone);
+  Scratch<Index> last_chunk(work, shared_.size());
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) last_chunk[v] = kNone;
+  });
   parallel_for(work, size_of(faces), grain_, [&](std::int64_t begin, std::int64_t end) {
     const auto chunk = static_cast<Index>(of(begin));
     for (std::int64_t f = begin; f < end; ++f) {

@@ -13,6 +13,9 @@ namespace beltrami {
 struct RestTriangle {
   double x1, x2, y2;
 
+  RestTriangle() {}  // leaves a large array as it is: no thread fills it before it is written
+  RestTriangle(double width, double apex_x, double apex_y) : x1(width), x2(apex_x), y2(apex_y) {}
+
   double area() const { return 0.5 * x1 * y2; }
   Complex corner(int k) const { return k == 0 ? 0.0 : k == 1 ? Complex(x1) : Complex(x2, y2); }
   /// Gradient of the hat function of corner k, as gx + i gy: i * opposite edge / (2 area).

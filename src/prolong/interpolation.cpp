@@ -34,7 +34,7 @@ void set_boundary(const DiskMesh& coarse, const std::vector<Index>& fine_vertex,
     Index end = next(i);
     for (; coarse_of[loop[end]] == kNone; end = next(end)) total += lengths[end];
     const Index to = coarse_of[loop[end]];
-    points[loop[i]] = {{from, from, from}};
+    points[loop[i]] = {{from, from, from}, {0, 0}};
     double along = lengths[i];
     for (Index k = next(i); k != end; k = next(k)) {
       points[loop[k]] = {{from, to, to}, {static_cast<float>(along / total), 0}};
@@ -98,7 +98,7 @@ std::vector<Footpoint> footpoints(const DiskMesh& coarse, const std::vector<Inde
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       if (fine.on_boundary[v]) continue;
       const Index home = nearby[v];
-      points[v] = {{home, home, home}};
+      points[v] = {{home, home, home}, {0, 0}};
       if (fine_vertex[home] == v) continue;
       const Vec3& point = fine.positions[v];
       const Index start = touches(coarse, last, home) ? last : coarse.outgoing[home] / 3;

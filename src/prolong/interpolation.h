@@ -15,8 +15,12 @@ namespace beltrami {
 /// Where a fine vertex lies on the coarse disk. The share of the first corner is what the two
 /// others leave of 1.
 struct Footpoint {
-  std::array<Index, 3> corners;   ///< coarse vertices; one may occur twice
-  std::array<float, 2> shares{};  ///< of corners 1 and 2, >= 0
+  std::array<Index, 3> corners;  ///< coarse vertices; one may occur twice
+  std::array<float, 2> shares;   ///< of corners 1 and 2, >= 0
+
+  Footpoint() {}  // leaves a large array as it is: no thread fills it before it is written
+  Footpoint(const std::array<Index, 3>& on, const std::array<float, 2>& at)
+      : corners(on), shares(at) {}
 
   float first_share() const { return 1 - shares[0] - shares[1]; }
 };

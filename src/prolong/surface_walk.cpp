@@ -28,12 +28,17 @@ SurfaceWalk::SurfaceWalk(const DiskMesh& mesh, const Work& work) : mesh_(mesh) {
       Vec3 normal = u.cross(w);
       const double longest_sq = std::max({u.squaredNorm(), w.squaredNorm(), (c - b).squaredNorm()});
       if (is_degenerate(a, b, c)) {
-        planes_[f] = {a, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), -1};
+        planes_[f].longest_sq = -1;
         continue;
       }
       const double inverse_sq = 1 / normal.squaredNorm();
       const Vec3 dual1 = inverse_sq * w.cross(normal), dual2 = inverse_sq * normal.cross(u);
-      planes_[f] = {a, dual1, dual2, normal * std::sqrt(inverse_sq), longest_sq};
+      Plane& plane = planes_[f];
+      plane.corner = a;
+      plane.dual1 = dual1;
+      plane.dual2 = dual2;
+      plane.normal = normal * std::sqrt(inverse_sq);
+      plane.longest_sq = longest_sq;
     }
   });
 }

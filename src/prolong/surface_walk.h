@@ -27,6 +27,8 @@ class SurfaceWalk {
   struct Plane {
     Vec3 corner, dual1, dual2, normal;
     double longest_sq;  ///< the longest edge; negative where the face has no normal
+
+    Plane() {}  // leaves a large array as it is
   };
 
   const DiskMesh& mesh_;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -269,16 +270,27 @@ double Numbers::spacing(double x) const {
   return portable::times_power_of_two(spacing, exponent);
 }
 
-bool Numbers::hold(const std::vector<Vec2>& places) const {
+bool Numbers::hold(const std::vector<Vec2>& places, const Work& work) const {
   const double greatest =
       single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
-  Eigen::AlignedBox2d box;
-  for (const Vec2& place : places) {
+  const auto out_of_range = [&](const Vec2& place) {
     const Vec2 number(portable::times_power_of_two(place.x(), -exponent),
                       portable::times_power_of_two(place.y(), -exponent));
-    if (!(number.cwiseAbs().maxCoeff() <= greatest)) return false;
-    box.extend(nearest(place));
-  }
+    return !(number.cwiseAbs().maxCoeff() <= greatest);
+  };
+  std::vector<Eigen::AlignedBox2d> of_chunk(places.size() / kGrain + 1);
+  std::atomic<bool> in_range{true};
+  parallel_for(work, size_of(places), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Eigen::AlignedBox2d box;
+    for (std::int64_t v = begin; v < end; ++v) {
+      if (out_of_range(places[v])) in_range = false;
+      box.extend(nearest(places[v]));
+    }
+    of_chunk[begin / kGrain] = box;
+  });
+  if (!in_range) return false;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::AlignedBox2d& own : of_chunk) box.extend(own);
   return box.sizes().minCoeff() > 0;
 }
 
@@ -291,7 +303,7 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<Vec2>& placed, const std::vector<bool>& held,
                   const Numbers& numbers, const Work& work) {
   Rounded result;
-  parallel_assign<Vec2>(work, result.uvs, placed.size(), Vec2::Zero());
+  parallel_assign(work, result.uvs, placed.size());
   parallel_for(work, size_of(placed), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) result.uvs[v] = numbers.nearest(placed[v]);
   });
@@ -299,7 +311,7 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, work);
     return result.certificate.injective();
   };
-  if (judge() || !numbers.hold(placed)) return result;
+  if (judge() || !numbers.hold(placed, work)) return result;
   const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, work);
   const std::vector<Vec2> nearest = result.uvs;
   auto bad = non_positive_faces(mesh.faces, result.uvs, work);

@@ -24,7 +24,7 @@ struct Numbers {
   double spacing(double x) const;
   /// Whether the type reaches as far as the places, and is fine enough not to round them all onto a
   /// line: where not, no rounding nearby is injective.
-  bool hold(const std::vector<Vec2>& places) const;
+  bool hold(const std::vector<Vec2>& places, const Work& work) const;
   /// The number of the type that x stands for.
   double delivered(double x) const;
   Vec2 delivered(const Vec2& place) const { return {delivered(place.x()), delivered(place.y())}; }

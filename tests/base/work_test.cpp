@@ -62,15 +62,18 @@ TEST(Work, TimeRunsOutForAllSharesAlike) {
 
 TEST(Work, ATraceTellsTheChunksOfLoopsButNotOfThoseWithin) {
   std::vector<std::size_t> loops;
-  beltrami::LoopTrace trace([&](const std::vector<double>& chunks) {
+  beltrami::LoopTrace trace([&](const std::string& stage, const std::vector<double>& chunks) {
     loops.push_back(chunks.size());
+    EXPECT_EQ(stage, loops.size() == 1 ? "first" : "");
     for (const double seconds : chunks) EXPECT_GE(seconds, 0);
   });
   const Work work({.threads = 16, .trace = &trace}, nullptr);
   int calls = 0;  // no thread but this one
+  const char* before = trace.enter("first");
   beltrami::parallel_for(work, 10, 4, [&](std::int64_t begin, std::int64_t end) {
     beltrami::parallel_for(work, end - begin, 1, [&](std::int64_t, std::int64_t) { ++calls; });
   });
+  trace.enter(before);
   const auto fail = [](std::int64_t, std::int64_t) { throw std::runtime_error("a chunk"); };
   EXPECT_THROW(beltrami::parallel_for(work, 3, 1, fail), std::runtime_error);
   beltrami::parallel_for(work, 2, 1, [&](std::int64_t, std::int64_t) { ++calls; });

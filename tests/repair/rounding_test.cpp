@@ -111,12 +111,12 @@ TEST(Rounding, KnowsTheNumbersOfATypeInAnotherUnit) {
 
 TEST(Rounding, TellsWhatATypeCannotHold) {
   const std::vector<Vec2> uvs = {{0, 0}, {1, 0}, {0, 1}};
-  EXPECT_TRUE((Numbers{.exponent = 1030}).hold(uvs));
-  EXPECT_FALSE((Numbers{.exponent = 1080}).hold(uvs));
-  EXPECT_FALSE((Numbers{.exponent = -1024}).hold(uvs));
-  EXPECT_TRUE((Numbers{.single = true, .exponent = -127}).hold(uvs));
-  EXPECT_FALSE((Numbers{.single = true, .exponent = -128}).hold(uvs));
-  EXPECT_FALSE((Numbers{.single = true, .exponent = 160}).hold(uvs));
+  EXPECT_TRUE((Numbers{.exponent = 1030}).hold(uvs, Work()));
+  EXPECT_FALSE((Numbers{.exponent = 1080}).hold(uvs, Work()));
+  EXPECT_FALSE((Numbers{.exponent = -1024}).hold(uvs, Work()));
+  EXPECT_TRUE((Numbers{.single = true, .exponent = -127}).hold(uvs, Work()));
+  EXPECT_FALSE((Numbers{.single = true, .exponent = -128}).hold(uvs, Work()));
+  EXPECT_FALSE((Numbers{.single = true, .exponent = 160}).hold(uvs, Work()));
 }
 
 TEST(Rounding, OpensFacesThatPlacingFolds) {
