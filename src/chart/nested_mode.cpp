@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/anchors.h"
@@ -60,7 +61,7 @@ constexpr double kHopelessly = 1.2;
 constexpr double kSimplified = 0.25, kStarted = 0.4;
 
 /// L-BFGS, as metric_mode has it, with the map and the one that it started from.
-constexpr double kPolishFields = 2 * 5 + 5 + 2;
+constexpr double kPolishFields = 2 * 5 + 4 + 2;
 /// Neighbours of a vertex.
 constexpr double kNeighbours = 6;
 /// Bytes of a vertex of a coarser level with all that is kept of it.
@@ -91,9 +92,17 @@ struct Level {
   FineProblem problem;
   const CoarseDisk& coarse;
   std::vector<Vec2> carried;  ///< the map of the coarse level at the footpoints
-  TargetEquations equations;
+  SingleField residual;       ///< what pulls it to the target, whose stiffness the cycle has
   BoundaryContact contact;
 };
+
+std::vector<VertexDerivative> carried_derivatives(const DiskMesh& coarse,
+                                                  const std::vector<Vec2>& uvs,
+                                                  const std::vector<Footpoint>& points,
+                                                  const Work& work) {
+  const auto rest = rest_triangles(coarse.positions, coarse.faces, work);
+  return carried(vertex_derivatives(coarse, rest, uvs, work), points, work);
+}
 
 Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartOptions& options,
                     const Work& work, VCycle& cycle, Climb& climb) {
@@ -101,7 +110,7 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
       .problem = {.mesh = &mesh},
       .coarse = coarse,
       .carried = {},
-      .equations = {},
+      .residual = {},
       .contact = {mesh.boundary, boundary_lengths(mesh), coarse_boundary_lengths(mesh, coarse)}};
   run_stage("prolong", work, climb.map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     level.problem.rest = rest_triangles(mesh.positions, mesh.faces, inner);
@@ -109,26 +118,15 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
     std::vector<Footpoint> points =
         footpoints(coarse.mesh, coarse.fine_vertex, coarse.nearby, mesh, inner);
     inner.report(0.5);
-    const auto coarse_rest = rest_triangles(coarse.mesh.positions, coarse.mesh.faces, inner);
-    const auto derivatives =
-        carried(vertex_derivatives(coarse.mesh, coarse_rest, climb.map.uvs, inner), points, inner);
     level.carried = carried(climb.map.uvs, points, inner);
-    level.equations = target_equations(options.energy, mesh, level.problem.rest, derivatives,
-                                       level.carried, inner);
+    TargetEquations equations = target_equations(
+        options.energy, mesh, level.problem.rest,
+        carried_derivatives(coarse.mesh, climb.map.uvs, points, inner), level.carried, inner);
+    level.residual = std::move(equations.residual);
     cycle.add(mesh, std::move(points));
+    cycle.set(equations.weights, {});
   });
   return level;
-}
-
-/// Springs for the anchored vertices, as stiff_springs.
-std::vector<double> springs_of(const DiskMesh& mesh, const TargetEquations& equations,
-                               const std::vector<bool>& anchored) {
-  if (anchored.empty()) return {};
-  std::vector<EdgeWeights> stiffness(mesh.faces.size());
-  for (std::size_t f = 0; f < stiffness.size(); ++f) {
-    for (int k = 0; k < 3; ++k) stiffness[f][k] = double{equations.weights[f][k]};
-  }
-  return stiff_springs(mesh, stiffness, anchored);
 }
 
 /// The stage "flatten": a few steps from the carried map, whose anchored vertices stay. Returns
@@ -138,10 +136,10 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
   std::size_t flips = 0;
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    cycle.set(level.equations.weights, springs_of(mesh, level.equations, anchored));
-    copy_field(inner, level.carried, map.uvs);
+    if (!anchored.empty()) cycle.anchor(anchored);
+    parallel_copy(inner, level.carried, map.uvs);
     SingleField residual;
-    copy_field(inner, level.equations.residual, residual);
+    parallel_copy(inner, level.residual, residual);
     for (int round = 0; round < kRounds; ++round) {
       cycle.improve(kSteps, residual, map.uvs);
       flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
@@ -163,7 +161,7 @@ void polish_level(const Level& level, bool simple, PolishLength length, bool pre
                   const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
   const bool may_return = simple && !pressed;
   std::vector<Vec2> start;
-  if (may_return) copy_field(work, climb.map.uvs, start);
+  if (may_return) parallel_copy(work, climb.map.uvs, start);
   ChartMap polished = polish_map(level.problem, pressed ? &level.contact : nullptr, length, options,
                                  work, cycle, std::move(climb.map.uvs));
   if (may_return && !level.contact.is_simple(polished.uvs)) {
@@ -200,7 +198,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
   if (!solved || !positive) return false;
-  level.equations = {};
+  SingleField().swap(level.residual);
   std::vector<Vec2>().swap(level.carried);
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
@@ -311,7 +309,7 @@ double nested_bytes(const MeshCounts& n, int threads) {
                        kLevels * n.vertices * kLevel;
   // The coarsest level, or a hard one with its factor; so it never takes less than a disk that has
   // no levels yet.
-  const double share = std::min(1.0, kLeastFaces / n.faces);
+  const double share = std::min(1.0, kMostFactored / n.faces);
   const MeshCounts coarsest{share * n.vertices, share * n.faces, share * n.boundary, n.regular,
                             n.metas};
   return std::max({climb, coarse_bytes(coarsest, 0, threads), metric_bytes(coarsest, threads)});

@@ -4,8 +4,8 @@
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
 // L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all (8 on that level),
-//   or held up                                        while a round gains a thousandth of the
-//   energy
+//   or held up                  where it has changed  while a round gains a thousandth of the
+//                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //
@@ -37,6 +37,7 @@ constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then 
 constexpr int kNewtonSteps = 10;
 constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
+constexpr double kAsFitted = 2e-3;         // relative decrease up to which a factor is as good
 
 /// What a length of the polish means.
 struct Bounds {
@@ -53,7 +54,7 @@ Bounds bounds_of(PolishLength length) {
     case PolishLength::kShort:
       return {4e-4, 1e-4, 8, 1e-3, false, true};
     case PolishLength::kMiddling:
-      return {1e-4, 5e-4, kMostSteps, 1e-3, false, false};
+      return {1e-4, 3e-4, kMostSteps, 1e-3, false, false};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, true, false};
   }
@@ -77,7 +78,8 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
-  PolishResult last = {};  ///< of the last steps
+  PolishResult last = {};                                      ///< of the last steps
+  double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
   bool converged = false;
 };
 
@@ -151,7 +153,11 @@ void take_rounds(const Setting& setting, State& state) {
         (is_stationary(setting, state) || state.iterations == 0)) {
       return;  // what a few faces held up at once has been cleaned
     }
-    fit_factor(setting, state);
+    // Springs of the contact change with the gaps, whatever the energy.
+    if (setting.contact || state.last.energies.back() < (1 - kAsFitted) * state.fitted_at) {
+      fit_factor(setting, state);
+      state.fitted_at = state.last.energies.back();
+    }
     take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
     if (!state.last.blocked) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.

@@ -18,7 +18,7 @@ namespace {
 
 using Field = std::vector<Vec2>;  // one entry per vertex
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 constexpr std::size_t kHistory = 5;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr int kPatience = 3;            // steps with contact that gain next to nothing
@@ -187,7 +187,8 @@ double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigi
 
 /// The buffers of a descent.
 struct Fields {
-  Field gradient, next_gradient, direction, trial, spare;
+  Field gradient, next_gradient, direction;
+  Field trial;  ///< and what else is needed between two trials
 };
 
 /// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
@@ -234,7 +235,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
   Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
-  Field &direction = fields.direction, &trial = fields.trial, &spare = fields.spare;
+  Field &direction = fields.direction, &trial = fields.trial;
   double start = objective.evaluate(uvs, gradient);
   if (options.contact && std::isfinite(start)) {
     objective.set_contact(options.contact);
@@ -248,7 +249,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   while (result.iterations() < options.max_iterations && !work.out_of_time()) {
     work.report(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back(), scale = comparable_energy<Density>(before);
-    history.find_direction(gradient, precondition, spare, direction);
+    history.find_direction(gradient, precondition, trial, direction);
     if (options.enough > 0) {
       result.predicted = -dot(gradient, direction, work);
       result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;

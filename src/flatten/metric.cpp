@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::int64_t kGrain = 8192;
 
-/// Of stiff springs, in sums of the weights around: the vertices end nearer to their places than to
-/// each other, and a factor in single precision takes no harm.
-constexpr double kSpring = 10;
-
 /// The stiffness of a face whose singular values are a + b and a - b, the greater one along
 /// `direction`, a unit complex twice as far from the real axis.
 template <class Density>
@@ -116,7 +112,7 @@ std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWe
       const Index v = mesh.faces[f][k];
       if (!vertices[v]) continue;
       const EdgeWeights& weights = stiffness[f];
-      springs[v] += kSpring * std::abs(weights[next_corner(k)] + weights[previous_corner(k)]);
+      springs[v] += kStiffSpring * std::abs(weights[next_corner(k)] + weights[previous_corner(k)]);
     }
   }
   return springs;

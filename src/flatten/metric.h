@@ -36,6 +36,10 @@ struct Anchors {
   std::vector<Vec2> places;     ///< per vertex
 };
 
+/// Of stiff springs, in sums of the weights around: the vertices end nearer to their places than to
+/// each other, and a factor in single precision takes no harm.
+inline constexpr double kStiffSpring = 10;
+
 /// Springs for the given vertices, far stiffer than the faces around them.
 std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
                                   const std::vector<bool>& vertices);

@@ -1,6 +1,7 @@
 #include "flatten/v_cycle.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
@@ -10,7 +11,7 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kGrain = 4096;
 /// Parts of the fine vertices whose shares of a coarse field are summed apart, then together.
 constexpr std::int64_t kParts = 8;
 
@@ -90,6 +91,18 @@ void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<do
   if (!single.empty()) set_springs_below(levels_.size() - 1, single);
 }
 
+void VCycle::anchor(const std::vector<bool>& vertices) {
+  Smoother& finest = levels_.back()->smoother;
+  std::vector<float> springs(vertices.size(), 0);
+  for (std::size_t v = 0; v < springs.size(); ++v) {
+    if (!vertices[v]) continue;
+    springs[v] =
+        static_cast<float>(kStiffSpring) * std::abs(finest.stiffness(static_cast<Index>(v)));
+  }
+  finest.set_springs(springs);
+  set_springs_below(levels_.size() - 1, springs);
+}
+
 /// The springs of a level, and what they are on those below it.
 void VCycle::set_springs_below(std::size_t level, const std::vector<float>& springs) {
   std::vector<float> below(levels_[level]->coarse_rhs.size());
@@ -159,7 +172,7 @@ void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
     apply(levels_.size(), residual, z);
     const double now = dot(residual, z, work_);
     if (step == 0) {
-      copy_field(work_, z, direction);
+      parallel_copy(work_, z, direction);
     } else {
       const auto beta = static_cast<float>(now / before);
       add_up([&](std::int64_t v) { direction[v] = z[v] + beta * direction[v]; });

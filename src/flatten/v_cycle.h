@@ -32,6 +32,9 @@ class VCycle final : public StiffnessInverse {
   /// Gives the finest level its stiffness, and all of them springs, per vertex of the finest or
   /// none.
   void set(const std::vector<SingleWeights>& weights, const std::vector<double>& springs);
+  /// Gives all levels stiff springs at these vertices of the finest, see kStiffSpring; one entry
+  /// per vertex.
+  void anchor(const std::vector<bool>& vertices);
   void refit(const std::vector<EdgeWeights>& stiffness,
              const std::vector<double>& springs) override;
 

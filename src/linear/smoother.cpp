@@ -83,12 +83,17 @@ void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>&
   set_springs(springs);
 }
 
+float Smoother::stiffness(Index vertex) const {
+  float sum = 0;
+  for (Index i = rows_[vertex].begin; i < rows_[vertex + 1].begin; ++i) sum += weight_[i];
+  return sum;
+}
+
 void Smoother::set_springs(const std::vector<float>& springs) {
   springs_ = springs;
   parallel_for(work_, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) {
-      float diagonal = springs_.empty() ? 0 : springs_[v];
-      for (Index i = rows_[v].begin; i < rows_[v + 1].begin; ++i) diagonal += weight_[i];
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      const float diagonal = stiffness(v) + (springs_.empty() ? 0 : springs_[v]);
       inverse_diagonal_[v] = diagonal > 0 ? 1 / diagonal : 0;
     }
   });
@@ -132,7 +137,7 @@ void Smoother::residual_after_forward(const SingleField& x, SingleField& residua
 }
 
 void Smoother::sweep_backward(const SingleField& rhs, SingleField& x, SingleField& before) const {
-  copy_field(work_, x, before);
+  parallel_copy(work_, x, before);
   parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = end; v-- > begin;) {
       const Row& row = rows_[v];

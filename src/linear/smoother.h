@@ -2,7 +2,6 @@
 // Gauss-Seidel step on them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -18,16 +17,6 @@ namespace beltrami {
 /// One entry per vertex.
 using SingleField = std::vector<Eigen::Vector2f>;
 
-/// copy = field, of vectors, which std::vector leaves as they are: the threads touch them first.
-template <class Field>
-void copy_field(const Work& work, const Field& field, Field& copy) {
-  constexpr std::int64_t kGrain = 16384;
-  copy.resize(field.size());
-  parallel_for(work, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::copy(field.begin() + begin, field.begin() + end, copy.begin() + begin);
-  });
-}
-
 /// A Laplacian A = D - W of a mesh. Its sweeps are Gauss-Seidel within fixed blocks of vertices and
 /// Jacobi between them: with M the diagonal and, within the blocks, the lower triangle of A.
 /// Neighbours should lie close in memory. The same bits at any number of threads.
@@ -40,6 +29,9 @@ class Smoother {
   /// what the diagonal has beside them, or empty.
   void set(const Surface& mesh, const std::vector<std::array<float, 3>>& weights,
            const std::vector<float>& springs);
+
+  /// The diagonal without the springs.
+  float stiffness(Index vertex) const;
 
   /// Other springs with the same weights.
   void set_springs(const std::vector<float>& springs);
