@@ -92,16 +92,20 @@ void ElasticModel::pin(std::vector<bool> pinned) {
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
     if (surface_.on_boundary[v] || surface_.outgoing[v] == kNone) pinned[v] = true;
   }
-  if (pinned == now_.pinned) return;
+  pinned_ = std::move(pinned);
+}
+
+const ElasticModel::Sheet& ElasticModel::sheet() const {
+  if (pinned_ == now_.pinned) return now_;
   std::swap(now_, before_);
-  if (pinned == now_.pinned) return;
+  if (pinned_ == now_.pinned) return now_;
   if (!now_.solver) now_ = unpinned();
   now_.pinned.clear();
   SparseMatrix held = lower_;
   const double spring = kPinned * bilaplacian_.diagonal().mean();
   Eigen::VectorXd force = defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
-    if (!pinned[v]) continue;
+    if (!pinned_[v]) continue;
     held.valuePtr()[held.outerIndexPtr()[v]] += spring;  // the first of its column
     force[v] = 0;
   }
@@ -112,24 +116,27 @@ void ElasticModel::pin(std::vector<bool> pinned) {
   const Eigen::VectorXd stress = now_.solver->solve(force);
   now_.stress.assign(stress.begin(), stress.end());
   now_.energy = 2 + 2 * std::max(force.dot(stress), 0.0);
-  now_.pinned = std::move(pinned);
+  now_.pinned = pinned_;
+  return now_;
 }
 
 ModelChange ElasticModel::with(std::span<const Index> vertices) const {
+  const Sheet& sheet = this->sheet();
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix unit(surface_.vertex_count(), count);
   Eigen::VectorXd there(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     unit.insert(vertices[i], i) = 1;
-    there[i] = now_.stress[vertices[i]];
+    there[i] = sheet.stress[vertices[i]];
   }
   unit.makeCompressed();
   poll_interrupt();
-  DenseMatrix among = now_.solver->solve_rows(unit, {vertices.begin(), vertices.end()});
-  return {now_.energy, std::move(there), std::move(among), -1};
+  DenseMatrix among = sheet.solver->solve_rows(unit, {vertices.begin(), vertices.end()});
+  return {sheet.energy, std::move(there), std::move(among), -1};
 }
 
 ModelChange ElasticModel::without(std::span<const Index> vertices) const {
+  const Sheet& sheet = this->sheet();
   const auto count = static_cast<Eigen::Index>(vertices.size());
   SparseMatrix coupling(surface_.vertex_count(), count);  // to vertices that are not pinned
   DenseMatrix among = DenseMatrix::Zero(count, count);
@@ -137,7 +144,7 @@ ModelChange ElasticModel::without(std::span<const Index> vertices) const {
   for (Eigen::Index i = 0; i < count; ++i) {
     for (SparseMatrix::InnerIterator entry(bilaplacian_, vertices[i]); entry; ++entry) {
       const auto other = static_cast<Index>(entry.row());
-      if (!now_.pinned[other]) {
+      if (!sheet.pinned[other]) {
         coupling.insert(other, i) = entry.value();
         around.push_back(other);
       } else {
@@ -157,15 +164,15 @@ ModelChange ElasticModel::without(std::span<const Index> vertices) const {
     }
   }
   poll_interrupt();
-  among -= near.transpose() * now_.solver->solve_rows(coupling, around);
+  among -= near.transpose() * sheet.solver->solve_rows(coupling, around);
   Eigen::VectorXd force(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     force[i] = defect_[vertices[i]];
     for (SparseMatrix::InnerIterator entry(coupling, i); entry; ++entry) {
-      force[i] -= entry.value() * now_.stress[entry.row()];
+      force[i] -= entry.value() * sheet.stress[entry.row()];
     }
   }
-  return {now_.energy, std::move(force), std::move(among), 1};
+  return {sheet.energy, std::move(force), std::move(among), 1};
 }
 
 }  // namespace beltrami

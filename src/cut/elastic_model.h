@@ -54,17 +54,18 @@ class ElasticModel {
   ElasticModel(const Surface& surface, Index real_faces, const Work& work);
 
   /// Takes the vertices that seams are at, `pinned`: per vertex, those of borders need not be. Each
-  /// component with a face must have one. Those taken last before cost nothing: what is tried is
-  /// often taken back. Throws Error SOLVER.
+  /// component with a face must have one. What follows is computed when it is asked for; that of
+  /// those asked about last before is kept: what is tried is often taken back.
   void pin(std::vector<bool> pinned);
 
   /// Per vertex, the stress function: greatest in magnitude where a seam relieves most.
-  const std::vector<double>& stress() const { return now_.stress; }
+  /// Throws Error SOLVER, as all that ask do.
+  const std::vector<double>& stress() const { return sheet().stress; }
 
   /// What a real map's symmetric Dirichlet energy is taken for, at least 2. Of 17 scans, sculpted
   /// meshes and CAD parts with seams for 2.05 the excess over 2 of real maps was .83 to 1.05 times
   /// the model's, and up to 2 times where most vertices lie on seams.
-  double energy() const { return now_.energy; }
+  double energy() const { return sheet().energy; }
 
   /// Where `vertices` are pinned, too. Precondition: none of them is.
   ModelChange with(std::span<const Index> vertices) const;
@@ -83,13 +84,15 @@ class ElasticModel {
   };
 
   Sheet unpinned() const;
+  const Sheet& sheet() const;
 
   const Surface& surface_;
   const Work work_;
   Eigen::VectorXd defect_;    ///< per vertex: K
   SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
   SparseMatrix lower_;        ///< its lower triangle, diagonal included
-  Sheet now_, before_;
+  std::vector<bool> pinned_;
+  mutable Sheet now_, before_;  ///< of the vertices asked about last, and before
 };
 
 }  // namespace beltrami
