@@ -525,6 +525,31 @@ const OptionEntry kOptions[] = {
         .set = set<&Options::pack_splits>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
+    {
+        .key = BELTRAMI_OPTION_SYMMETRIC_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "symmetric-seams",
+        .summary = "How much more seams may cost for being symmetric where the surface is: 0.5 for "
+                   "half as much again. They lie in the plane that it is mirrored by, or come in "
+                   "pairs, to within a few edges; 0 does not look for one.",
+        .minimum = 0,
+        .maximum = 100,
+        .get = get<&Options::weights, &SeamWeights::symmetry>,
+        .set = set<&Options::weights, &SeamWeights::symmetry>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_STRAIGHT_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "straight-seams",
+        .summary = "How far seams avoid turns: at a weight w one by an angle t, in the surface, "
+                   "costs w (1 - cos t) times an edge there; 0 counts lengths alone.",
+        .minimum = 0,
+        .maximum = 100,
+        .get = get<&Options::weights, &SeamWeights::straightness>,
+        .set = set<&Options::weights, &SeamWeights::straightness>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
 };
 
 /// The shortest text that reads back to the value, whatever the host's locale.

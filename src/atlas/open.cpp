@@ -112,20 +112,6 @@ void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& chart
   charts.swap(sorted);
 }
 
-/// The marks, and those of a short cut graph of each piece that is no disk along them.
-EdgeMarks opened_further(const Surface& surface, EdgeMarks marks, const EdgeMarks& locked,
-                         const Work& work) {
-  std::vector<Index> twin = surface.twin;
-  for (std::size_t h = 0; h < twin.size(); ++h) {
-    if (marks[h]) twin[h] = kNone;
-  }
-  const SplitSurface parted = split_fans(surface.positions, surface.faces, twin, work);
-  const EdgeMarks more =
-      open_minimal(parted.surface, topology_of(parted.surface, work), locked, work);
-  for (std::size_t h = 0; h < marks.size(); ++h) marks[h] = marks[h] || more[h];
-  return marks;
-}
-
 /// Per chart, what collapses of the surface leave to be done: per vertex the next one on its way,
 /// or itself. Of each chart so many are done again that it keeps more faces than its coarse mesh is
 /// to have. Empty for charts that would gain little, and in all where there is no history.

@@ -10,8 +10,10 @@
 #include "base/portable_math.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
+#include "cut/mirrored_seams.h"
 #include "cut/split_overlaps.h"
 #include "cut/straighten.h"
+#include "cut/turning.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
@@ -98,26 +100,36 @@ double Attempt::promised() const {
 }
 
 LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-                         const SeamTarget& target, const Work& work)
+                         const SeamTarget& target, const Work& work, const Mirror* mirror)
     : level_(level),
+      mirror_(mirror),
       start_(start),
       target_(target),
       work_(work),
       path_cost_(path_costs(level)),
       search_(level.surface, level.real_faces, path_cost_, std::move(seams.seams),
-              target.seam_budget * kSpent, start.least_cost, work, std::move(seams.anchors)) {}
+              target.seam_budget * kSpent, start.least_cost, work, std::move(seams.anchors),
+              mirror) {}
+
+/// Of the seams, and of their turns where these count.
+double LevelSearch::cost_with_turns() const {
+  if (level_.straightness == 0) return search_.cost();
+  return search_.cost() + cost_of_turns(level_.surface, search_.seams(), level_.cost,
+                                        search_.anchors(), level_.straightness);
+}
 
 /// Short and straight seams miss some of what the others ran to: they are taken where they are
 /// shorter with what has to be added to them.
 void LevelSearch::shorten_seams(double model_energy) {
+  if (mirror_ != nullptr) return;  // each side on its own they would not stay alike
   const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
-  const double cost = search_.cost(), energy = std::max(model_energy, search_.energy());
+  const double cost = cost_with_turns(), energy = std::max(model_energy, search_.energy());
   search_.reconnect();
   search_.take(straighten(level_.surface, search_.seams(), level_.cost, search_.anchors(),
-                          level_.locked, work_.aside()));
+                          level_.locked, level_.straightness, work_.aside()));
   search_.extend(energy);
-  const bool is_better = search_.cost() < cost && search_.energy() <= energy;
+  const bool is_better = cost_with_turns() < cost && search_.energy() <= energy;
   if (!is_better) search_.take(before, anchors);
 }
 
@@ -179,6 +191,21 @@ bool LevelSearch::part_overlaps(const LocalMaps& maps, double tolerance) {
   return parted;
 }
 
+/// What was added on one side is added on the other.
+void LevelSearch::mirror_seams() {
+  std::array<AnchoredSeams, 2> mirrored;
+  std::array<double, 2> cost = {};
+  for (const int i : {0, 1}) {
+    mirrored[i] = mirrored_seams(level_.surface, *mirror_, {search_.seams(), search_.anchors()},
+                                 2 * i - 1, path_cost_, level_.locked, work_);
+    for (Index h = 0; h < size_of(path_cost_); ++h) {
+      if (mirrored[i].seams[h] && level_.surface.edge(h) == h) cost[i] += path_cost_[h];
+    }
+  }
+  AnchoredSeams& more = mirrored[cost[1] > cost[0] ? 1 : 0];
+  search_.take(std::move(more.seams), std::move(more.anchors));
+}
+
 /// The excess of maps over 2 by that which is asked for, of the mean or of the percentile.
 double LevelSearch::missed_by(const LocalMaps& maps) const {
   double most = (maps.energy - 2) / (target_.energy - 2);
@@ -195,7 +222,10 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
   if (attempt.excess > kWorthParting && !is_last) return false;
   LocalMaps apart;
   for (const double overlap : {kMostOverlap, kLeastOverlap}) {
-    if (part_overlaps(maps, overlap)) maps = map(&maps);
+    if (part_overlaps(maps, overlap)) {
+      if (mirror_ != nullptr) mirror_seams();
+      maps = map(&maps);
+    }
     apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }

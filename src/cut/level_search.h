@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/local_maps.h"
+#include "cut/mirror.h"
 #include "cut/seam_search.h"
 #include "cut/search.h"
 #include "cut/search_level.h"
@@ -38,9 +39,10 @@ struct Attempt {
 /// The search on one level. All that is asked for it does from the seams that it stands at.
 class LevelSearch {
  public:
-  /// `seams` open the surface into disks. Keeps references to `level` and `target`.
+  /// `seams` open the surface into disks. `mirror`: they are symmetric to it and to stay so, or
+  /// null. Keeps references to `level`, `target` and the mirror.
   LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-              const SeamTarget& target, const Work& work);
+              const SeamTarget& target, const Work& work, const Mirror* mirror = nullptr);
 
   /// By the model alone.
   Attempt sketch();
@@ -54,13 +56,16 @@ class LevelSearch {
  private:
   bool extend_first(double model_energy);
   void shorten_seams(double model_energy);
+  double cost_with_turns() const;
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps, double tolerance);
+  void mirror_seams();
   double missed_by(const LocalMaps& maps) const;
   bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);
   void trim(LocalMaps& maps, Attempt& best);
 
   const SearchLevel& level_;
+  const Mirror* mirror_;  ///< or null
   const Start start_;
   const SeamTarget& target_;
   const Work work_;

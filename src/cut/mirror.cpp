@@ -351,25 +351,29 @@ bool is_one_of_a_pair(const Surface& surface, const Plane& plane, const std::vec
   return off < std::abs(plane.normal.dot(p - plane.point)) / 2;
 }
 
+/// How near the plane is where it cannot be told from it: less than half an edge, so that the ends
+/// of an edge that crosses it at right angles are beside it.
+double near_by_edges(const Surface& surface, Index vertex) {
+  constexpr double kNearEdges = 0.4;
+  double sum = 0;
+  Index count = 0;
+  if (surface.outgoing[vertex] != kNone) {
+    surface.for_each_outgoing(vertex, [&](Index h) {
+      sum += (surface.positions[surface.target(h)] - surface.positions[vertex]).norm();
+      ++count;
+    });
+  }
+  return kNearEdges * sum / std::max(count, 1);
+}
+
 std::vector<std::int8_t> sides(const Surface& surface, const Plane& plane,
                                const std::vector<Index>& image, double tolerance) {
-  // Less than half an edge: the ends of an edge that crosses the plane at right angles are beside
-  // it.
-  constexpr double kNearEdges = 0.4;
   std::vector<std::int8_t> side(surface.positions.size(), 0);
   PollSometimes poll;
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     poll();
     const double height = plane.normal.dot(surface.positions[v] - plane.point);
-    double sum = 0;
-    Index count = 0;
-    if (surface.outgoing[v] != kNone) {
-      surface.for_each_outgoing(v, [&](Index h) {
-        sum += (surface.positions[surface.target(h)] - surface.positions[v]).norm();
-        ++count;
-      });
-    }
-    const double near = std::min(tolerance, kNearEdges * sum / std::max(count, 1));
+    const double near = std::min(tolerance, near_by_edges(surface, v));
     if (std::abs(height) > near || is_one_of_a_pair(surface, plane, image, v)) {
       side[v] = height > 0 ? 1 : -1;
     }
@@ -401,20 +405,27 @@ std::optional<Mirror> find_mirror(const Surface& surface, double tolerance, cons
   return mirror;
 }
 
-std::vector<double> mirror_factors(const Surface& surface, const Mirror& mirror, double factor,
-                                   const Work& work) {
+void weigh_mirror(const Surface& surface, const Mirror& mirror, double factor,
+                  std::vector<double>& costs, const Work& work) {
   constexpr std::int64_t kGrain = 16384;
-  std::vector<double> factors(surface.twin.size(), 1);
-  parallel_for(work, size_of(factors), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto h = static_cast<Index>(begin); h < end; ++h) {
-      const Index a = surface.origin(h), b = surface.target(h);
-      if (mirror.side[a] != 0 || mirror.side[b] != 0) continue;
-      const Vec3 along = surface.positions[b] - surface.positions[a];
-      // Not across: within 30 degrees of the plane.
-      if (2 * std::abs(mirror.normal.dot(along)) <= along.norm()) factors[h] = factor;
+  const auto height = [&](Index v) {
+    return std::abs(mirror.normal.dot(surface.positions[v] - mirror.point));
+  };
+  std::vector<char> is_near(surface.positions.size());  // no bits: they are written side by side
+  parallel_for(work, size_of(is_near), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      is_near[v] = height(v) <= near_by_edges(surface, v) ? 1 : 0;
     }
   });
-  return factors;
+  parallel_for(work, size_of(costs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto h = static_cast<Index>(begin); h < end; ++h) {
+      const Index a = surface.origin(h), b = surface.target(h);
+      if (is_near[a] == 0 || is_near[b] == 0) continue;
+      const Vec3 along = surface.positions[b] - surface.positions[a];
+      // Not across: within 30 degrees of the plane.
+      if (2 * std::abs(mirror.normal.dot(along)) <= along.norm()) costs[h] *= factor;
+    }
+  });
 }
 
 }  // namespace beltrami

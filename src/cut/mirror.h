@@ -36,13 +36,14 @@ inline constexpr double kMirroredShare = 0.95;
 /// that of a tree of the faces, and a search in it per vertex.
 std::optional<Mirror> find_mirror(const Surface& surface, double tolerance, const Work& work);
 
-/// A factor for mirror_factors: beyond the detour of a path of edges along a plane that it does not
+/// Multiplies by `factor` what edges along the plane cost: both of whose ends are near it by the
+/// lengths of edges around them. `costs`: per half-edge, the two of an edge alike. The surface may
+/// be a simplification of the one that the mirror was found on, or what that was simplified from.
+void weigh_mirror(const Surface& surface, const Mirror& mirror, double factor,
+                  std::vector<double>& costs, const Work& work);
+
+/// A factor for weigh_mirror: beyond the detour of a path of edges along a plane that it does not
 /// follow, which is 1.15 in a mesh of equilateral triangles.
 inline constexpr double kAlongMirror = 0.7;
-
-/// Per half-edge, the two of an edge alike: `factor` for edges along the plane, both of whose ends
-/// are on side 0, and 1 for others.
-std::vector<double> mirror_factors(const Surface& surface, const Mirror& mirror, double factor,
-                                   const Work& work);
 
 }  // namespace beltrami

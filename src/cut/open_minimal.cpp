@@ -15,6 +15,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "mesh/split_fans.h"
 
 namespace beltrami {
 namespace {
@@ -430,6 +431,15 @@ EdgeMarks open_minimal(const Surface& surface, const Topology& topology, const E
   for (const std::vector<Index>& cut : cuts) {
     for (const Index h : cut) mark_edge(surface, h, marks);
   }
+  return marks;
+}
+
+EdgeMarks opened_further(const Surface& surface, EdgeMarks marks, const EdgeMarks& locked,
+                         const Work& work) {
+  const SplitSurface parted = split_along(surface, marks, work);
+  const EdgeMarks more =
+      open_minimal(parted.surface, topology_of(parted.surface, work), locked, work);
+  for (std::size_t h = 0; h < marks.size(); ++h) marks[h] = marks[h] || more[h];
   return marks;
 }
 

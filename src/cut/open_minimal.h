@@ -20,4 +20,8 @@ namespace beltrami {
 EdgeMarks open_minimal(const Surface& surface, const Topology& topology, const EdgeMarks& locked,
                        const Work& work);
 
+/// The marks, and those of a short cut graph of each piece that is no disk along them.
+EdgeMarks opened_further(const Surface& surface, EdgeMarks marks, const EdgeMarks& locked,
+                         const Work& work);
+
 }  // namespace beltrami

@@ -19,6 +19,8 @@ struct SeamWeights {
   double visibility = 0.2;   ///< b: times 1 + b v, v in [0, 1] as visibility has it
   double hard_edges = 0.85;  ///< factor of edges with a greater angle than SeamHints has
   double materials = 0.5;    ///< factor of edges between faces of different labels
+  double symmetry = 0;      ///< seams that are symmetric may cost more by this share; 0: not sought
+  double straightness = 0;  ///< w: a turn by an angle t costs as w (1 - cos t) of the edges there
 };
 
 /// An edge of the surface, by its ends in either order, and its factor.

@@ -8,6 +8,8 @@
 
 #include "base/interrupt.h"
 #include "cut/across.h"
+#include "cut/mirrored_seams.h"
+#include "cut/path_beside.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
@@ -26,6 +28,10 @@ constexpr std::size_t kEnds = 6;
 constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
+/// The image of a path is followed within so many rings, and that of the tip of a branch is another
+/// tip within so much, in roots of the area.
+constexpr int kBeside = 2;
+constexpr double kPairApart = 0.03;
 
 /// What is left of a path without its first vertices.
 SeamPath last_part(const SeamPath& path, std::ptrdiff_t first, const SeamPaths& paths) {
@@ -45,9 +51,10 @@ std::ptrdiff_t halved(std::ptrdiff_t first, const SeamPath& path) {
 
 SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
                        EdgeMarks seams, double budget, double least_cost, const Work& work,
-                       std::vector<bool> anchors)
+                       std::vector<bool> anchors, const Mirror* mirror)
     : surface_(surface),
       cost_(cost),
+      mirror_(mirror),
       degree_(surface.positions.size()),
       model_(surface, real_faces, work),
       scale_(std::sqrt(surface_area(surface, work))),
@@ -173,11 +180,36 @@ bool SeamSearch::extend_once() {
     }
   }
   if (chosen.halfedges.empty()) return false;
-  for (const Index h : chosen.halfedges) mark(h, true);
-  paths_->add_roots(chosen.vertices);
-  anchored_[chosen.vertices.front()] = true;
+  add_path(chosen);
+  if (mirror_ != nullptr) add_mirrored(chosen);
   refresh();
   return true;
+}
+
+void SeamSearch::add_path(const SeamPath& path) {
+  for (const Index h : path.halfedges) mark(h, true);
+  paths_->add_roots(path.vertices);
+  anchored_[path.vertices.front()] = true;
+}
+
+/// The image of a path, from that of its tip to what is a seam there already; straight to the seams
+/// where there is no way beside it.
+void SeamSearch::add_mirrored(const SeamPath& path) {
+  std::vector<Index> beside;
+  for (const Index v : path.vertices) beside.push_back(mirrored(*mirror_, v));
+  const Index last = path.halfedges.back(), root = surface_.target(last);
+  const bool is_turned = root == path.vertices.back();
+  beside.push_back(mirrored(*mirror_, is_turned ? surface_.origin(last) : root));
+  const Index tip = beside.front();
+  const auto is_on = [&](Index v) { return degree_[v] > 0 || surface_.on_boundary[v]; };
+  if (is_on(tip) || !std::isfinite(paths_->costs()[tip])) return;
+  const PathRules rules{is_on, [](Index) { return true; }};
+  SeamPath image;
+  image.halfedges = path_beside(surface_, beside, kBeside, cost_, rules);
+  for (const Index h : image.halfedges) image.vertices.push_back(surface_.origin(h));
+  if (image.halfedges.empty()) image = paths_->from(tip);
+  const bool is_alone = image.halfedges.size() == 1 && this->is_alone(image.halfedges.front());
+  if (!image.halfedges.empty() && !is_alone) add_path(image);
 }
 
 bool SeamSearch::extend(double target) {
@@ -378,10 +410,51 @@ void SeamSearch::shrink(double target) {
       push(std::move(branch));
       continue;
     }
-    for (const Index h : branch.halfedges) mark(h, false);
+    const Branch partner = partner_of(branch);
+    if (!partner.halfedges.empty()) {
+      std::vector<Index> both = branch.vertices;
+      both.insert(both.end(), partner.vertices.begin(), partner.vertices.end());
+      if (model_.without(both).energy() > target) continue;
+    }
+    remove(branch);
+    if (!partner.halfedges.empty() && is_branch(partner)) remove(partner);
     refresh();
     push_ends(surface_.target(branch.halfedges.back()));
+    if (!partner.halfedges.empty()) push_ends(surface_.target(partner.halfedges.back()));
   }
+}
+
+void SeamSearch::remove(const Branch& branch) {
+  for (const Index h : branch.halfedges) mark(h, false);
+}
+
+/// As much of the branch that it is mirrored to; nothing where that is not to be told.
+SeamSearch::Branch SeamSearch::partner_of(const Branch& branch) const {
+  if (mirror_ == nullptr) return {};
+  const Index image = mirrored(*mirror_, branch.vertices.front());
+  Index tip = kNone;
+  double least = kPairApart * scale_;
+  for (Index v = 0; v < surface_.vertex_count(); ++v) {
+    if (degree_[v] != 1 || surface_.on_boundary[v]) continue;
+    const double apart = (surface_.positions[v] - surface_.positions[image]).norm();
+    if (apart < least) {
+      least = apart;
+      tip = v;
+    }
+  }
+  if (tip == kNone || tip == branch.vertices.front()) return {};
+  Branch whole = branch_from(tip), part;
+  for (std::size_t i = 0; i < whole.halfedges.size(); ++i) {
+    const double more = part.cost + cost_[whole.halfedges[i]];
+    if (std::abs(more - branch.cost) > std::abs(part.cost - branch.cost)) break;
+    part.cost = more;
+    part.halfedges.push_back(whole.halfedges[i]);
+    part.vertices.push_back(whole.vertices[i]);
+  }
+  const bool is_apart = std::none_of(part.vertices.begin(), part.vertices.end(), [&](Index v) {
+    return std::find(branch.vertices.begin(), branch.vertices.end(), v) != branch.vertices.end();
+  });
+  return is_apart ? part : Branch{};
 }
 
 /// Whether its edges are still seams that hang on their last vertex alone, and can go: an edge that

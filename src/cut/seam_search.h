@@ -8,6 +8,7 @@
 #include "base/work.h"
 #include "cut/edge_marks.h"
 #include "cut/elastic_model.h"
+#include "cut/mirror.h"
 #include "cut/seam_paths.h"
 #include "mesh/surface.h"
 
@@ -23,11 +24,12 @@ class SeamSearch {
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
   /// extended, 0: any; `least_cost`: what a path costs beside its own, over the root of the area,
-  /// for short ones are worth little to the eye; `anchors`: per vertex, or none. Keeps references
-  /// to `surface` and `cost`.
+  /// for short ones are worth little to the eye; `anchors`: per vertex, or none; `mirror`: what
+  /// extends and shrinks does so in mirrored pairs, or null. Keeps references to `surface`, `cost`
+  /// and the mirror.
   SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
              EdgeMarks seams, double budget, double least_cost, const Work& work,
-             std::vector<bool> anchors = {});
+             std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. False where nothing helps any more.
@@ -89,6 +91,8 @@ class SeamSearch {
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
   bool extend_once();
+  void add_path(const SeamPath& path);
+  void add_mirrored(const SeamPath& path);
   double length_of(Index halfedge) const;
   bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs(bool ends_at_anchors) const;
@@ -102,9 +106,12 @@ class SeamSearch {
   void judge(Branch& branch, double energy_without) const;
   std::vector<Branch> ends_of(Branch branch) const;
   bool is_branch(const Branch& branch) const;
+  Branch partner_of(const Branch& branch) const;
+  void remove(const Branch& branch);
 
   const Surface& surface_;
   const std::vector<double>& cost_;
+  const Mirror* mirror_;  ///< or null
   EdgeMarks seams_;
   std::vector<Index> degree_;  ///< per vertex: seams at it
   std::vector<bool> anchored_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "base/parallel.h"
 #include "cut/cut_into_charts.h"
 #include "cut/level_search.h"
+#include "cut/mirror.h"
+#include "cut/mirrored_seams.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
 #include "cut/search_level.h"
@@ -31,6 +34,8 @@ constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
 /// and their charts joined on trial: seams are 2% shorter.
 constexpr int kStarts = 3;
 constexpr std::size_t kFinished = 3;
+/// What is within so much of the root of the area when mirrored is symmetric.
+constexpr double kMirrorTolerance = 0.01;
 /// Straightening that gains more than the rest moves seams from where they are needed.
 constexpr double kStraight = 0.95;
 
@@ -72,17 +77,18 @@ Attempt search_directly(const SearchLevel& level, const std::vector<Start>& star
 }
 
 /// Where the level has many faces, first on one of fewer; `is_thorough`: from more starts, of which
-/// more are finished.
+/// more are finished; `mirror`: whose plane seams are drawn to, or null.
 Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
-                     const SeamWeights& weights, const Work& work) {
+                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
   std::vector<Start> starts;
   for (int number = 0; number < (is_thorough ? kStarts : 1); ++number) {
     for (const double least_cost : {kManyPaths, kFewPaths}) starts.push_back({least_cost, number});
   }
-  const SearchLevel rough =
+  SearchLevel rough =
       coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
                     kRoughFaces, weights, level.hints, work);
   if (rough.fine_vertex.empty()) return search_directly(level, starts, target, work);
+  if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
   const AnchoredSeams open = opened(rough, work);
   const std::vector<Attempt> sketches =
       attempts(work.part(0, 0.3), starts, [&](const Start& start, const Work& part) {
@@ -105,15 +111,56 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
   }));
 }
 
+double sum_of(const Surface& surface, const EdgeMarks& marks, const std::vector<double>& cost) {
+  double sum = 0;
+  for (Index h = 0; h < size_of(marks); ++h) {
+    if (marks[h] && surface.edge(h) == h) sum += cost[h];
+  }
+  return sum;
+}
+
+/// What half of the seams and its image make, as one that reaches the target, or comes as near to
+/// it as they do; they themselves where that costs more than `most`, by `cost`. Whether it did not.
+bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTarget& target,
+                    const std::vector<double>& cost, double most, const Work& work,
+                    Attempt& found) {
+  const EdgeMarks& seams = found.seams.seams;
+  if (std::find(seams.begin(), seams.end(), true) == seams.end()) return true;
+  const std::vector<int> sides = {1, -1};
+  Attempt best = best_of(attempts(work, sides, [&](int side, const Work& part) {
+    AnchoredSeams half =
+        mirrored_seams(level.surface, mirror, found.seams, side, level.cost, level.locked, part);
+    half.seams = straighten(level.surface, half.seams, level.cost, half.anchors, level.locked,
+                            level.straightness, part);
+    return LevelSearch(level, std::move(half), Start(), target, part, &mirror).run(true);
+  }));
+  const Surface& surface = level.surface;
+  if (best.excess > std::max(1.0, found.excess)) return false;
+  if (sum_of(surface, best.seams.seams, cost) > most * sum_of(surface, seams, cost)) return false;
+  const auto charts = [&](const EdgeMarks& marks) {
+    return size_of(cut_into_charts(surface, marks, work).charts);
+  };
+  const Index parts = charts(best.seams.seams);
+  if (target.max_charts > 0 && parts > target.max_charts && parts > charts(seams)) return false;
+  found = std::move(best);
+  return true;
+}
+
+/// The mirror of a surface, towards whose plane seams are then drawn on the level; null: it has
+/// none.
+std::shared_ptr<const Mirror> drawn_to_mirror(SearchLevel& level, const Work& work) {
+  std::optional<Mirror> mirror = find_mirror(level.surface, kMirrorTolerance, work);
+  if (!mirror) return {};
+  weigh_mirror(level.surface, *mirror, kAlongMirror, level.cost, work);
+  return std::make_shared<const Mirror>(*std::move(mirror));
+}
+
 /// Seams that would lose a bend for which they were made, if they were straightened, are held.
 void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
-  const EdgeMarks straight = straighten(level.surface, found.seams.seams, level.cost,
-                                        found.seams.anchors, level.locked, work);
-  double cost = 0;
-  for (Index h = 0; h < size_of(straight); ++h) {
-    if (straight[h] && level.surface.edge(h) == h) cost += level.cost[h];
-  }
-  if (cost >= kStraight * found.cost) return;
+  const EdgeMarks straight =
+      straighten(level.surface, found.seams.seams, level.cost, found.seams.anchors, level.locked,
+                 level.straightness, work);
+  if (sum_of(level.surface, straight, level.cost) >= kStraight * found.cost) return;
   for (Index h = 0; h < size_of(straight); ++h) {
     if (found.seams.seams[h]) found.seams.anchors[level.surface.origin(h)] = true;
   }
@@ -126,22 +173,36 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamWeights& weights, const SeamHints& hints,
                            const BegunSearch& begun, const Work& work) {
   SearchedSeams searched;
-  searched.search.level = begun.level ? begun.level
-                                      : std::make_shared<const SearchLevel>(coarser_level(
-                                            surface, real_faces, topology, locked, kCoarseFaces,
-                                            weights, hints, work.part(0, 0.3)));
-  const SearchLevel& coarse = *searched.search.level;
+  BegunSearch& search = searched.search;
+  search = {begun.level, {}, begun.mirror};
   Attempt found;
-  if (!begun.seams.seams.empty()) {
-    found = LevelSearch(coarse, begun.seams, Start(), target, work.part(0.3, 0.9)).run(true);
+  if (begun.level && !begun.seams.seams.empty()) {
+    found = LevelSearch(*begun.level, begun.seams, Start(), target, work.part(0.3, 0.9),
+                        begun.mirror.get())
+                .run(true);
   } else {
+    std::vector<double> cost;  // before any is drawn to a mirror
+    if (!begun.level || weights.symmetry > 0) {
+      SearchLevel level = coarser_level(surface, real_faces, topology, locked, kCoarseFaces,
+                                        weights, hints, work.part(0, 0.3));
+      cost = level.cost;
+      if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
+      search.level = std::make_shared<const SearchLevel>(std::move(level));
+    }
     const bool is_thorough = surface.face_count() <= kThoroughFaces;
-    found = search_level(coarse, is_thorough, target, weights, work.part(0.3, 0.8));
+    found = search_level(*search.level, is_thorough, target, weights, search.mirror.get(),
+                         work.part(0.3, 0.8));
     if (is_thorough) {
-      LevelSearch(coarse, found.seams, Start(), target, work.part(0.8, 0.9)).join_charts(found);
+      LevelSearch(*search.level, found.seams, Start(), target, work.part(0.8, 0.85))
+          .join_charts(found);
+    }
+    if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, cost,
+                                         1 + weights.symmetry, work.part(0.85, 0.9), found)) {
+      search.mirror.reset();
     }
   }
   searched.energy = found.energy;
+  const SearchLevel& coarse = *search.level;
   if (coarse.fine_vertex.empty()) {
     const EdgeMarks& seams = found.seams.seams;
     const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
@@ -149,12 +210,13 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
     searched.seams = std::move(found.seams.seams);
     return searched;
   }
-  searched.search.seams = found.seams;
+  search.seams = found.seams;
   hold_bends(coarse, work.aside(), found);
-  searched.seams = carry_to_finer(coarse, surface,
-                                  finer_costs(coarse, surface, real_faces, weights, hints, work),
-                                  locked, found.seams, work.part(0.9, 1))
-                       .seams;
+  std::vector<double> cost = finer_costs(coarse, surface, real_faces, weights, hints, work);
+  if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
+  searched.seams =
+      carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1))
+          .seams;
   return searched;
 }
 

@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
+#include "cut/mirror.h"
 #include "cut/seam_costs.h"
 #include "cut/search_level.h"
 #include "mesh/surface.h"
@@ -30,6 +31,7 @@ inline constexpr Index kThoroughFaces = 100'000;
 struct BegunSearch {
   std::shared_ptr<const SearchLevel> level;  ///< on which seams were decided; null: none were
   AnchoredSeams seams;  ///< what was found there; empty where the surface is its own coarse one
+  std::shared_ptr<const Mirror> mirror;  ///< that the seams are symmetric to; null: none
 };
 
 struct SearchedSeams {

@@ -104,6 +104,7 @@ SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology&
   }
   target = std::max(target, faces);
   SearchLevel coarse;
+  coarse.straightness = weights.straightness;
   if (fine.face_count() <= kWorthSimplifying * target) {
     coarse.surface = fine;
     coarse.real_faces = real_faces;
@@ -164,14 +165,14 @@ AnchoredSeams carry_to_finer(const SearchLevel& level, const Surface& fine,
   const EdgeMarks marks =
       marks_of(fine, carry_edges(level.history, edges, fine.on_boundary, anchors));
   if (locked.empty()) {
-    EdgeMarks straight = straighten(fine, marks, cost, anchors, locked, work);
+    EdgeMarks straight = straighten(fine, marks, cost, anchors, locked, level.straightness, work);
     return {std::move(straight), std::move(anchors)};
   }
   // The coarse surface does not know of locked edges: seams on them go around, or give way.
   for (std::size_t h = 0; h < locked.size(); ++h) {
     if (locked[h]) cost[h] *= kLockedCost;
   }
-  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, work);
+  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, level.straightness, work);
   for (std::size_t h = 0; h < locked.size(); ++h) free[h] = free[h] && !locked[h];
   return {std::move(free), std::move(anchors)};
 }

@@ -22,6 +22,7 @@ struct SearchLevel {
   std::vector<double> factor;      ///< per vertex, what seams there cost for their length by shape
   std::vector<Index> fine_vertex;  ///< per vertex; empty: this is the finer surface itself
   CollapseHistory history;         ///< from the finer surface to this
+  double straightness = 0;         ///< of seams, as SeamWeights has it
 };
 
 /// A simplification of `fine` to about `faces` faces, more where components would keep too few, or

@@ -22,6 +22,7 @@
 #include "base/parallel.h"
 #include "base/types.h"
 #include "cut/seam_patch.h"
+#include "cut/turning.h"
 
 namespace beltrami {
 namespace {
@@ -106,14 +107,15 @@ struct Move {
 class Straightening {
  public:
   Straightening(const Surface& surface, const EdgeMarks& seams, const std::vector<double>& cost,
-                const std::vector<bool>& anchored, const EdgeMarks& locked)
+                const std::vector<bool>& anchored, const EdgeMarks& locked, double straightness)
       : surface_(surface),
         cost_(cost),
         anchored_(anchored),
         locked_(locked),
         seams_(seams),
         degree_(surface.positions.size(), 0),
-        patch_(surface) {}
+        patch_(surface),
+        turning_(surface, cost, straightness) {}
 
   EdgeMarks run(const Work& work) {
     find_arcs(work);
@@ -135,9 +137,9 @@ class Straightening {
   void find_nodes();
   Arc trace(Index first, EdgeMarks& taken);
   void straighten_arc(Arc& arc);
-  void straighten_window(std::span<const Step> window, Path& result);
+  void straighten_window(std::span<const Step> window, Index after, Path& result);
   bool fill_patch(std::span<const Step> window);
-  bool find_cheaper(std::span<const Step> window);
+  bool find_cheaper(std::span<const Step> window, Index before, Index after);
   void take(std::span<const Step> window, Path& result);
 
   void move_node(std::size_t node);
@@ -175,6 +177,13 @@ class Straightening {
     for (const Step& step : path) sum += cost_[step.halfedge];
     return sum;
   }
+  /// With its turns, also those from and to the half-edges around it, kNone: none.
+  double turning_cost_of(std::span<const Step> path, Index before, Index after) const {
+    if (turning_.weight() == 0) return cost_of(path);
+    std::vector<Index> halfedges;
+    for (const Step& step : path) halfedges.push_back(step.halfedge);
+    return turning_.cost({halfedges, before, after});
+  }
   bool is_seam_between(Index a, Index b) const {
     bool found = false;
     surface_.for_each_outgoing(
@@ -204,6 +213,7 @@ class Straightening {
 
   // Of a window.
   SeamPatch patch_;
+  Turning turning_;
   std::array<PathTree, 3> trees_;
   std::vector<Index> shortest_;  ///< half-edges
   PollSometimes poll_;
@@ -285,22 +295,24 @@ void Straightening::straighten_arc(Arc& arc) {
     const Index end = std::min(next + length - kept, size_of(before));
     window.insert(window.end(), before.begin() + next, before.begin() + end);
     next = end;
-    straighten_window(window, arc.path);
+    straighten_window(window, next < size_of(before) ? before[next].halfedge : kNone, arc.path);
   }
 }
 
 // --- Windows ------------------------------------------------------------------------------------
 
-/// Appends what becomes of the window. Where there is no disk around it, of its halves.
-void Straightening::straighten_window(std::span<const Step> window, Path& result) {
+/// Appends what becomes of the window. Where there is no disk around it, of its halves. `after`:
+/// the half-edge that comes then, or kNone.
+void Straightening::straighten_window(std::span<const Step> window, Index after, Path& result) {
   const bool has_moved = is_due(window);
   const bool is_narrow = has_moved && !fill_patch(window);
   if (is_narrow && window.size() > 1) {
     const std::size_t half = window.size() / 2;
-    straighten_window(window.first(half), result);
-    return straighten_window(window.subspan(half), result);
+    straighten_window(window.first(half), window[half].halfedge, result);
+    return straighten_window(window.subspan(half), after, result);
   }
-  if (has_moved && !is_narrow && find_cheaper(window)) return take(window, result);
+  const Index before = result.empty() ? kNone : result.back().halfedge;
+  if (has_moved && !is_narrow && find_cheaper(window, before, after)) return take(window, result);
   result.insert(result.end(), window.begin(), window.end());
 }
 
@@ -319,13 +331,19 @@ bool Straightening::fill_patch(std::span<const Step> window) {
 }
 
 /// Whether there is a cheaper path between the ends: left in shortest_.
-bool Straightening::find_cheaper(std::span<const Step> window) {
-  const double before = cost_of(window);
+bool Straightening::find_cheaper(std::span<const Step> window, Index last, Index after) {
+  const double before = turning_cost_of(window, last, after);
   const Index start = surface_.origin(window.front().halfedge);
   Index v = surface_.target(window.back().halfedge);
   PathQuery query{start, before * (1 - kGain), v};
   // The sides of an edge on its own would be one again.
   if (is_loose_end(start) && is_loose_end(v)) query.not_between = v;
+  if (turning_.weight() > 0) {
+    shortest_ = turning_.cheapest({{}, last, after}, patch_, query, locked_, seams_);
+    if (shortest_.empty()) return false;
+    gained_ += before - turning_.cost({shortest_, last, after});
+    return true;
+  }
   PathTree& tree = trees_[0];
   find_paths(query, tree);
   if (tree.reached_by[patch_.number(v)] == kNone) return false;
@@ -500,6 +518,14 @@ Move Straightening::find_least(const Star& star) {
     Branch& branch = move.after.branches[i];
     branch = {branches[i].arc, branches[i].end, path_to(branches[i], trees_[i], best)};
   }
+  if (turning_.weight() > 0) {
+    move.gain = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      move.gain += turning_cost_of(branches[i].path, kNone, kNone) -
+                   turning_cost_of(move.after.branches[i].path, kNone, kNone);
+    }
+    if (!(move.gain > before * kGain)) return {};
+  }
   return is_tree(move.after) ? move : Move{};
 }
 
@@ -561,8 +587,8 @@ void Straightening::replace_begin(const Branch& before, const Path& path) {
 
 EdgeMarks straighten(const Surface& surface, const EdgeMarks& seams,
                      const std::vector<double>& cost, const std::vector<bool>& anchored,
-                     const EdgeMarks& locked, const Work& work) {
-  return Straightening(surface, seams, cost, anchored, locked).run(work);
+                     const EdgeMarks& locked, double straightness, const Work& work) {
+  return Straightening(surface, seams, cost, anchored, locked, straightness).run(work);
 }
 
 }  // namespace beltrami

@@ -256,7 +256,7 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
       break;
     default:
       search.take(
-          straighten(trial.surface, search.seams(), trial.cost, search.anchors(), {}, Work(1)));
+          straighten(trial.surface, search.seams(), trial.cost, search.anchors(), {}, 0, Work(1)));
       EXPECT_LE(search.cost(), cost + 1e-9);
   }
 }

@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+#include <random>
 #include <utility>
 #include <vector>
 
 #include "admit/fill.h"
 #include "cut/cut_into_charts.h"
+#include "cut/mirror.h"
+#include "cut/mirrored_seams.h"
+#include "cut/open_minimal.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
@@ -216,6 +221,164 @@ TEST(Search, LockedEdgesStayUncutWhereTheSurfaceIsSimplified) {
   const EdgeMarks seams = searched(surface, 2.05, locked).seams;
   EXPECT_EQ(charts(surface, seams), 1);
   for (std::size_t h = 0; h < seams.size(); ++h) EXPECT_FALSE(locked[h] && seams[h]);
+}
+
+// ---- Symmetry. ----------------------------------------------------------------------------------
+
+/// Lengths, and symmetry at twice the length.
+constexpr SeamWeights kSymmetric{
+    .concavity = 0, .visibility = 0, .hard_edges = 1, .materials = 1, .symmetry = 1};
+
+/// Symmetric to x = 0 alone where nothing skews it, with faces that are not.
+TriangleList creature(int times, double skew = 0) {
+  return meshes::moved(meshes::shaken(meshes::sphere(times), 0.004, 3), [&](const Vec3& p) {
+    return Vec3(p.x() * (1 + 0.4 * p.z()) + skew * p.z() * p.z(),
+                1.5 * p.y() + 0.5 * p.z() * p.z() + 0.3 * p.x() * p.x(),
+                2 * p.z() + 0.4 * p.y() * p.y() * p.y() + skew * p.x() * p.y());
+  });
+}
+
+/// The share of the seams' length that is mirrored by x to where no seam is within so many of its
+/// edges.
+double asymmetry(const Surface& surface, const EdgeMarks& seams, double edges) {
+  std::vector<Vec3> middles;
+  std::vector<double> lengths;
+  double sum = 0, off = 0;
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (!seams[h] || surface.edge(h) != h) continue;
+    const Vec3 &a = surface.positions[surface.origin(h)], &b = surface.positions[surface.target(h)];
+    middles.emplace_back((a + b) / 2);
+    lengths.push_back((a - b).norm());
+    sum += lengths.back();
+  }
+  const double near = edges * sum / static_cast<double>(lengths.size());
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    const Vec3 image(-middles[i].x(), middles[i].y(), middles[i].z());
+    const bool is_near = std::any_of(middles.begin(), middles.end(),
+                                     [&](const Vec3& p) { return (p - image).norm() <= near; });
+    if (!is_near) off += lengths[i];
+  }
+  return off / sum;
+}
+
+/// With the plane of its symmetry at x = 0.
+Surface built_about_x(TriangleList mesh) {
+  normalise(mesh.positions, mesh.faces, Work(1));
+  double least = 0, most = 0;
+  for (const Vec3& p : mesh.positions) {
+    least = std::min(least, p.x());
+    most = std::max(most, p.x());
+  }
+  for (Vec3& p : mesh.positions) p.x() -= (least + most) / 2;
+  return build_surface(std::move(mesh.positions), std::move(mesh.faces), Work(1));
+}
+
+TEST(Search, SeamsAreSymmetricWhereTheSurfaceIs) {
+  for (const int times : {4, 6}) {  // itself searched, and a coarser one for it
+    const Surface surface = built_about_x(creature(times));
+    for (const double energy : {2.05, 2.01}) {
+      const SearchedSeams any = searched(surface, energy, {}, 2, kLengths);
+      const SearchedSeams found = searched(surface, energy, {}, 2, kSymmetric);
+      EXPECT_GE(charts(surface, found.seams), 1);
+      EXPECT_LE(found.energy, energy);
+      EXPECT_LT(asymmetry(surface, found.seams, 3), 0.05);
+      EXPECT_LT(length(surface, found.seams), 1.5 * length(surface, any.seams));
+      EXPECT_TRUE(found.search.mirror);
+    }
+  }
+}
+
+TEST(Search, SymmetricSeamsAreTheSameBitsAtOneThreadAndAtTwo) {
+  const Surface surface = built(meshes::together({creature(3), meshes::torus(9)}));
+  const Surface alone = built(creature(3));
+  for (const Surface* each : {&surface, &alone}) {
+    const SearchedSeams one = searched(*each, 2.01, {}, 1, kSymmetric);
+    const SearchedSeams two = searched(*each, 2.01, {}, 2, kSymmetric);
+    EXPECT_EQ(one.seams, two.seams);
+    EXPECT_EQ(one.energy, two.energy);
+  }
+}
+
+TEST(Search, WhatHasNoMirrorIsSearchedAsItWouldBe) {
+  const Surface surface = built(creature(3, 0.5));
+  EXPECT_EQ(searched(surface, 2.02, {}, 1, kSymmetric).seams,
+            searched(surface, 2.02, {}, 1, kLengths).seams);
+}
+
+TEST(Search, SymmetryIsNotHadAtAnyPrice) {
+  SeamWeights weights = kSymmetric;
+  for (const double price : {0.0, 0.05, 1.0}) {
+    weights.symmetry = price;
+    for (const TriangleList& mesh : {creature(3), meshes::torus(14), meshes::double_torus(8)}) {
+      const Surface surface = built(mesh);
+      const double shortest = length(surface, searched(surface, 2.02, {}, 1, kLengths).seams);
+      const SearchedSeams found = searched(surface, 2.02, {}, 1, weights);
+      charts(surface, found.seams);
+      EXPECT_LE(found.energy, 2.02);
+      // What they are compared with has been drawn to the plane.
+      EXPECT_LT(length(surface, found.seams), (1.1 + price) * shortest);
+    }
+  }
+}
+
+TEST(Search, GoesOnSymmetricallyForAnotherTarget) {
+  const Surface surface = built_about_x(creature(6));
+  const auto go_on = [&](double energy, const BegunSearch& begun) {
+    return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), {},
+                        {.energy = energy}, kSymmetric, {}, begun, Work(1));
+  };
+  const SearchedSeams found = go_on(2.04, {});
+  ASSERT_TRUE(found.search.mirror);
+  for (const double energy : {2.03, 2.05}) {
+    const SearchedSeams other = go_on(energy, found.search);
+    // Of the surface that they were found on, too.
+    charts(other.search.level->surface, other.search.seams.seams);
+    charts(surface, other.seams);
+    EXPECT_LE(other.energy, energy);
+    EXPECT_LT(asymmetry(surface, other.seams, 3), 0.05);
+  }
+}
+
+/// Seams that join no other one and no border.
+Index edges_alone(const Surface& surface, const EdgeMarks& seams) {
+  std::vector<Index> joined(surface.positions.size(), 0);
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (seams[h]) ++joined[surface.origin(h)];
+    if (seams[h] && surface.twin[h] == kNone) ++joined[surface.target(h)];
+  }
+  const auto is_loose = [&](Index v) { return joined[v] == 1 && !surface.on_boundary[v]; };
+  Index count = 0;
+  for (Index h = 0; h < size_of(seams); ++h) {
+    if (seams[h] && is_loose(surface.origin(h)) && is_loose(surface.target(h))) ++count;
+  }
+  return count;
+}
+
+TEST(MirroredSeams, LeaveDisksOfWhateverThereIs) {
+  for (const TriangleList& mesh :
+       {creature(2), creature(3), meshes::torus(12), meshes::double_torus(10),
+        meshes::together({meshes::sphere(2), meshes::torus(7)}), meshes::grid(12, 9)}) {
+    const Surface surface = built(mesh);
+    const std::optional<Mirror> mirror = find_mirror(surface, 0.01, Work(1));
+    if (!mirror) continue;
+    const std::vector<double> cost = edge_lengths(surface, Work(1));
+    const std::vector<bool> anchors(surface.positions.size(), false);
+    std::mt19937_64 generator(1);
+    for (int round = 0; round < 30; ++round) {
+      EdgeMarks seams = open_minimal(surface, topology_of(surface, Work(1)), {}, Work(1));
+      for (Index h = meshes::random_below(generator, 40); h < size_of(seams);
+           h += 1 + meshes::random_below(generator, 40)) {
+        mark_edge(surface, h, seams);
+      }
+      for (const int side : {1, -1}) {
+        const AnchoredSeams both =
+            mirrored_seams(surface, *mirror, {seams, anchors}, side, cost, {}, Work(1));
+        EXPECT_GE(charts(surface, both.seams), 1);
+        EXPECT_EQ(edges_alone(surface, both.seams), 0);
+        if (testing::Test::HasFailure()) return;
+      }
+    }
+  }
 }
 
 }  // namespace

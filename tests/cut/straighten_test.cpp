@@ -14,17 +14,20 @@
 #include <vector>
 
 #include "base/interrupt.h"
+#include "base/portable_math.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
+#include "cut/turning.h"
 #include "mesh/surface.h"
 #include "simplify/history.h"
 #include "simplify/simplify.h"
 #include "support/cuts.h"
 #include "support/meshes.h"
 #include "support/polls.h"
+#include "support/solids.h"
 #include "support/surfaces.h"
 
 namespace beltrami {
@@ -173,10 +176,12 @@ EdgeMarks random_marks(const Surface& surface, Index chance, std::mt19937_64& ge
 
 void expect_straightened(const Surface& surface, const EdgeMarks& seams,
                          const std::vector<double>& cost, const std::vector<bool>& anchored,
-                         const EdgeMarks& locked) {
-  const EdgeMarks moved = straighten(surface, seams, cost, anchored, locked, Work(1));
+                         const EdgeMarks& locked, double straightness = 0) {
+  const EdgeMarks moved = straighten(surface, seams, cost, anchored, locked, straightness, Work(1));
   EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
-  EXPECT_LE(total(surface, moved, cost), total(surface, seams, cost) * (1 + 1e-12));
+  if (straightness == 0) {
+    EXPECT_LE(total(surface, moved, cost), total(surface, seams, cost) * (1 + 1e-12));
+  }
   const std::vector<Index> before = degrees(surface, seams), after = degrees(surface, moved);
   std::vector<bool> held(before.size());
   for (Index v = 0; v < surface.vertex_count(); ++v) {
@@ -219,6 +224,7 @@ TEST(Straighten, KeepsWhatSeamsPart) {
         for (Index v = 0; v < size_of(anchored); ++v) anchored[v] = random_below(generator, 8) == 0;
       }
       expect_straightened(surface, seams, cost, anchored, locked);
+      expect_straightened(surface, seams, cost, anchored, locked, 1);
       if (testing::Test::HasFailure()) return;
     }
   }
@@ -262,11 +268,21 @@ std::vector<Index> zigzag() {
   return path;
 }
 
+/// Across the same sheet, up by a cell at every eighth step.
+std::vector<Index> stairs() {
+  std::vector<Index> path = {4 * 101 + 2};
+  for (Index i = 3; i <= 98; ++i) {
+    path.push_back(path.back() + 1);
+    if (i % 8 == 0) path.push_back(path.back() + 101);
+  }
+  return path;
+}
+
 TEST(Straighten, AZigzagBecomesStraight) {
   const Surface surface = built(meshes::grid(100, 20));
   const EdgeMarks seams = marked_path(surface, zigzag());
   const std::vector<double> cost = lengths(surface);
-  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, 0, Work(1));
   EXPECT_GT(total(surface, seams, cost), 3);
   EXPECT_NEAR(total(surface, moved, cost), 0.96, 1e-9);
 }
@@ -278,7 +294,7 @@ TEST(Straighten, AnAnchoredVertexStaysOnItsSeam) {
   const Index corner = path[path.size() / 2];
   anchored[corner] = true;
   const EdgeMarks moved =
-      straighten(surface, marked_path(surface, path), lengths(surface), anchored, {}, Work(1));
+      straighten(surface, marked_path(surface, path), lengths(surface), anchored, {}, 0, Work(1));
   EXPECT_EQ(degrees(surface, moved)[corner], 2);
 }
 
@@ -286,7 +302,7 @@ TEST(Straighten, ASlitKeepsTwoEdges) {
   // Its ends are neighbours: as one edge it would part nothing.
   const Surface surface = built(meshes::octahedron());
   const EdgeMarks slit = marked_path(surface, {0, 1, 2, 4});
-  const EdgeMarks moved = straighten(surface, slit, lengths(surface), {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, slit, lengths(surface), {}, {}, 0, Work(1));
   EXPECT_NEAR(total(surface, moved, lengths(surface)), 2 * std::sqrt(2), 1e-12);
   EXPECT_EQ(pieces(surface, moved), pieces(surface, slit));
 }
@@ -305,7 +321,7 @@ TEST(Straighten, ALoopAroundATubeBecomesShortWhereverItBegan) {
   loop.push_back(0);
   const EdgeMarks seams = marked_path(surface, loop);
   const std::vector<double> cost = lengths(surface);
-  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, 0, Work(1));
   EXPECT_GT(total(surface, seams, cost), 12);
   EXPECT_LT(total(surface, moved, cost), 2 * std::numbers::pi);
   EXPECT_EQ(pieces(surface, moved), pieces(surface, seams));
@@ -351,7 +367,7 @@ TEST(Straighten, TheNodeOfATMoves) {
   const std::vector<double> cost = lengths(surface);
   const Index left = 20 * n + 10, centre = left + 5;
   const EdgeMarks seams = marked_star(surface, centre, {{{-1, 5}}, {{1, 15}, {n, 10}}, {{n, 15}}});
-  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, 0, Work(1));
   expect_straightened(surface, seams, cost, {}, {});
   EXPECT_NEAR(total(surface, seams, cost), 45, 1e-9);
   EXPECT_NEAR(total(surface, moved, cost), 35, 1e-9);
@@ -369,7 +385,7 @@ TEST(Straighten, ThreeEndsMeetWhereTheirWaysAreLeast) {
   const EdgeMarks seams =
       marked_star(surface, off, {{{1, 11}}, {{n - 1, 20}, {-1, 9}}, {{-1, 9}, {-n, 20}}});
   for (const Index v : ends) EXPECT_EQ(degrees(surface, seams)[v], 1);
-  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, 0, Work(1));
   expect_straightened(surface, seams, cost, {}, {});
   EXPECT_NEAR(total(surface, moved, cost), 60, 1e-9);
   EXPECT_EQ(degrees(surface, moved)[centre], 3);
@@ -383,7 +399,7 @@ TEST(Straighten, AnAnchoredNodeStays) {
       marked_star(surface, off, {{{1, 11}}, {{n - 1, 20}, {-1, 9}}, {{-1, 9}, {-n, 20}}});
   std::vector<bool> anchored(surface.positions.size(), false);
   anchored[off] = true;
-  const EdgeMarks moved = straighten(surface, seams, lengths(surface), anchored, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, lengths(surface), anchored, {}, 0, Work(1));
   EXPECT_EQ(degrees(surface, moved)[off], 3);
 }
 
@@ -396,7 +412,7 @@ TEST(Straighten, ANodeOfFourBecomesTwo) {
   const EdgeMarks seams = marked_star(
       surface, centre,
       {{{n, 6}, {1, 15}}, {{n - 1, 6}, {-1, 9}}, {{-n, 6}, {-1, 15}}, {{1 - n, 6}, {1, 9}}});
-  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, Work(1));
+  const EdgeMarks moved = straighten(surface, seams, cost, {}, {}, 0, Work(1));
   expect_straightened(surface, seams, cost, {}, {});
   const std::vector<Index> degree = degrees(surface, moved);
   EXPECT_EQ(std::count(degree.begin(), degree.end(), 3), 2);
@@ -423,9 +439,48 @@ TEST(Straighten, WhatIsCarriedFromACoarseSurfacePartsTheSameAndCostsLess) {
       mark_edge(fine, halfedge_between(fine, a, b), carried);
     }
     expect_straightened(fine, carried, lengths(fine), {}, {});
-    const EdgeMarks one = straighten(fine, carried, lengths(fine), {}, {}, work);
-    EXPECT_EQ(one, straighten(fine, carried, lengths(fine), {}, {}, Work(2)));
+    const EdgeMarks one = straighten(fine, carried, lengths(fine), {}, {}, 0, work);
+    EXPECT_EQ(one, straighten(fine, carried, lengths(fine), {}, {}, 0, Work(2)));
     EXPECT_LT(total(fine, one, lengths(fine)), 0.99 * total(fine, carried, lengths(fine)));
+  }
+}
+
+/// Turns of seams, by the length of the edges there over that of all.
+double turning(const Surface& surface, const EdgeMarks& seams) {
+  const std::vector<bool> anchored(surface.positions.size(), false);
+  const std::vector<double> cost = lengths(surface);
+  return cost_of_turns(surface, seams, cost, anchored, 1) / total(surface, seams, cost);
+}
+
+TEST(Straighten, ATurnCostsWhatItTurns) {
+  const Surface surface = built(meshes::grid(4, 4));
+  const std::vector<double> cost = lengths(surface);
+  const std::vector<bool> anchored(surface.positions.size(), false);
+  const auto turns = [&](const std::vector<Index>& path) {
+    return cost_of_turns(surface, marked_path(surface, path), cost, anchored, 2);
+  };
+  EXPECT_NEAR(turns({6, 7, 8}), 0, 1e-12);
+  EXPECT_NEAR(turns({6, 7, 12}), 2 * cost[halfedge_between(surface, 6, 7)], 1e-12);
+}
+
+TEST(Straighten, SeamsTurnLessWhereTurnsCost) {
+  // A sheet of irregular faces: flat, and rolled up to most of a cylinder, which changes no turn.
+  const TriangleList grid = meshes::grid(100, 20);
+  const double cell = (grid.positions[1] - grid.positions[0]).norm();
+  const TriangleList shaken = meshes::moved(meshes::shaken(grid, 0.3 * cell, 7),
+                                            [](const Vec3& p) { return Vec3(p.x(), p.y(), 0); });
+  const TriangleList rolled = meshes::moved(shaken, [](const Vec3& p) {
+    return Vec3(portable::sin(5 * p.x()) / 5, p.y(), portable::cos(5 * p.x()) / 5);
+  });
+  for (const TriangleList& mesh : {shaken, rolled}) {
+    const Surface surface = built(mesh);
+    const EdgeMarks seams = marked_path(surface, stairs());
+    const std::vector<double> cost = lengths(surface);
+    const EdgeMarks shortest = straighten(surface, seams, cost, {}, {}, 0, Work(1));
+    const EdgeMarks straight = straighten(surface, seams, cost, {}, {}, 1, Work(1));
+    EXPECT_EQ(pieces(surface, straight), pieces(surface, seams));
+    EXPECT_LT(turning(surface, straight), 0.8 * turning(surface, shortest));
+    EXPECT_LT(total(surface, straight, cost), 1.05 * total(surface, shortest, cost));
   }
 }
 
@@ -433,7 +488,7 @@ TEST(Straighten, CanBeCancelledAnywhere) {
   const Surface surface = built(meshes::grid(100, 20));
   const EdgeMarks seams = marked_path(surface, zigzag());
   const std::vector<double> cost = lengths(surface);
-  const auto run = [&] { straighten(surface, seams, cost, {}, {}, Work(1)); };
+  const auto run = [&] { straighten(surface, seams, cost, {}, {}, 0, Work(1)); };
   const std::int64_t polls = count_polls(run);
   EXPECT_GT(polls, 0);
   EXPECT_THROW(count_polls(run, polls), Cancelled);

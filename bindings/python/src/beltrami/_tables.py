@@ -82,6 +82,8 @@ class UnwrapOptions(TypedDict, total=False):
     pack_turns: PackTurnsChoice
     pack_block: int
     pack_splits: float
+    symmetric_seams: float
+    straight_seams: float
 
 
 class PackOptions(TypedDict, total=False):

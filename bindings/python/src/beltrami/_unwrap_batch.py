@@ -67,6 +67,8 @@ def unwrap_batch(
     pack_turns: PackTurnsChoice = "any",
     pack_block: int = 1,
     pack_splits: float = 0.0,
+    symmetric_seams: float = 0.0,
+    straight_seams: float = 0.0,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -238,6 +240,13 @@ def unwrap_batch(
         Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
         chart is split in two where a tenth of the root of the area lets a hundredth more of the
         pages be filled; 0 splits none. A number from 0 to 1,000,000,000.
+    symmetric_seams : float, default 0.0
+        How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
+        again. They lie in the plane that it is mirrored by, or come in pairs, to within a few
+        edges; 0 does not look for one. A number from 0 to 100.
+    straight_seams : float, default 0.0
+        How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos
+        t) times an edge there; 0 counts lengths alone. A number from 0 to 100.
 
     Returns
     -------
@@ -296,6 +305,8 @@ def unwrap_batch(
         "pack_turns": pack_turns,
         "pack_block": pack_block,
         "pack_splits": pack_splits,
+        "symmetric_seams": symmetric_seams,
+        "straight_seams": straight_seams,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -203,6 +203,10 @@ pub const BELTRAMI_OPTION_PACK_TURNS: _bindgen_ty_3 = 35;
 pub const BELTRAMI_OPTION_PACK_BLOCK: _bindgen_ty_3 = 36;
 /// float: seam length that more utilisation is worth; 0
 pub const BELTRAMI_OPTION_PACK_SPLITS: _bindgen_ty_3 = 37;
+/// Of the search, too.
+pub const BELTRAMI_OPTION_SYMMETRIC_SEAMS: _bindgen_ty_3 = 38;
+/// float: what turns of seams cost; 0: nothing
+pub const BELTRAMI_OPTION_STRAIGHT_SEAMS: _bindgen_ty_3 = 39;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /** On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a

@@ -522,4 +522,25 @@ options! {
     pack_splits(f64) of [UnwrapOptions] = 37 "pack-splits"
         "Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none."
         Float(&[]), 0..=1000000000, default 0, calls 2;
+
+    /// How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
+    /// again. They lie in the plane that it is mirrored by, or come in pairs, to within a few
+    /// edges; 0 does not look for one.
+    ///
+    /// From 0 to 100.
+    ///
+    /// Default: 0.
+    symmetric_seams(f64) of [UnwrapOptions] = 38 "symmetric-seams"
+        "How much more seams may cost for being symmetric where the surface is: 0.5 for half as much again. They lie in the plane that it is mirrored by, or come in pairs, to within a few edges; 0 does not look for one."
+        Float(&[]), 0..=100, default 0, calls 2;
+
+    /// How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos
+    /// t) times an edge there; 0 counts lengths alone.
+    ///
+    /// From 0 to 100.
+    ///
+    /// Default: 0.
+    straight_seams(f64) of [UnwrapOptions] = 39 "straight-seams"
+        "How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos t) times an edge there; 0 counts lengths alone."
+        Float(&[]), 0..=100, default 0, calls 2;
 }
