@@ -10,7 +10,7 @@
 
 namespace beltrami::faces {
 
-inline constexpr RestTriangle kRest{1.3, 0.4, 0.9};
+inline const RestTriangle kRest{1.3, 0.4, 0.9};
 
 /// The corners under the map with the given singular values and arbitrary phases.
 inline Vector6 corners_of(double s1, double s2) {
