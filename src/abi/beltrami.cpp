@@ -10,6 +10,7 @@
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/option_table.h"
+#include "abi/option_values.h"
 #include "abi/options.h"
 #include "abi/reports.h"
 #include "abi/status.h"

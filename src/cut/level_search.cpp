@@ -52,15 +52,6 @@ constexpr double kLeastExcess = 1e-4;
 /// An excess so far below the one asked for leaves the model in doubt.
 constexpr double kDoubtful = 0.9;
 
-/// Costs for paths: infinite along edges that are not to be cut.
-std::vector<double> path_costs(const SearchLevel& level) {
-  std::vector<double> cost = level.cost;
-  for (std::size_t h = 0; h < level.locked.size(); ++h) {
-    if (level.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
-  }
-  return cost;
-}
-
 /// Costs for the first paths of a start: smooth, and the same wherever the surface is moved to.
 std::vector<double> costs_astray(const Surface& surface, const std::vector<double>& cost,
                                  int number, const Work& work) {

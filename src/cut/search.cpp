@@ -1,6 +1,7 @@
 #include "cut/search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,6 +20,7 @@
 #include "cut/seam_costs.h"
 #include "cut/search_level.h"
 #include "cut/straighten.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {
@@ -119,17 +121,28 @@ double sum_of(const Surface& surface, const EdgeMarks& marks, const std::vector<
   return sum;
 }
 
+double length_of(const Surface& surface, const EdgeMarks& marks) {
+  double sum = 0;
+  for (Index h = 0; h < size_of(marks); ++h) {
+    if (!marks[h] || surface.edge(h) != h) continue;
+    sum += (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
+  }
+  return sum;
+}
+
 /// What half of the seams and its image make, as one that reaches the target, or comes as near to
-/// it as they do; they themselves where that costs more than `most`, by `cost`. Whether it did not.
+/// it as they do; they themselves where that costs more than `most` times as much, by `cost`, or
+/// breaks another bound that they keep. Whether it did not.
 bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTarget& target,
                     const std::vector<double>& cost, double most, const Work& work,
                     Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
   if (std::find(seams.begin(), seams.end(), true) == seams.end()) return true;
+  const std::vector<double> path_cost = path_costs(level);
   const std::vector<int> sides = {1, -1};
   Attempt best = best_of(attempts(work, sides, [&](int side, const Work& part) {
     AnchoredSeams half =
-        mirrored_seams(level.surface, mirror, found.seams, side, level.cost, level.locked, part);
+        mirrored_seams(level.surface, mirror, found.seams, side, path_cost, level.locked, part);
     half.seams = straighten(level.surface, half.seams, level.cost, half.anchors, level.locked,
                             level.straightness, part);
     return LevelSearch(level, std::move(half), Start(), target, part, &mirror).run(true);
@@ -137,6 +150,13 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
   const Surface& surface = level.surface;
   if (best.excess > std::max(1.0, found.excess)) return false;
   if (sum_of(surface, best.seams.seams, cost) > most * sum_of(surface, seams, cost)) return false;
+  const auto is_possible = [&](const EdgeMarks& marks) {
+    return std::isfinite(sum_of(surface, marks, path_cost));
+  };
+  if (is_possible(seams) && !is_possible(best.seams.seams)) return false;
+  const double length = length_of(surface, best.seams.seams);
+  const double budget = target.seam_budget * std::sqrt(surface_area(surface, work));
+  if (budget > 0 && length > budget && length > length_of(surface, seams)) return false;
   const auto charts = [&](const EdgeMarks& marks) {
     return size_of(cut_into_charts(surface, marks, work).charts);
   };
@@ -144,6 +164,16 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
   if (target.max_charts > 0 && parts > target.max_charts && parts > charts(seams)) return false;
   found = std::move(best);
   return true;
+}
+
+/// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
+Attempt search_anew(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
+                    const SeamWeights& weights, const Mirror* mirror, const Work& work) {
+  Attempt found = search_level(level, is_thorough, target, weights, mirror, work.part(0, 0.9));
+  if (is_thorough) {
+    LevelSearch(level, found.seams, Start(), target, work.part(0.9, 1)).join_charts(found);
+  }
+  return found;
 }
 
 /// The mirror of a surface, towards whose plane seams are then drawn on the level; null: it has
@@ -190,15 +220,16 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       search.level = std::make_shared<const SearchLevel>(std::move(level));
     }
     const bool is_thorough = surface.face_count() <= kThoroughFaces;
-    found = search_level(*search.level, is_thorough, target, weights, search.mirror.get(),
-                         work.part(0.3, 0.8));
-    if (is_thorough) {
-      LevelSearch(*search.level, found.seams, Start(), target, work.part(0.8, 0.85))
-          .join_charts(found);
-    }
+    found = search_anew(*search.level, is_thorough, target, weights, search.mirror.get(),
+                        work.part(0.3, 0.85));
     if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, cost,
-                                         1 + weights.symmetry, work.part(0.85, 0.9), found)) {
+                                         1 + weights.symmetry, work.part(0.85, 0.88), found)) {
       search.mirror.reset();
+      SearchLevel level = *search.level;
+      level.cost = std::move(cost);
+      search.level = std::make_shared<const SearchLevel>(std::move(level));
+      found =
+          search_anew(*search.level, is_thorough, target, weights, nullptr, work.part(0.88, 0.9));
     }
   }
   searched.energy = found.energy;

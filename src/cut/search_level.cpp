@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -175,6 +176,14 @@ AnchoredSeams carry_to_finer(const SearchLevel& level, const Surface& fine,
   EdgeMarks free = straighten(fine, marks, cost, anchors, locked, level.straightness, work);
   for (std::size_t h = 0; h < locked.size(); ++h) free[h] = free[h] && !locked[h];
   return {std::move(free), std::move(anchors)};
+}
+
+std::vector<double> path_costs(const SearchLevel& level) {
+  std::vector<double> cost = level.cost;
+  for (std::size_t h = 0; h < level.locked.size(); ++h) {
+    if (level.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
+  }
+  return cost;
 }
 
 }  // namespace beltrami

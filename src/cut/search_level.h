@@ -25,6 +25,9 @@ struct SearchLevel {
   double straightness = 0;         ///< of seams, as SeamWeights has it
 };
 
+/// Per half-edge what a path along it costs: infinite along locked edges.
+std::vector<double> path_costs(const SearchLevel& level);
+
 /// A simplification of `fine` to about `faces` faces, more where components would keep too few, or
 /// `fine` itself where that is hardly more. Faces after `real_faces` are virtual: edges among them
 /// cost little, for no seam will be there. A coarse surface knows of no locked edges.
