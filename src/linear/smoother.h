@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/scratch.h"
 #include "base/types.h"
 #include "base/work.h"
