@@ -22,7 +22,6 @@
 #include "exact/crossings.h"
 #include "flatten/carried_target.h"
 #include "flatten/dirichlet.h"
-#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/v_cycle.h"
 #include "linear/smoother.h"
