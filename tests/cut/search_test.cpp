@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <random>
 #include <utility>
@@ -296,6 +299,57 @@ TEST(Search, SymmetricSeamsAreTheSameBitsAtOneThreadAndAtTwo) {
     const SearchedSeams two = searched(*each, 2.01, {}, 2, kSymmetric);
     EXPECT_EQ(one.seams, two.seams);
     EXPECT_EQ(one.energy, two.energy);
+  }
+}
+
+/// A ball with bumps, mirrored by x, of n by n cells on each side of a cube, split either way.
+TriangleList bumpy_cube(int n) {
+  TriangleList mesh;
+  disks::Random random(n);
+  std::map<std::array<int, 3>, Index> known;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [place, is_new] = known.try_emplace(at, size_of(mesh.positions));
+    if (is_new) {
+      const Vec3 d = Vec3(at[0], at[1], at[2]).normalized();
+      const double x = std::abs(d.x());
+      const double bump =
+          std::cos(5 * x) * std::sin(4 * d.y() + 1) + 0.5 * std::sin(6 * d.z() + 2 * x);
+      mesh.positions.push_back(d * (1 + 0.4 * bump));
+    }
+    return place->second;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {-n, n}) {
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          std::array<Index, 4> q{};
+          for (int k = 0; k < 4; ++k) {
+            std::array<int, 3> at{};
+            at[axis] = side;
+            at[(axis + 1) % 3] = 2 * (i + (k == 1 || k == 2 ? 1 : 0)) - n;
+            at[(axis + 2) % 3] = 2 * (j + (k >= 2 ? 1 : 0)) - n;
+            q[side > 0 ? k : 3 - k] = vertex(at);
+          }
+          const auto first = q.begin() + random.below(4);
+          std::rotate(q.begin(), first, q.end());
+          mesh.faces.push_back({q[0], q[1], q[2]});
+          mesh.faces.push_back({q[0], q[2], q[3]});
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+TEST(Search, LockedEdgesStayUncutForSymmetry) {
+  for (const int n : {8, 10}) {
+    const Surface surface = built_about_x(bumpy_cube(n));
+    const EdgeMarks locked = diagonals(surface);
+    for (const double energy : {2.02, 2.005}) {
+      const EdgeMarks seams = searched(surface, energy, locked, 2, kSymmetric).seams;
+      charts(surface, seams);
+      for (std::size_t h = 0; h < seams.size(); ++h) EXPECT_FALSE(locked[h] && seams[h]);
+    }
   }
 }
 
