@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #ifdef __linux__
@@ -19,6 +19,45 @@
 #include "base/pool.h"
 
 namespace beltrami {
+namespace {
+
+/// Hands out the chunks of a loop: to each thread those of its own share, the same ones in every
+/// loop over as many items, whose data its caches may still have; then what others have left.
+class Shares {
+ public:
+  Shares(std::int64_t chunks, int shares) : shares_(static_cast<std::size_t>(shares)) {
+    for (int i = 0; i < shares; ++i) {
+      shares_[i].next = chunks * i / shares;
+      shares_[i].end = chunks * (i + 1) / shares;
+    }
+  }
+
+  /// A chunk that nobody has; -1 where there is none.
+  std::int64_t take(int thread) {
+    const std::size_t count = shares_.size(), own = static_cast<std::size_t>(thread) % count;
+    for (std::size_t i = 0; i < count; ++i) {
+      Share& share = shares_[(own + i) % count];
+      if (share.next.load(std::memory_order_relaxed) >= share.end) continue;
+      const std::int64_t chunk = share.next.fetch_add(1, std::memory_order_relaxed);
+      if (chunk < share.end) return chunk;
+    }
+    return -1;
+  }
+
+  /// Nothing is handed out any more.
+  void drop() {
+    for (Share& share : shares_) share.next = share.end;
+  }
+
+ private:
+  struct alignas(64) Share {
+    std::atomic<std::int64_t> next;
+    std::int64_t end = 0;
+  };
+  std::vector<Share> shares_;
+};
+
+}  // namespace
 
 void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
                   const std::function<void(std::int64_t, std::int64_t)>& body) {
@@ -40,31 +79,30 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
     }
     return;
   }
-  std::atomic<std::int64_t> next{0};
+  Shares shares(chunks, grain > 1 ? workers : 1);
   std::exception_ptr failure;
   std::mutex failure_guard;
   const InterruptSource request = interrupt_for_workers();
-  const auto take_chunks = [&] {
+  const auto take_chunks = [&](int thread) {
     const StandardFloatingPoint standard_mode;
     try {
-      for (std::int64_t chunk; (chunk = next.fetch_add(1)) < chunks;) {
+      for (std::int64_t chunk; (chunk = shares.take(thread)) >= 0;) {
         poll_interrupt();
         body(chunk * grain, std::min((chunk + 1) * grain, count));
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(failure_guard);
       if (!failure) failure = std::current_exception();
-      next.store(chunks);
+      shares.drop();
     }
   };
-  const std::thread::id caller = std::this_thread::get_id();
-  work.pool().run(workers - 1, [&] {
-    if (std::this_thread::get_id() == caller) {
-      take_chunks();
+  work.pool().run(workers - 1, [&](int thread) {
+    if (thread == 0) {
+      take_chunks(thread);
       return;
     }
     const InterruptScope interruptible(request);
-    take_chunks();
+    take_chunks(thread);
   });
   if (failure) std::rethrow_exception(failure);
 }

@@ -1,6 +1,7 @@
 #include "base/pool.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <system_error>
 
@@ -24,6 +25,15 @@ class Turn {
   const bool mine_;
 };
 
+/// Looks for a while whether `ready` holds. A run has thousands of loops, many of them as short as
+/// a thread takes to fall asleep and to be woken.
+template <class Ready>
+void await_awake(const Ready& ready) {
+  constexpr auto kPatience = std::chrono::microseconds(50);
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (!ready() && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+}
+
 }  // namespace
 
 Pool::~Pool() {
@@ -37,33 +47,37 @@ Pool::~Pool() {
 void Pool::start(int helpers) {
   threads_.reserve(static_cast<std::size_t>(helpers));
   try {
-    while (std::ssize(threads_) < helpers) threads_.emplace_back([this] { serve(); });
+    while (std::ssize(threads_) < helpers) {
+      threads_.emplace_back([this, thread = static_cast<int>(threads_.size()) + 1] { serve(thread); });
+    }
   } catch (const std::system_error&) {
     helpers_ = static_cast<int>(threads_.size());  // as many as the system has
   }
 }
 
-void Pool::serve() {
-  std::unique_lock lock(guard_);
+void Pool::serve(int thread) {
+  const auto called = [&] { return closing_ || places_ > 0; };
   for (;;) {
-    begin_.wait(lock, [&] { return closing_ || places_ > 0; });
+    await_awake(called);
+    std::unique_lock lock(guard_);
+    begin_.wait(lock, called);
     if (closing_) return;
     --places_;
     ++inside_;
-    const std::function<void()>& task = *task_;
+    const std::function<void(int)>& task = *task_;
     lock.unlock();
-    task();
+    task(thread);
     lock.lock();
     if (--inside_ == 0) end_.notify_one();
   }
 }
 
-void Pool::run(int helpers, const std::function<void()>& task) {
+void Pool::run(int helpers, const std::function<void(int)>& task) {
   const Turn turn(taken_);
   if (turn) start(std::min(helpers, helpers_));
   const int places = turn ? std::min(helpers, helpers_) : 0;
   if (places == 0) {
-    task();
+    task(0);
     return;
   }
   {
@@ -72,10 +86,15 @@ void Pool::run(int helpers, const std::function<void()>& task) {
     places_ = places;
   }
   for (int i = 0; i < places; ++i) begin_.notify_one();
-  task();
+  task(0);
+  {
+    const std::lock_guard lock(guard_);
+    places_ = 0;
+  }
+  const auto alone = [&] { return inside_ == 0; };
+  await_awake(alone);
   std::unique_lock lock(guard_);
-  places_ = 0;
-  end_.wait(lock, [&] { return inside_ == 0; });
+  end_.wait(lock, alone);
 }
 
 }  // namespace beltrami

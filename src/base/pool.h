@@ -19,24 +19,25 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  /// Calls `task` on this thread and, at the same time, on up to `helpers` of the pool's; returns
-  /// once all calls have. None is waited for that has not begun by the time this thread is done,
-  /// and where no thread can be started, or a task is running already (loops in a loop), it is
-  /// called on this thread alone. `task` throws nothing.
-  void run(int helpers, const std::function<void()>& task);
+  /// Calls `task` on this thread and, at the same time, on up to `helpers` of the pool's, with the
+  /// number of the thread: 0 for this one, from 1 for those. Returns once all calls have. None is
+  /// waited for that has not begun by the time this thread is done, and where no thread can be
+  /// started, or a task is running already (loops in a loop), it is called on this thread alone.
+  /// `task` throws nothing.
+  void run(int helpers, const std::function<void(int thread)>& task);
 
  private:
   void start(int helpers);
-  void serve();
+  void serve(int thread);
 
   int helpers_;  // that there may be
   std::atomic<bool> taken_ = false;
-  std::mutex guard_;  // of what follows, but for the threads
+  std::mutex guard_;  // whoever changes what follows, but for the threads, holds it
   std::condition_variable begin_, end_;
-  const std::function<void()>* task_ = nullptr;
-  int places_ = 0;  // of the task at hand that are not taken
-  int inside_ = 0;  // helpers that are at it
-  bool closing_ = false;
+  const std::function<void(int)>* task_ = nullptr;
+  std::atomic<int> places_ = 0;  // of the task at hand that are not taken
+  std::atomic<int> inside_ = 0;  // helpers that are at it
+  std::atomic<bool> closing_ = false;
   std::vector<std::jthread> threads_;
 };
 

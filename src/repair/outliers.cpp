@@ -11,8 +11,8 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
-#include "repair/hub_turns.h"
 #include "repair/patch.h"
+#include "repair/patch_tries.h"
 #include "repair/patch_work.h"
 
 namespace beltrami {
@@ -24,7 +24,6 @@ constexpr double kTimesMean = 4;
 constexpr int kRounds = 3;
 constexpr int kRings = 3;
 constexpr int kNewtonSteps = 10;
-constexpr std::size_t kTogether = 256;  // outliers whose patches are kept at once
 /// A round that finds more than this share of the faces is no longer about outliers: the global
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
@@ -100,78 +99,16 @@ class FaceEnergies {
   double limit_ = 0;
 };
 
-/// The patch around a face, once it is cut, and what came of it.
-struct Try {
-  Index face;
-  Patch patch;
-  bool positive = false;
-
-  bool is_cut() const { return !patch.faces.empty(); }
-};
-
-/// Cuts the patches around the faces in turn that have no vertex beside those of another: what is
-/// nearer is in its patch.
-void cut_some(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-              const std::vector<Vec2>& uvs, const Work& work, std::vector<Try>& waiting) {
-  std::vector<std::size_t> chosen;
-  std::unordered_set<Index> around;  // vertices
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    const Triangle& corners = mesh.faces[waiting[i].face];
-    const bool near =
-        std::any_of(corners.begin(), corners.end(), [&](Index v) { return around.contains(v); });
-    if (near) continue;
-    for (const Index v : corners) {
-      around.insert(v);
-      if (is_hub(mesh, v, kManyFaces)) continue;
-      mesh.for_each_outgoing(v, [&](Index h) { around.insert(mesh.target(h)); });
-    }
-    if (!waiting[i].is_cut()) chosen.push_back(i);
-  }
-  parallel_for(work, size_of(chosen), 1, [&](std::int64_t i, std::int64_t) {
-    Try& next = waiting[chosen[i]];
-    next.patch = cut_patch(mesh, rest, uvs, next.face, kRings);
-  });
-}
-
-/// Takes patches out of `waiting`, in turn, none of which moves a vertex of another. Those around
-/// faces of patches that were `treated` go.
-std::vector<Try> take_apart(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            const std::vector<Vec2>& uvs, const std::unordered_set<Index>& treated,
-                            const Work& work, std::vector<Try>& waiting) {
-  std::erase_if(waiting, [&](const Try& next) { return treated.contains(next.face); });
-  cut_some(mesh, rest, uvs, work, waiting);
-  std::vector<Try> apart, later;
-  std::unordered_set<Index> moving, present;  // vertices
-  for (Try& next : waiting) {
-    const Patch& patch = next.patch;
-    bool meets = !next.is_cut();
-    for (std::size_t i = 0; i < patch.mesh_vertices.size() && !meets; ++i) {
-      meets = (patch.fixed[i] ? moving : present).contains(patch.mesh_vertices[i]);
-    }
-    if (meets) {
-      later.push_back(std::move(next));
-      continue;
-    }
-    for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
-      present.insert(patch.mesh_vertices[i]);
-      if (!patch.fixed[i]) moving.insert(patch.mesh_vertices[i]);
-    }
-    apart.push_back(std::move(next));
-  }
-  waiting.swap(later);
-  return apart;
-}
-
 /// Minimises the energy of each patch from the map as it is now, side by side.
 void minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
-              std::vector<Try>& tries) {
+              std::vector<PatchTry>& tries) {
   NewtonOptions options;
   options.energy = energy;
   options.max_iterations = kNewtonSteps;
   const Work alone = work.aside();
   parallel_for(work, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
     Patch& patch = tries[i].patch;
-    for (std::size_t v = 0; v < patch.uvs.size(); ++v) patch.uvs[v] = uvs[patch.mesh_vertices[v]];
+    patch.refresh(uvs);
     minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
     tries[i].positive = non_positive_faces(patch.faces, patch.uvs, alone).empty();
   });
@@ -192,14 +129,16 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
     for (std::size_t begin = 0; begin < outliers.size(); begin += kTogether) {
       const std::span<const Index> all = outliers;
       const auto some = all.subspan(begin, std::min(kTogether, all.size() - begin));
-      std::vector<Try> waiting;
+      std::vector<PatchTry> waiting;
       for (const Index face : some) waiting.push_back({face, {}});
+      const auto is_treated = [&](Index face) { return treated.contains(face); };
       while (!waiting.empty()) {
         if (work.out_of_time()) return patches;
         work.report((round + static_cast<double>(begin) / outliers.size()) / kRounds);
-        std::vector<Try> tries = take_apart(mesh, rest, uvs, treated, work, waiting);
+        std::vector<PatchTry> tries =
+            take_apart(mesh, rest, uvs, kRings, is_treated, work, waiting);
         minimise(energy, uvs, work, tries);
-        for (Try& made : tries) {
+        for (PatchTry& made : tries) {
           if (!made.positive || !taken.take(made.patch)) continue;
           ++patches;
           treated.insert(made.patch.mesh_faces.begin(), made.patch.mesh_faces.end());

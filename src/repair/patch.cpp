@@ -70,6 +70,10 @@ std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
 
 }  // namespace
 
+void Patch::refresh(const std::vector<Vec2>& mesh_uvs) {
+  for (std::size_t v = 0; v < uvs.size(); ++v) uvs[v] = mesh_uvs[mesh_vertices[v]];
+}
+
 void Patch::exchange(std::vector<Vec2>& mesh_uvs) {
   for (std::size_t i = 0; i < mesh_vertices.size(); ++i) {
     std::swap(mesh_uvs[mesh_vertices[i]], uvs[i]);

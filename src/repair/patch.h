@@ -20,6 +20,9 @@ struct Patch {
   std::vector<Vec2> uvs;
   bool moves_boundary = false;  ///< a vertex on the boundary of the mesh may move
 
+  /// Takes over where its vertices are now.
+  void refresh(const std::vector<Vec2>& mesh_uvs);
+
   /// Swaps the patch's UVs with those of the mesh: once to put them in, twice to undo.
   void exchange(std::vector<Vec2>& mesh_uvs);
 };

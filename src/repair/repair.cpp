@@ -1,11 +1,14 @@
 #include "repair/repair.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/interrupt.h"
+#include "base/parallel.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
@@ -13,6 +16,7 @@
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
+#include "repair/patch_tries.h"
 #include "repair/patch_work.h"
 #include "repair/untangle.h"
 
@@ -74,13 +78,13 @@ class Repair {
     PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;
-      std::size_t done = 0;
-      for (const Index face : bad) {
-        const double share = (static_cast<double>(level) +
-                              static_cast<double>(done++) / static_cast<double>(bad.size())) /
-                             kPatchRings.size();
-        work_.report(from + (until - from) * share);
-        if (!positive(face) && fix_patch(face, kPatchRings[level], patches)) ++result_.patch_fixes;
+      const double share = (until - from) / kPatchRings.size();
+      const Work part = work_.part(from + share * level, from + share * (level + 1));
+      for (std::size_t begin = 0; begin < bad.size(); begin += kTogether) {
+        part.report(static_cast<double>(begin) / static_cast<double>(bad.size()));
+        const std::span<const Index> all = bad;
+        fix_patches(all.subspan(begin, std::min(kTogether, all.size() - begin)),
+                    kPatchRings[level], patches);
       }
       bad = find_bad();
     }
@@ -140,23 +144,45 @@ class Repair {
     return true;
   }
 
-  bool untangled(Patch& patch) const {
-    return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work_.aside());
+  /// Mends patches around the faces, side by side where none moves a vertex of another.
+  void fix_patches(std::span<const Index> faces, int rings, PatchWork& patches) {
+    std::vector<PatchTry> waiting;
+    for (const Index face : faces) waiting.push_back({face, {}});
+    const auto is_positive = [&](Index face) { return positive(face); };
+    while (!waiting.empty()) {
+      poll_interrupt();
+      std::vector<PatchTry> tries =
+          take_apart(mesh_, rest_, uvs_, rings, is_positive, work_, waiting);
+      for (PatchTry& made : tries) made.patch.refresh(uvs_);
+      try_patches([](Patch&) {}, patches, tries);
+      std::erase_if(tries, [](const PatchTry& made) { return !made.positive; });
+      // The sides of a slit can be in each other's way.
+      try_patches([&](Patch& patch) { hold_boundary(mesh_, patch); }, patches, tries);
+      // From a boundary that is folded, faces can end all positive and twice around a vertex.
+      try_patches([&](Patch& patch) { patches.straighten_boundary(patch); }, patches, tries);
+    }
   }
 
-  bool fix_patch(Index face, int rings, PatchWork& patches) {
-    const Patch patch = cut_patch(mesh_, rest_, uvs_, face, rings);
-    Patch free = patch;
-    if (!untangled(free)) return false;
-    if (patches.take(free)) return true;
-    // The sides of a slit can be in each other's way.
-    Patch held = patch;
-    hold_boundary(mesh_, held);
-    if (untangled(held) && patches.take(held)) return true;
-    // From a boundary that is folded, faces can end all positive and twice around a vertex.
-    Patch straight = patch;
-    patches.straighten_boundary(straight);
-    return untangled(straight) && patches.take(straight);
+  /// Untangles the patches as they are once prepared, puts in what comes out positive, in turn, and
+  /// leaves the others as they were.
+  void try_patches(const std::function<void(Patch&)>& prepare, PatchWork& patches,
+                   std::vector<PatchTry>& tries) {
+    std::vector<Patch> made;
+    for (const PatchTry& next : tries) prepare(made.emplace_back(next.patch));
+    const Work alone = work_.aside();
+    parallel_for(work_, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
+      Patch& patch = made[i];
+      tries[i].positive = untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
+    });
+    std::vector<PatchTry> left;
+    for (std::size_t i = 0; i < tries.size(); ++i) {
+      if (tries[i].positive && patches.take(made[i])) {
+        ++result_.patch_fixes;
+      } else {
+        left.push_back(std::move(tries[i]));
+      }
+    }
+    tries.swap(left);
   }
 
   const DiskMesh& mesh_;

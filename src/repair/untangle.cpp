@@ -14,6 +14,10 @@ namespace beltrami {
 namespace {
 
 constexpr int kUntangleSteps = 100;
+/// Steps after which the worst face is as bad as before, by this share: of 660 patches that were
+/// untangled 2 took longer, and of those that were not more than half of the steps are saved.
+constexpr int kPatience = 25;
+constexpr double kAsBad = 0.95;
 constexpr int kPolishSteps = 10;
 
 /// 1/2 (s1^2 + s2^2) (1 + chi^-2) with chi = (d + sqrt(eps^2 + d^2)) / 2 for the determinant
@@ -88,7 +92,9 @@ bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle
   NewtonStepper<RegularisedDirichlet> stepper(faces, rest, fixed, work);
   if (stepper.free_count() == 0) return false;
   double least = smallest_determinant(faces, rest, trial);
-  for (int i = 0; i < kUntangleSteps && !(least > 0); ++i) {
+  double best = least;
+  int best_at = 0;
+  for (int i = 0; i < kUntangleSteps && !(least > 0) && i < best_at + kPatience; ++i) {
     // Of the size of the worst face, as Garanzha et al. choose it, but never so small that the
     // barrier of a nearly mended face overflows.
     const double epsilon = std::sqrt(1e-6 + 0.04 * least * least);
@@ -96,6 +102,9 @@ bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle
     const NewtonStep step = stepper.step(trial, stepper.mean_energy(trial));
     if (step.length == 0) break;
     least = smallest_determinant(faces, rest, trial);
+    if (least < kAsBad * best) continue;
+    best = least;
+    best_at = i + 1;
   }
   if (!(least > 0)) return false;
   NewtonOptions polish;
