@@ -48,7 +48,8 @@ void Pool::start(int helpers) {
   threads_.reserve(static_cast<std::size_t>(helpers));
   try {
     while (std::ssize(threads_) < helpers) {
-      threads_.emplace_back([this, thread = static_cast<int>(threads_.size()) + 1] { serve(thread); });
+      threads_.emplace_back(
+          [this, thread = static_cast<int>(threads_.size()) + 1] { serve(thread); });
     }
   } catch (const std::system_error&) {
     helpers_ = static_cast<int>(threads_.size());  // as many as the system has

@@ -83,8 +83,8 @@ class Repair {
       for (std::size_t begin = 0; begin < bad.size(); begin += kTogether) {
         part.report(static_cast<double>(begin) / static_cast<double>(bad.size()));
         const std::span<const Index> all = bad;
-        fix_patches(all.subspan(begin, std::min(kTogether, all.size() - begin)),
-                    kPatchRings[level], patches);
+        fix_patches(all.subspan(begin, std::min(kTogether, all.size() - begin)), kPatchRings[level],
+                    patches);
       }
       bad = find_bad();
     }
