@@ -68,7 +68,9 @@ class BucketSort {
 
   /// From counts to the first place of every bucket and part.
   void add_up(std::int64_t buckets, std::vector<Start>& start) {
-    start.resize(static_cast<std::size_t>(buckets) + 1);
+    const std::size_t ends = static_cast<std::size_t>(buckets) + 1;
+    if (start.capacity() < ends) parallel_reserve(work_, start, ends);
+    start.resize(ends);
     std::vector<Start> before(static_cast<std::size_t>((buckets + kGrain - 1) / kGrain) + 1, 0);
     parallel_for(work_, buckets, kGrain, [&](std::int64_t begin, std::int64_t end) {
       Start sum = 0;

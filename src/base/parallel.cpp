@@ -57,6 +57,20 @@ class Shares {
   std::vector<Share> shares_;
 };
 
+#ifdef __linux__
+/// Gives the system a hint on the pages that lie within the memory, on several threads.
+void advise(const Work& work, void* memory, std::size_t bytes, int advice) {
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  if (bytes < 2 * kChunk || std::align(page, page, memory, bytes) == nullptr) return;
+  parallel_for(work, static_cast<std::int64_t>(bytes / page * page), kChunk,
+               [&](std::int64_t begin, std::int64_t end) {
+                 madvise(static_cast<char*>(memory) + begin, static_cast<std::size_t>(end - begin),
+                         advice);
+               });
+}
+#endif
+
 }  // namespace
 
 void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
@@ -110,17 +124,15 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
 void touch_memory([[maybe_unused]] const Work& work, [[maybe_unused]] void* memory,
                   [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_POPULATE_WRITE
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  void* first = memory;
-  std::size_t left = bytes;
-  if (bytes < 2 * kChunk || std::align(page, page, first, left) == nullptr) return;
-  parallel_for(work, static_cast<std::int64_t>(left / page * page), kChunk,
-               [&](std::int64_t begin, std::int64_t end) {
-                 // A hint: what it does not do is done at the first touch.
-                 madvise(static_cast<char*>(first) + begin, static_cast<std::size_t>(end - begin),
-                         MADV_POPULATE_WRITE);
-               });
+  // What it does not do is done at the first touch.
+  advise(work, memory, bytes, MADV_POPULATE_WRITE);
+#endif
+}
+
+void release_memory([[maybe_unused]] const Work& work, [[maybe_unused]] void* memory,
+                    [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_DONTNEED
+  advise(work, memory, bytes, MADV_DONTNEED);
 #endif
 }
 

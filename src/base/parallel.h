@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include "base/types.h"
@@ -31,6 +32,18 @@ void parallel_reserve(const Work& work, std::vector<T>& items, std::size_t count
   std::vector<T>().swap(items);
   items.reserve(count);
   touch_memory(work, items.data(), count * sizeof(T));
+}
+
+/// Lets several threads give memory back, which costs as much; its items are lost, and the array is
+/// to be freed.
+void release_memory(const Work& work, void* memory, std::size_t bytes);
+
+/// Frees a large array.
+template <class T>
+void parallel_free(const Work& work, std::vector<T>& items) {
+  static_assert(std::is_trivially_destructible_v<T>);
+  release_memory(work, items.data(), items.capacity() * sizeof(T));
+  std::vector<T>().swap(items);
 }
 
 /// items.assign(count, value) for large arrays.

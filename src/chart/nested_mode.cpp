@@ -197,8 +197,8 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
   if (!solved || !positive) return false;
-  SingleField().swap(level.residual);
-  std::vector<Vec2>().swap(level.carried);
+  parallel_free(work, level.residual);
+  parallel_free(work, level.carried);
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
@@ -207,9 +207,11 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
                                                          : PolishLength::kMiddling;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;
-  if (converged && is_finest) return true;
   const double below = climb.energy;
-  climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs, work);
+  if (!converged || !is_finest) {
+    climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs, work);
+  }
+  parallel_free(work, level.problem.rest);
   if (converged) return true;
   climb.hard = true;
   return to_dirichlet(options.energy, climb.energy) <=

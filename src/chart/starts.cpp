@@ -27,7 +27,8 @@ void start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   double least = mean_energy(options.energy, mesh.faces, rest, uvs, work);
   const std::vector<double> lengths = boundary_lengths(mesh);
   BoundaryContact contact(mesh.boundary, lengths, lengths);
-  for (std::vector<Vec2> start : {projection(mesh), unfolding(mesh, rest)}) {
+  for (std::vector<Vec2> start : {projection(mesh), unflipped_unfolding(mesh, rest)}) {
+    if (start.empty()) continue;
     scale_best(mesh, rest, options, work, start);
     double energy = mean_energy(options.energy, mesh.faces, rest, start, work);
     if (!(energy < least) || !certify(mesh.faces, mesh.boundary, start, work).injective()) continue;

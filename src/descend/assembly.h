@@ -74,7 +74,7 @@ void assemble(const std::vector<Triangle>& faces, const Model& model_of, MeshMat
   hessian.set_zero(work);
   gradient.setZero(2 * hessian.free_count());
   const FaceChunks& chunks = hessian.chunks();
-  std::vector<std::vector<Aside>> aside(chunks.count());
+  PutAside<Aside> aside(chunks, size_of(hessian.rows()));
   hessian.add_up(work, faces, [&](Index f, const auto& add) {
     const Triangle& t = faces[f];
     const FaceModel model = model_of(f);
@@ -83,7 +83,7 @@ void assemble(const std::vector<Triangle>& faces, const Model& model_of, MeshMat
       if (row == kNone) continue;
       const Vec2 term = model.gradient.template segment<2>(2 * k);
       if (chunks.shared(t[k])) {
-        aside[chunks.of(f)].push_back({row, term});
+        aside.put(chunks.of(f), t[k], {row, term});
       } else {
         gradient.segment<2>(2 * row) += term;
       }
@@ -94,9 +94,7 @@ void assemble(const std::vector<Triangle>& faces, const Model& model_of, MeshMat
       }
     }
   });
-  for (const std::vector<Aside>& later : aside) {
-    for (const Aside& a : later) gradient.segment<2>(2 * a.row) += a.term;
-  }
+  aside.add_up(work, [&](const Aside& a) { gradient.segment<2>(2 * a.row) += a.term; });
 }
 
 }  // namespace beltrami

@@ -23,28 +23,10 @@ Vec2 apex(const RestTriangle& rest, int k, const Vec2& after, const Vec2& before
   return {place.real(), place.imag()};
 }
 
-}  // namespace
-
-std::vector<Vec2> projection(const DiskMesh& mesh) {
-  Vec3 normal = Vec3::Zero();
-  for (const Triangle& t : mesh.faces) {
-    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-    normal += (b - a).cross(c - a);
-  }
-  // Along the axis nearest to the plane first, so that a mesh in a coordinate plane keeps its
-  // numbers.
-  Eigen::Index least = 0;
-  normal.cwiseAbs().minCoeff(&least);
-  Vec3 first = Vec3::Unit(least) - normal[least] / normal.squaredNorm() * normal;
-  first.normalize();
-  const Vec3 second = normal.cross(first).normalized();
-  std::vector<Vec2> uvs;
-  uvs.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) uvs.emplace_back(first.dot(p), second.dot(p));
-  return uvs;
-}
-
-std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest) {
+/// Ends with nothing at the first face of which may_stop(face, uvs) holds.
+template <class MayStop>
+std::vector<Vec2> unfold(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                         const MayStop& may_stop) {
   std::vector<Vec2> uvs(mesh.positions.size(), Vec2::Zero());
   std::vector<bool> placed(mesh.positions.size(), false), reached(mesh.faces.size(), false);
   const auto place = [&](Index v, const Vec2& w) {
@@ -75,9 +57,42 @@ std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle
     const Triangle& t = mesh.faces[face];
     place(t[corner],
           apex(rest[face], corner, uvs[t[next_corner(corner)]], uvs[t[previous_corner(corner)]]));
+    if (may_stop(t, uvs)) return {};
     leave(face);
   }
   return uvs;
+}
+
+}  // namespace
+
+std::vector<Vec2> projection(const DiskMesh& mesh) {
+  Vec3 normal = Vec3::Zero();
+  for (const Triangle& t : mesh.faces) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    normal += (b - a).cross(c - a);
+  }
+  // Along the axis nearest to the plane first, so that a mesh in a coordinate plane keeps its
+  // numbers.
+  Eigen::Index least = 0;
+  normal.cwiseAbs().minCoeff(&least);
+  Vec3 first = Vec3::Unit(least) - normal[least] / normal.squaredNorm() * normal;
+  first.normalize();
+  const Vec3 second = normal.cross(first).normalized();
+  std::vector<Vec2> uvs;
+  uvs.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) uvs.emplace_back(first.dot(p), second.dot(p));
+  return uvs;
+}
+
+std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest) {
+  return unfold(mesh, rest, [](const Triangle&, const std::vector<Vec2>&) { return false; });
+}
+
+std::vector<Vec2> unflipped_unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest) {
+  return unfold(mesh, rest, [](const Triangle& t, const std::vector<Vec2>& uvs) {
+    const Vec2 first = uvs[t[1]] - uvs[t[0]], second = uvs[t[2]] - uvs[t[0]];
+    return first.x() * second.y() < first.y() * second.x();
+  });
 }
 
 }  // namespace beltrami

@@ -18,4 +18,7 @@ std::vector<Vec2> projection(const DiskMesh& mesh);
 /// faces do not fit together, and may be flipped. The boundary may cross itself.
 std::vector<Vec2> unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest);
 
+/// The same; or nothing, where a face is flipped, which is mostly found early.
+std::vector<Vec2> unflipped_unfolding(const DiskMesh& mesh, const std::vector<RestTriangle>& rest);
+
 }  // namespace beltrami

@@ -1,5 +1,6 @@
 #include "flatten/carried_target.h"
 
+#include <array>
 #include <cmath>
 
 #include "base/lanes.h"

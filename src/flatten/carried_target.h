@@ -2,7 +2,6 @@
 // to become, how stiff it is there, and how far from it the present map is.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "base/types.h"
@@ -14,9 +13,6 @@
 #include "prolong/derivative.h"
 
 namespace beltrami {
-
-/// Weights of the edges of a face, as EdgeWeights, in single precision.
-using SingleWeights = std::array<float, 3>;
 
 struct TargetEquations {
   std::vector<SingleWeights> weights;  ///< per face: of the energy at the carried derivative

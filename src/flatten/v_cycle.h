@@ -8,7 +8,6 @@
 
 #include "base/types.h"
 #include "base/work.h"
-#include "flatten/carried_target.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/stiffness_inverse.h"

@@ -124,16 +124,13 @@ void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, co
     double* entry;
     double term;
   };
-  // Per chunk and run of vertices, so that runs can be added up side by side.
-  constexpr std::size_t kRuns = 16;
-  const std::size_t run_length = row_.size() / kRuns + 1;
-  std::vector<std::array<std::vector<Aside>, kRuns>> aside(chunks_.count());
+  PutAside<Aside> aside(chunks_, size_of(row_));
   parallel_for(work, static_cast<std::int64_t>(faces.size()), chunks_.grain(),
                [&](std::int64_t begin, std::int64_t end) {
-                 auto& later = aside[chunks_.of(begin)];
+                 const std::size_t chunk = chunks_.of(begin);
                  const auto put = [&](Index vertex, double& entry, double term) {
                    if (chunks_.shared(vertex)) {
-                     later[vertex / run_length].push_back({&entry, term});
+                     aside.put(chunk, vertex, {&entry, term});
                    } else {
                      entry += term;
                    }
@@ -145,11 +142,7 @@ void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, co
                    });
                  }
                });
-  parallel_for(work, kRuns, 1, [&](std::int64_t run, std::int64_t) {
-    for (const auto& later : aside) {
-      for (const Aside& a : later[run]) *a.entry += a.term;
-    }
-  });
+  aside.add_up(work, [](const Aside& a) { *a.entry += a.term; });
 }
 
 }  // namespace beltrami

@@ -48,7 +48,7 @@ Smoother::Smoother(const Surface& mesh, const Work& work)
   weight_ = Scratch<float>(work, static_cast<std::size_t>(total));
 }
 
-void Smoother::set(const Surface& mesh, const std::vector<std::array<float, 3>>& weights,
+void Smoother::set(const Surface& mesh, const std::vector<SingleWeights>& weights,
                    const std::vector<float>& springs) {
   const auto weight_of = [&](Index h) {
     return h == kNone ? 0.0F : weights[h / 3][previous_corner(h % 3)];

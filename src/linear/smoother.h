@@ -2,7 +2,6 @@
 // Gauss-Seidel step on them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +12,8 @@
 
 namespace beltrami {
 
+/// Weights of the edges of a face, each opposite to the corner of its index.
+using SingleWeights = Eigen::Array3f;
 /// One entry per vertex.
 using SingleField = std::vector<Eigen::Vector2f>;
 
@@ -24,9 +25,8 @@ class Smoother {
   /// Without weights yet.
   Smoother(const Surface& mesh, const Work& work);
 
-  /// `weights`: three per face, that of the edge opposite to each corner. `springs`: per vertex,
-  /// what the diagonal has beside them, or empty.
-  void set(const Surface& mesh, const std::vector<std::array<float, 3>>& weights,
+  /// `weights`: per face. `springs`: per vertex, what the diagonal has beside them, or empty.
+  void set(const Surface& mesh, const std::vector<SingleWeights>& weights,
            const std::vector<float>& springs);
 
   /// The diagonal without the springs.

@@ -28,7 +28,7 @@ class VertexSums {
         work_(work),
         vertex_count_(vertex_count),
         chunks_(vertex_count, faces, work),
-        aside_(chunks_.count()) {}
+        aside_(chunks_, vertex_count) {}
 
   /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
   /// terms. Returns the sum over the faces of what `give` returns.
@@ -46,15 +46,15 @@ class VertexSums {
     Vec2 term;
   };
 
-  void add(Index v, const Vec2& term, std::vector<Aside>& aside, std::vector<Vec2>& sums) const {
+  void add(std::size_t chunk, Index v, const Vec2& term, std::vector<Vec2>& sums) {
     if (chunks_.shared(v)) {
-      aside.push_back({v, term});
+      aside_.put(chunk, v, {v, term});
     } else {
       sums[v] += term;
     }
   }
 
-  /// Calls add_chunk(begin, end, aside) for the chunks, with sums of zero before.
+  /// Calls add_chunk(begin, end, chunk) for the chunks, with sums of zero before.
   template <class AddChunk>
   double sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk);
 
@@ -62,7 +62,7 @@ class VertexSums {
   const Work work_;
   Index vertex_count_;
   FaceChunks chunks_;
-  std::vector<std::vector<Aside>> aside_;
+  PutAside<Aside> aside_;
 };
 
 template <class AddChunk>
@@ -74,24 +74,22 @@ double VertexSums::sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk
                });
   const double total = parallel_sum(work_, size_of(faces_), chunks_.grain(),
                                     [&](std::int64_t begin, std::int64_t end) {
-                                      std::vector<Aside>& aside = aside_[chunks_.of(begin)];
-                                      aside.clear();
-                                      return add_chunk(begin, end, aside);
+                                      const std::size_t chunk = chunks_.of(begin);
+                                      aside_.clear(chunk);
+                                      return add_chunk(begin, end, chunk);
                                     });
-  for (const std::vector<Aside>& aside : aside_) {
-    for (const Aside& a : aside) sums[a.vertex] += a.term;
-  }
+  aside_.add_up(work_, [&](const Aside& a) { sums[a.vertex] += a.term; });
   return total;
 }
 
 template <class Give>
 double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
-  return sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::vector<Aside>& aside) {
+  return sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::size_t chunk) {
     double total = 0;
     Terms terms;
     for (std::int64_t f = begin; f < end; ++f) {
       total += give(static_cast<Index>(f), terms);
-      for (int k = 0; k < 3; ++k) add(faces_[f][k], terms[k], aside, sums);
+      for (int k = 0; k < 3; ++k) add(chunk, faces_[f][k], terms[k], sums);
     }
     return total;
   });
@@ -99,7 +97,7 @@ double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
 
 template <class Give>
 void VertexSums::add_up_lanes(const Give& give, std::vector<Vec2>& sums) {
-  sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::vector<Aside>& aside) {
+  sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::size_t chunk) {
     std::array<Index, kLanes> lanes;
     LaneTerms terms;
     for (std::int64_t first = begin; first < end; first += kLanes) {
@@ -110,7 +108,7 @@ void VertexSums::add_up_lanes(const Give& give, std::vector<Vec2>& sums) {
       give(lanes, terms);
       for (int i = 0; i < count; ++i) {
         for (int k = 0; k < 3; ++k) {
-          add(faces_[lanes[i]][k], {terms[k].real[i], terms[k].imag[i]}, aside, sums);
+          add(chunk, faces_[lanes[i]][k], {terms[k].real[i], terms[k].imag[i]}, sums);
         }
       }
     }

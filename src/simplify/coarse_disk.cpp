@@ -22,9 +22,7 @@ constexpr std::int64_t kGrain = 4096;
 /// From the next vertex on the way to the coarse vertex at its end.
 std::vector<Index> follow_collapses(std::vector<Index> into, const std::vector<Index>& fine_vertex,
                                     const Work& work) {
-  Scratch<Index> coarse_vertex(work, into.size());
-  std::vector<Index> nearby;
-  parallel_assign(work, nearby, into.size());
+  Scratch<Index> coarse_vertex(work, into.size()), root(work, into.size());
   parallel_for(work, size_of(fine_vertex), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto c = static_cast<Index>(begin); c < end; ++c) coarse_vertex[fine_vertex[c]] = c;
   });
@@ -39,10 +37,13 @@ std::vector<Index> follow_collapses(std::vector<Index> into, const std::vector<I
         if (beyond != to) next(at).store(beyond, kRelaxed);
         at = std::exchange(to, beyond);
       }
-      nearby[v] = coarse_vertex[at];
+      root[v] = at;
     }
   });
-  return nearby;
+  parallel_for(work, size_of(into), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<Index>(begin); v < end; ++v) into[v] = coarse_vertex[root[v]];
+  });
+  return into;
 }
 
 /// With the mesh that `disk` returns, or throws Error without.

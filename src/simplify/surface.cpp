@@ -8,6 +8,7 @@
 #include "base/bucket_sort.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
 #include "mesh/face_chunks.h"
 
 namespace beltrami {
@@ -139,24 +140,23 @@ std::vector<Quadric> vertex_quadrics(const Surface& mesh, FacePlanes planes, con
   std::vector<Quadric> quadrics;
   parallel_assign(work, quadrics, mesh.positions.size());
   const FaceChunks chunks(mesh.vertex_count(), mesh.faces, work);
-  std::vector<std::vector<Index>> faces_of_shared(chunks.count());
+  struct Aside {
+    Index vertex, face;
+  };
+  PutAside<Aside> aside(chunks, mesh.vertex_count());
   parallel_for(work, mesh.face_count(), chunks.grain(), [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
-      bool all = true;
-      add_face_quadrics(mesh, f, planes, [&](Index v) {
-        const bool own = !chunks.shared(v);
-        all &= own;
-        return own ? &quadrics[v] : nullptr;
-      });
-      if (!all) faces_of_shared[chunks.of(f)].push_back(f);
+      add_face_quadrics(mesh, f, planes,
+                        [&](Index v) { return chunks.shared(v) ? nullptr : &quadrics[v]; });
+      for (const Index v : mesh.faces[f]) {
+        if (chunks.shared(v)) aside.put(chunks.of(f), v, {v, f});
+      }
     }
   });
-  for (const std::vector<Index>& faces : faces_of_shared) {
-    for (const Index f : faces) {
-      add_face_quadrics(mesh, f, planes,
-                        [&](Index v) { return chunks.shared(v) ? &quadrics[v] : nullptr; });
-    }
-  }
+  aside.add_up(work, [&](const Aside& a) {
+    add_face_quadrics(mesh, a.face, planes,
+                      [&](Index v) { return v == a.vertex ? &quadrics[v] : nullptr; });
+  });
   return quadrics;
 }
 
@@ -198,12 +198,14 @@ namespace {
 template <class Item>
 void keep(const std::vector<Index>& kept, std::vector<Item>& items, const Work& work) {
   if (kept.size() == items.size()) return;
-  std::vector<Item> of_kept;
-  parallel_assign(work, of_kept, kept.size());
+  Scratch<Item> of_kept(work, kept.size());
   parallel_for(work, size_of(kept), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) of_kept[i] = items[kept[i]];
   });
-  items.swap(of_kept);
+  parallel_for(work, size_of(kept), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) items[i] = of_kept[i];
+  });
+  items.resize(kept.size());
 }
 
 }  // namespace
@@ -214,8 +216,7 @@ void compact(ShrinkingSurface& surface, const Work& work) {
                       [&](Index v) { return surface.role[v] != Role::kRemoved; });
   const std::vector<Index> faces = parallel_filter(
       work, size_of(surface.faces), kGrain, [&](Index f) { return surface.faces[f][0] != kNone; });
-  std::vector<Index> renumbered;
-  parallel_assign(work, renumbered, surface.site.size());
+  Scratch<Index> renumbered(work, surface.site.size());
   parallel_for(work, size_of(vertices), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = static_cast<Index>(begin); v < end; ++v) renumbered[vertices[v]] = v;
   });

@@ -511,8 +511,8 @@ CoarseSurface Sweeps::result(const Work& work) {
   for_each(vertices, [&](Index v) { vertex[coarse.fine_vertex[v]] = v; });
   for_each(faces, [&](Index f) { face[coarse.fine_face[f]] = f; });
   const auto halfedge = [&](Index h) { return h == kNone ? kNone : 3 * face[h / 3] + h % 3; };
-  mesh.positions.resize(vertices);
-  mesh.outgoing.resize(vertices);
+  parallel_assign(work, mesh.positions, vertices);
+  parallel_assign(work, mesh.outgoing, vertices);
   mesh.on_boundary.resize(vertices);
   for_each(vertices, [&](Index i) {
     const Index v = coarse.fine_vertex[i];
@@ -520,8 +520,8 @@ CoarseSurface Sweeps::result(const Work& work) {
     mesh.outgoing[i] = halfedge(outgoing_[v]);
     mesh.on_boundary[i] = fine_.on_boundary[v];
   });
-  mesh.faces.resize(faces);
-  mesh.twin.resize(3 * faces);
+  parallel_assign(work, mesh.faces, faces);
+  parallel_assign(work, mesh.twin, 3 * static_cast<std::size_t>(faces));
   for_each(faces, [&](Index i) {
     const Index f = coarse.fine_face[i];
     for (int k = 0; k < 3; ++k) {

@@ -39,8 +39,8 @@ double dot(const SingleField& a, const SingleField& b) {
 std::vector<SingleWeights> single(const std::vector<EdgeWeights>& weights) {
   std::vector<SingleWeights> result;
   for (const EdgeWeights& w : weights) {
-    result.push_back(
-        {static_cast<float>(w[0]), static_cast<float>(w[1]), static_cast<float>(w[2])});
+    result.emplace_back(static_cast<float>(w[0]), static_cast<float>(w[1]),
+                        static_cast<float>(w[2]));
   }
   return result;
 }
@@ -90,8 +90,9 @@ TEST(Smoother, MultipliesAsTheSumOverTheFaces) {
   std::vector<SingleWeights> weights;
   disks::Random random(3);
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    weights.push_back({static_cast<float>(random.unit()), static_cast<float>(random.unit()),
-                       static_cast<float>(random.unit())});
+    const auto first = static_cast<float>(random.unit()),
+               second = static_cast<float>(random.unit());
+    weights.emplace_back(first, second, static_cast<float>(random.unit()));
   }
   std::vector<float> springs(mesh.positions.size(), 0.25F);
   Smoother smoother(mesh, Work(1));
