@@ -28,6 +28,7 @@ class Scratch {
   const T& operator[](Integer i) const {
     return items_[static_cast<std::size_t>(i)];
   }
+  T* data() { return items_.get(); }
   void swap(Scratch& other) { items_.swap(other.items_); }
 
  private:

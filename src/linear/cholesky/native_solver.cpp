@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
@@ -130,9 +131,8 @@ class NativeSolver final : public SpdSolver {
   }
 
   bool factorize_double(const double* values) {
-    std::vector<double> gathered;
-    parallel_assign(work_, gathered, pattern_.source.size());
-    parallel_for(work_, static_cast<std::int64_t>(gathered.size()), kGrain,
+    Scratch<double> gathered(work_, pattern_.source.size());
+    parallel_for(work_, size_of(pattern_.source), kGrain,
                  [&](std::int64_t begin, std::int64_t end) {
                    for (std::int64_t e = begin; e < end; ++e) {
                      gathered[e] = values[pattern_.source[e]];
