@@ -26,6 +26,37 @@ constexpr double kVirtualArea = 1e-3;
 /// The least area of a vertex, of their mean.
 constexpr double kLeastArea = 1e-6;
 
+/// From so many entries of its row on a vertex is a hub.
+constexpr int kHub = 128;
+
+/// L M^-1 L with `softness` the diagonal of M^-1. A hub would make the rows of all vertices around
+/// it dense: for it, the square of its sum of differences is replaced by the sum of their squares,
+/// which is the same where all around is symmetric, and stiffer elsewhere.
+SparseMatrix bilaplacian(const SparseMatrix& laplacian, const Eigen::VectorXd& softness) {
+  std::vector<bool> is_hub(static_cast<std::size_t>(laplacian.cols()));
+  std::vector<Eigen::Triplet<double>> stars;
+  for (int v = 0; v < laplacian.cols(); ++v) {
+    is_hub[v] = laplacian.innerVector(v).nonZeros() > kHub;
+    if (!is_hub[v]) continue;
+    const double scale = softness[v] * laplacian.coeff(v, v);
+    for (SparseMatrix::InnerIterator entry(laplacian, v); entry; ++entry) {
+      const auto other = static_cast<int>(entry.row());
+      const double spring = scale * std::abs(entry.value());
+      if (other == v) continue;
+      stars.emplace_back(other, other, spring);
+      stars.emplace_back(v, v, spring);
+      stars.emplace_back(v, other, -spring);
+      stars.emplace_back(other, v, -spring);
+    }
+  }
+  SparseMatrix weighted = laplacian * softness.asDiagonal();
+  if (stars.empty()) return weighted * laplacian;
+  weighted.prune([&](Eigen::Index, Eigen::Index column, double) { return !is_hub[column]; });
+  SparseMatrix of_hubs(laplacian.rows(), laplacian.cols());
+  of_hubs.setFromTriplets(stars.begin(), stars.end());
+  return SparseMatrix(weighted * laplacian) + of_hubs;
+}
+
 double corner_angle(const RestTriangle& rest, int k) {
   const Complex to = rest.corner(next_corner(k)) - rest.corner(k);
   const Complex from = rest.corner(previous_corner(k)) - rest.corner(k);
@@ -75,7 +106,7 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   laplacian.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXd softness =
       (area.array().max(kLeastArea * area.mean()) / whole).inverse().matrix();
-  bilaplacian_ = laplacian * softness.asDiagonal() * laplacian;
+  bilaplacian_ = bilaplacian(laplacian, softness);
   lower_ = bilaplacian_.triangularView<Eigen::Lower>();
 }
 

@@ -114,6 +114,26 @@ TEST(ElasticModel, AConeIsDistortedUnlessItsTipIsPinned) {
   EXPECT_NEAR(model.energy(), 2, 1e-6);
 }
 
+/// The energy of a cone, and the greatest stress.
+std::pair<double, double> of_cone(Index spokes) {
+  TriangleList mesh = meshes::fan(spokes);
+  mesh.positions[0].z() = 1;
+  const Surface surface = built(disks::refined(mesh, 2));
+  ElasticModel model(surface, surface.face_count(), Work(1));
+  model.pin(only(surface, {}));
+  return {model.energy(), *std::max_element(model.stress().begin(), model.stress().end())};
+}
+
+// With dense rows the largest would take minutes.
+TEST(ElasticModel, AHubIsJudgedAsIsAVertexOfLessNeighbours) {
+  const auto [energy, stress] = of_cone(100);
+  for (const Index spokes : {200, 8000}) {
+    const auto [of_hub, at_hub] = of_cone(spokes);
+    EXPECT_NEAR(of_hub - 2, energy - 2, 0.01 * (energy - 2));
+    EXPECT_NEAR(at_hub, stress, 0.01 * stress);
+  }
+}
+
 TEST(ElasticModel, MorePinsAreJudgedAsIfTheyWereThere) {
   std::mt19937_64 generator(2);
   for (const TriangleList& mesh : surfaces()) {
