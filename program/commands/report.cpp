@@ -150,7 +150,8 @@ Json atlas_energy_json(const beltrami_atlas& found) {
 }
 
 double seam_over_root_area(const beltrami_atlas& atlas) {
-  return atlas.seam_length / std::sqrt(atlas.area);
+  // Without seams the area, which may be too small for a double, does not matter.
+  return atlas.seam_length > 0 ? atlas.seam_length / std::sqrt(atlas.area) : 0;
 }
 
 Json energy_json(const Report& report) {

@@ -268,7 +268,7 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSur
   atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
-  atlas.seam_over_root_area = atlas.seam_length / std::sqrt(area);
+  atlas.seam_over_root_area = atlas.seam_length > 0 ? atlas.seam_length / std::sqrt(area) : 0;
   if (!atlas.pages) {
     atlas.utilisation = utilisation_of(atlas);
     return;

@@ -73,6 +73,18 @@ TEST(Unwrap, PutsAnAtlasIntoGltf) {
   EXPECT_EQ(run({"unwrap", obj, directory.path("b.glb")}).exit_code, kExitUnusable);
 }
 
+TEST(Unwrap, SaysThatAMeshTooSmallForItsAreaHasNoSeams) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj",
+                                        "v 0 0 0\nv 1e-320 0 0\nv 1e-320 1e-320 0\n"
+                                        "v 0 1e-320 0\nf 1 2 3\nf 1 3 4\n");
+  const std::string report = directory.path("report.json");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.obj"), "--report", report});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("seams of 0 root areas"), std::string::npos) << outcome.out;
+  EXPECT_EQ(Json::parse(directory.read("report.json"))["seam_over_root_area"], 0);
+}
+
 TEST(Unwrap, WritesTheTrianglesOnDemand) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
