@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/scratch.h"
+#include "base/types.h"
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
