@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -69,7 +70,11 @@ double corner_angle(const RestTriangle& rest, int k) {
 double ModelChange::energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const {
   const auto load = load_.segment(first, count);
   const auto factor = matrix_.block(first, first, count, count).ldlt();
-  return std::max(energy_ + sign_ * 2 * std::max(load.dot(factor.solve(load)), 0.0), 2.0);
+  const double change = 2 * load.dot(factor.solve(load));
+  if (!factor.isPositive() || !(change >= 0)) {
+    return sign_ < 0 ? energy_ : std::numeric_limits<double>::infinity();
+  }
+  return std::max(energy_ + sign_ * change, 2.0);
 }
 
 ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work& work)

@@ -33,7 +33,9 @@ class ModelChange {
 
   /// Symmetric Dirichlet, at least 2, where all are.
   double energy() const { return energy_of(0, load_.size()); }
-  /// Where `count` vertices from the one with the number `first` are.
+  /// Where `count` vertices from the one with the number `first` are. Where rounding has left
+  /// nothing of the change (a chart that hangs on a branch alone): as it is where more are pinned,
+  /// infinite where some are let go.
   double energy_of(std::ptrdiff_t first, std::ptrdiff_t count) const;
 
  private:

@@ -110,8 +110,8 @@ double LevelSearch::cost_with_turns() const {
 }
 
 /// Short and straight seams miss some of what the others ran to: they are taken where they are
-/// shorter with what has to be added to them.
-void LevelSearch::shorten_seams(double model_energy) {
+/// shorter with what has to be added to them, exactly so much or what is worth most.
+void LevelSearch::shorten_seams(double model_energy, bool exactly) {
   if (mirror_ != nullptr) return;  // each side on its own they would not stay alike
   const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
@@ -119,7 +119,7 @@ void LevelSearch::shorten_seams(double model_energy) {
   search_.reconnect();
   search_.take(straighten(level_.surface, search_.seams(), level_.cost, search_.anchors(),
                           level_.locked, level_.straightness, work_.aside()));
-  search_.extend(energy);
+  search_.extend(energy, exactly);
   const bool is_better = cost_with_turns() < cost && search_.energy() <= energy;
   if (!is_better) search_.take(before, anchors);
 }
@@ -258,8 +258,10 @@ Attempt LevelSearch::run(bool is_sketched) {
     work_.report(static_cast<double>(round) / kRounds);
     const bool is_first = round == 0 && !is_sketched;
     if (search_.energy() < model_energy) search_.shrink(model_energy);
-    const bool goes_on = is_first ? extend_first(model_energy) : search_.extend(model_energy);
-    shorten_seams(model_energy);
+    const bool is_correction = round > 0;
+    const bool goes_on =
+        is_first ? extend_first(model_energy) : search_.extend(model_energy, is_correction);
+    shorten_seams(model_energy, is_correction);
     if (is_first) {
       search_.exchange(std::max(model_energy, search_.energy()));
       shorten_seams(model_energy);
@@ -308,8 +310,8 @@ void LevelSearch::join_charts(Attempt& best) {
       tried.push_back(joint.middle());
       search_.take(best.seams.seams, best.seams.anchors);
       search_.join(joint);
-      search_.extend(aim);
-      shorten_seams(aim);
+      search_.extend(aim, true);
+      shorten_seams(aim, true);
       if (search_.cost() > best.cost * (1 - kWorthMapping)) continue;
       LocalMaps maps;
       Attempt attempt;

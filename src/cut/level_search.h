@@ -55,7 +55,7 @@ class LevelSearch {
 
  private:
   bool extend_first(double model_energy);
-  void shorten_seams(double model_energy);
+  void shorten_seams(double model_energy, bool exactly = false);
   double cost_with_turns() const;
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps, double tolerance);

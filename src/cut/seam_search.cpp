@@ -157,29 +157,52 @@ const SeamPaths& SeamSearch::paths() {
   return paths_.emplace(surface_, root, cost_, std::numeric_limits<double>::infinity());
 }
 
-bool SeamSearch::extend_once() {
+/// The shortest part of a path, from its tip, with which the energy of the model is at most
+/// `target`. Precondition: it is with all of it.
+SeamPath SeamSearch::least_part(const SeamPath& whole, const ModelChange& change,
+                                double target) const {
+  std::ptrdiff_t first = 0, beyond = std::ssize(whole.vertices);
+  const std::ptrdiff_t count = beyond;
+  while (beyond - first > 1) {
+    const std::ptrdiff_t middle = (first + beyond) / 2;
+    (change.energy_of(middle, count - middle) <= target ? first : beyond) = middle;
+  }
+  return last_part(whole, first, *paths_);
+}
+
+bool SeamSearch::extend_once(double target, bool exactly) {
   const SeamPaths& paths = this->paths();
   std::vector<Index> ends = candidates(paths);
   if (ends.size() > kTried) ends.resize(kTried);
-  double best = 0;
-  SeamPath chosen;
+  double best = 0, reached = model_.energy();
+  SeamPath chosen, cheapest;  // of those that reach the target
   for (const Index v : ends) {
     const SeamPath whole = paths.from(v);
     const ModelChange change = model_.with(whole.vertices);
     const std::ptrdiff_t count = std::ssize(whole.vertices);
+    if (exactly && change.energy() <= target) {
+      SeamPath path = least_part(whole, change, target);
+      if (affords(path) && (cheapest.halfedges.empty() || path.cost < cheapest.cost)) {
+        cheapest = std::move(path);
+      }
+    }
     for (std::ptrdiff_t first = 0; first < count; first = halved(first, whole)) {
       const SeamPath path = last_part(whole, first, paths);
       if (!affords(path)) continue;
-      const double gain = model_.energy() - change.energy_of(first, count - first);
+      const double energy = change.energy_of(first, count - first);
+      const double gain = model_.energy() - energy;
       if (!(gain > kLeastGain)) break;
       const double worth = gain / (path.cost + least_cost_);
       // A half that is worth less than the whole has halves that are.
       if (worth <= best) break;
       best = worth;
+      reached = energy;
       chosen = path;
     }
   }
   if (chosen.halfedges.empty()) return false;
+  const bool is_last = reached <= target && !cheapest.halfedges.empty();
+  if (is_last && cheapest.cost < chosen.cost) chosen = std::move(cheapest);
   add_path(chosen);
   if (mirror_ != nullptr) add_mirrored(chosen);
   refresh();
@@ -212,10 +235,10 @@ void SeamSearch::add_mirrored(const SeamPath& path) {
   if (!image.halfedges.empty() && !is_alone) add_path(image);
 }
 
-bool SeamSearch::extend(double target) {
+bool SeamSearch::extend(double target, bool exactly) {
   while (model_.energy() > target) {
     poll_interrupt();
-    if (!extend_once()) return false;
+    if (!extend_once(target, exactly)) return false;
   }
   return true;
 }
@@ -416,16 +439,29 @@ void SeamSearch::shrink(double target) {
       both.insert(both.end(), partner.vertices.begin(), partner.vertices.end());
       if (model_.without(both).energy() > target) continue;
     }
+    const bool has_partner = !partner.halfedges.empty();
     remove(branch);
-    if (!partner.halfedges.empty() && is_branch(partner)) remove(partner);
+    const bool both_go = has_partner && is_branch(partner);
+    if (both_go) remove(partner);
     refresh();
+    if (model_.energy() > target + kLeastGain) {  // which rounding had hidden
+      put_back(branch);
+      if (both_go) put_back(partner);
+      refresh();
+      continue;
+    }
     push_ends(surface_.target(branch.halfedges.back()));
-    if (!partner.halfedges.empty()) push_ends(surface_.target(partner.halfedges.back()));
+    if (has_partner) push_ends(surface_.target(partner.halfedges.back()));
   }
 }
 
 void SeamSearch::remove(const Branch& branch) {
   for (const Index h : branch.halfedges) mark(h, false);
+}
+
+void SeamSearch::put_back(const Branch& branch) {
+  for (const Index h : branch.halfedges) mark(h, true);
+  paths_.reset();
 }
 
 /// As much of the branch that it is mirrored to; nothing where that is not to be told.

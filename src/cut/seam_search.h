@@ -32,8 +32,10 @@ class SeamSearch {
              std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
-  /// by what is gained for the cost. False where nothing helps any more.
-  bool extend(double target);
+  /// by what is gained for the cost. `exactly`: the last one, which reaches it, is the cheapest part
+  /// of a path that does; a start is better off with what is worth most. False where nothing helps
+  /// any more.
+  bool extend(double target, bool exactly = false);
 
   /// Joins the parts that fall apart without an arc of the seams again where that is cheapest, arc
   /// after arc, as long as something is gained: what was joined in the order of its worth becomes a
@@ -90,7 +92,8 @@ class SeamSearch {
   bool move_branch(Index tip, double price);
   void refresh();
   std::vector<Index> candidates(const SeamPaths& paths) const;
-  bool extend_once();
+  SeamPath least_part(const SeamPath& whole, const ModelChange& change, double target) const;
+  bool extend_once(double target, bool exactly);
   void add_path(const SeamPath& path);
   void add_mirrored(const SeamPath& path);
   double length_of(Index halfedge) const;
@@ -108,6 +111,7 @@ class SeamSearch {
   bool is_branch(const Branch& branch) const;
   Branch partner_of(const Branch& branch) const;
   void remove(const Branch& branch);
+  void put_back(const Branch& branch);
 
   const Surface& surface_;
   const std::vector<double>& cost_;

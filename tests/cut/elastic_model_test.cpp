@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -180,6 +181,17 @@ TEST(ElasticModel, FewerPinsAreJudgedAsIfTheyWereGone) {
       EXPECT_NEAR(without.energy(), model.energy(), 1e-6);
     }
   }
+}
+
+TEST(ElasticModel, AChangeThatRoundingHasSpoiltPromisesNothing) {
+  const Eigen::VectorXd load = Eigen::VectorXd::Constant(2, 0.1);
+  DenseMatrix spoilt(2, 2);
+  spoilt << 1, 2, 2, 1;
+  EXPECT_EQ(ModelChange(2.5, load, spoilt, -1).energy(), 2.5);
+  EXPECT_EQ(ModelChange(2.5, load, spoilt, 1).energy(), std::numeric_limits<double>::infinity());
+  const double sound = 2 * 0.1 * 0.1;
+  EXPECT_DOUBLE_EQ(ModelChange(2.5, load, spoilt, -1).energy_of(1, 1), 2.5 - sound);
+  EXPECT_DOUBLE_EQ(ModelChange(2.5, load, spoilt, 1).energy_of(1, 1), 2.5 + sound);
 }
 
 TEST(ElasticModel, PinsThatAreTakenBackLeaveNoTrace) {

@@ -231,7 +231,7 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
   const double energy = search.energy(), cost = search.cost();
   switch (random_below(generator, 6)) {
     case 0: {
-      const bool reached = search.extend(target);
+      const bool reached = search.extend(target, random_below(generator, 2) == 0);
       EXPECT_EQ(reached, search.energy() <= target);
       EXPECT_LE(search.energy(), energy);
       break;
@@ -299,6 +299,26 @@ TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
     // No more is to be had than every vertex on a seam.
     EXPECT_FALSE(search.extend(1.9));
     EXPECT_NEAR(search.energy(), 2, 1e-3);
+  }
+}
+
+TEST(SeamSearch, AnExactExtensionCostsNoMore) {
+  std::mt19937_64 generator(12);
+  for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
+    const Trial trial(mesh, 1, generator);
+    SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                      kAnyLength, kLeastCost, Work(1));
+    for (int i = 0; i < 6; ++i) {
+      const EdgeMarks before = search.seams();
+      const double cost = search.cost(), target = 2 + 0.9 * (search.energy() - 2);
+      ASSERT_TRUE(search.extend(target));
+      const double most = search.cost();
+      search.take(before);
+      ASSERT_TRUE(search.extend(target, true));
+      EXPECT_LE(search.energy(), target);
+      EXPECT_GT(search.cost(), cost);
+      EXPECT_LE(search.cost(), most + 1e-9);
+    }
   }
 }
 
