@@ -15,25 +15,40 @@ double cross(const Vec2& a, const Vec2& b) {
 
 using Directed = std::array<Index, 2>;
 
-/// The edges that are left once opposite ones have cancelled one another.
-std::vector<Directed> uncancelled(std::vector<Directed> edges) {
-  const auto key = [](const Directed& e) {
-    return std::array<Index, 3>{std::min(e[0], e[1]), std::max(e[0], e[1]), e[0] < e[1] ? 0 : 1};
+/// The edges that are left once opposite ones have cancelled one another, by their lower end, then
+/// by the other one. `count`: of the points.
+std::vector<Directed> uncancelled(const std::vector<Directed>& edges, Index count) {
+  constexpr std::size_t kPollEvery = 1 << 16;
+  std::vector<Index> first(static_cast<std::size_t>(count) + 1, 0);  // of those with a lower end
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (e % kPollEvery == 0) poll_interrupt();
+    ++first[std::min(edges[e][0], edges[e][1]) + 1];
+  }
+  for (Index p = 0; p < count; ++p) first[p + 1] += first[p];
+  struct Rest {
+    Index high;
+    Index balance;  ///< 1: from low to high, -1: back
   };
-  sort_interruptibly(edges.begin(), edges.end(),
-                     [&](const Directed& a, const Directed& b) { return key(a) < key(b); });
+  std::vector<Rest> sorted(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (e % kPollEvery == 0) poll_interrupt();
+    const auto& [from, to] = edges[e];
+    sorted[first[std::min(from, to)]++] = {std::max(from, to), from < to ? 1 : -1};
+  }
+  // By now `first` has the ends.
   std::vector<Directed> left;
-  for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
-    Index balance = 0;
-    const Directed low{std::min(edges[first][0], edges[first][1]),
-                       std::max(edges[first][0], edges[first][1])};
-    while (last < edges.size() && std::min(edges[last][0], edges[last][1]) == low[0] &&
-           std::max(edges[last][0], edges[last][1]) == low[1]) {
-      balance += edges[last][0] < edges[last][1] ? 1 : -1;
-      ++last;
+  for (Index low = 0; low < count; ++low) {
+    if (low % kPollEvery == 0) poll_interrupt();
+    const auto begin = sorted.begin() + (low > 0 ? first[low - 1] : 0);
+    const auto end = sorted.begin() + first[low];
+    std::sort(begin, end, [](const Rest& a, const Rest& b) { return a.high < b.high; });
+    for (auto next = begin; next != end;) {
+      const Index high = next->high;
+      Index balance = 0;
+      for (; next != end && next->high == high; ++next) balance += next->balance;
+      for (; balance > 0; --balance) left.push_back({low, high});
+      for (; balance < 0; ++balance) left.push_back({high, low});
     }
-    for (; balance > 0; --balance) left.push_back(low);
-    for (; balance < 0; ++balance) left.push_back({low[1], low[0]});
   }
   return left;
 }
@@ -76,7 +91,7 @@ Outline outline_of(const PackChart& chart) {
       if (edge[0] != edge[1]) all.push_back(twice < 0 ? Directed{edge[1], edge[0]} : edge);
     }
   }
-  outline.edges = uncancelled(std::move(all));
+  outline.edges = uncancelled(all, size_of(chart.points));
   std::vector<Index> place(chart.points.size(), kNone);
   for (Directed& edge : outline.edges) {
     outline.length += (chart.points[edge[1]] - chart.points[edge[0]]).norm();

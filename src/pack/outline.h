@@ -19,7 +19,7 @@ struct Outline {
   double length = 0;                        ///< of the edges
 };
 
-/// Takes O(f log f). Precondition: finite points, indices in range.
+/// Takes linear time but for vertices of many edges. Precondition: finite points, indices in range.
 Outline outline_of(const PackChart& chart);
 
 /// Leaves vertices out that lie within `width` of the edge that replaces theirs, so that no point
