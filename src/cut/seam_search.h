@@ -16,6 +16,8 @@ namespace beltrami {
 
 /// Seams cost about the excess of the energy over 2 to the power of minus that.
 constexpr double kSeamPrice = 0.36;
+/// Gains below that are rounding.
+constexpr double kLeastGain = 1e-7;
 
 /// Seams that grow and shrink. What they leave of a surface are the same pieces as at the start:
 /// they grow by trees, and lose branches only.

@@ -227,7 +227,7 @@ TEST(SplitNecks, PaysOnModelsOfPeople) {
     expect_connected(atlas);
     expect_worth(atlas, whole, 10);
     EXPECT_TRUE(atlas.certificate.injective());
-    EXPECT_GT(atlas.utilisation, whole.utilisation + 0.1);
+    EXPECT_GT(atlas.utilisation, whole.utilisation + 0.05);
   }
 }
 

@@ -1,0 +1,136 @@
+// Arcs of the seams that go where the same is joined, or opened, at less cost.
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/interrupt.h"
+#include "cut/across.h"
+#include "cut/seam_search.h"
+
+namespace beltrami {
+namespace {
+
+/// More rounds gain nothing.
+constexpr int kReconnections = 4;
+
+}  // namespace
+
+/// The seams between vertices that other than two meet at, or that were ends of paths where they
+/// are to end there, each by its half-edges in order; the most costly first.
+std::vector<std::vector<Index>> SeamSearch::arcs(bool ends_at_anchors) const {
+  const auto is_node = [&](Index v) {
+    return degree_[v] != 2 || (ends_at_anchors && anchored_[v]) || surface_.on_boundary[v];
+  };
+  std::vector<std::pair<double, std::vector<Index>>> found;
+  for (Index first = 0; first < size_of(seams_); ++first) {
+    if (!seams_[first] || !is_node(surface_.origin(first))) continue;
+    double cost = 0;
+    std::vector<Index> arc;
+    for (Index h = first; h != kNone;) {
+      arc.push_back(h);
+      cost += cost_[h];
+      const Index v = surface_.target(h), back = surface_.twin[h];
+      h = kNone;
+      if (is_node(v)) break;
+      surface_.for_each_outgoing(v, [&](Index out) {
+        if (seams_[out] && out != back) h = out;
+      });
+    }
+    // Found from both of its ends.
+    if (surface_.twin[arc.back()] == kNone || arc.front() < surface_.twin[arc.back()]) {
+      found.emplace_back(-cost, std::move(arc));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::vector<Index>> arcs;
+  for (auto& [cost, arc] : found) arcs.push_back(std::move(arc));
+  return arcs;
+}
+
+/// Per vertex, whether seams and borders lead there.
+std::vector<bool> SeamSearch::joined_to(Index vertex) const {
+  std::vector<bool> joined(degree_.size(), false);
+  std::vector<Index> open = {vertex};
+  joined[vertex] = true;
+  const auto reach = [&](Index v) {
+    if (joined[v]) return;
+    joined[v] = true;
+    open.push_back(v);
+  };
+  while (!open.empty()) {
+    const Index v = open.back();
+    open.pop_back();
+    surface_.for_each_outgoing(v, [&](Index h) {
+      if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
+      const Index in = Surface::previous(h);
+      if (surface_.twin[in] == kNone) reach(surface_.origin(in));
+    });
+  }
+  return joined;
+}
+
+/// Whether an edge that is no seam joins none and no border: it would part nothing.
+bool SeamSearch::is_alone(Index halfedge) const {
+  const auto is_free = [&](Index v) { return degree_[v] == 0 && !surface_.on_boundary[v]; };
+  return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
+}
+
+/// Whether the two parts were joined at less cost, or a handle opened. Where the seams stay joined
+/// without it, the arc goes around a handle, or between charts and stays.
+bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
+  double cost = 0;
+  for (const Index h : arc) {
+    // What was moved before may end here now.
+    const bool is_inner = h == arc.front() || degree_[surface_.origin(h)] == 2;
+    if (!seams_[h] || surface_.twin[h] == kNone || !is_inner) return false;
+    cost += cost_[h];
+  }
+  for (const Index h : arc) mark(h, false);
+  const Index end = surface_.target(arc.back());
+  const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
+  std::vector<Index> path = arc;
+  if (!joined[end]) {
+    const SeamPaths paths(surface_, joined, cost_, cost);
+    const std::vector<bool> others = joined_to(end);
+    Index nearest = end;
+    for (Index v = 0; v < surface_.vertex_count(); ++v) {
+      if (others[v] && paths.costs()[v] < paths.costs()[nearest]) nearest = v;
+    }
+    if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
+    if (path.size() == 1 && is_alone(path.front())) path = arc;
+  } else if (around_handles) {
+    std::vector<bool> is_on(degree_.size());
+    for (Index v = 0; v < surface_.vertex_count(); ++v) {
+      is_on[v] = degree_[v] > 0 || surface_.on_boundary[v];
+    }
+    std::vector<Index> across =
+        path_across(surface_, seams_, is_on, arc.front(), cost_, cost * (1 - kLeastGain));
+    if (!across.empty()) path.swap(across);
+  }
+  const bool is_new = path != arc;
+  for (const Index h : path) mark(h, true);
+  return is_new;
+}
+
+bool SeamSearch::reconnect_all(bool around_handles) {
+  bool gained = false;
+  for (const std::vector<Index>& arc : arcs(true)) {
+    poll_interrupt();
+    gained = reconnect(arc, around_handles) || gained;
+  }
+  return gained;
+}
+
+void SeamSearch::reconnect() {
+  for (int round = 0; round < kReconnections && reconnect_all(false); ++round) {
+  }
+  refresh();
+}
+
+void SeamSearch::reopen() {
+  for (int round = 0; round < kReconnections && reconnect_all(true); ++round) {
+  }
+  refresh();
+}
+
+}  // namespace beltrami
