@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
+#include "mesh/face_block.h"
 #include "mesh/vertex_sums.h"
 
 namespace beltrami {
@@ -68,32 +69,47 @@ class Objective {
   /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
   /// use then.
   double evaluate(const Field& uvs, Field& gradient) {
-    const auto give = [&](Index f, VertexSums::Terms& terms) {
-      const Triangle& t = faces_[f];
-      const RestTriangle& r = rest_[f];
-      const LinearMap map = linear_map(r, uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-      const double weight = r.area() * inverse_area_;
-      const DensitySlopes slopes = Density::slopes(map);
-      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
-      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
-      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
-      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
-      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2;
-      const Vec2 gx = inverse_x1 * Vec2(by_x.real(), by_x.imag());
-      const Vec2 gy = inverse_y2 * Vec2(i_by_y.imag(), -i_by_y.real());
-      terms[1] = gx - (r.x2 * inverse_x1) * gy;
-      terms[2] = gy;
-      terms[0] = -terms[1] - terms[2];
-      const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
-      return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
+    const auto give = [&](std::int64_t first, std::int64_t end, VertexSums::BlockTerms& terms) {
+      give_block(uvs, first, end, terms);
     };
-    const double sum = sums_.add_up(give, gradient);
+    const double sum = sums_.add_up_blocks(give, gradient);
     if (!contact_ || !std::isfinite(sum)) return sum;
     const double strength = contact_->strength() * inverse_area_;
     return sum + strength * contact_->add_gradient(uvs, strength, gradient);
   }
 
  private:
+  /// The energies of some faces and their gradients.
+  void give_block(const Field& uvs, std::int64_t first, std::int64_t end,
+                  VertexSums::BlockTerms& terms) const {
+    FaceBlock block;
+    block.load(faces_, rest_, uvs, first, end);
+    FaceBlock::Numbers det;
+    const double inverse_area = inverse_area_;
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {
+      const RestTriangle r = block.rest(i);
+      const LinearMap map = block.map(i);
+      const double weight = r.area() * inverse_area;
+      const DensitySlopes slopes = Density::slopes(map);
+      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
+      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
+      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
+      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
+      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2, shear = r.x2 * inverse_x1;
+      terms.x[2][i] = inverse_y2 * i_by_y.imag();
+      terms.y[2][i] = inverse_y2 * -i_by_y.real();
+      terms.x[1][i] = inverse_x1 * by_x.real() - shear * terms.x[2][i];
+      terms.y[1][i] = inverse_x1 * by_x.imag() - shear * terms.y[2][i];
+      terms.x[0][i] = -terms.x[1][i] - terms.x[2][i];
+      terms.y[0][i] = -terms.y[1][i] - terms.y[2][i];
+      terms.value[i] = weight * slopes.value;
+      det[i] = std::norm(map.fz) - std::norm(map.fzbar);
+    }
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {  // apart, so that the loop above has no branch
+      if (!(det[i] > 0)) terms.value[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
   const BoundaryContact* contact_ = nullptr;

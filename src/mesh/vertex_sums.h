@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "mesh/face_block.h"
 #include "mesh/face_chunks.h"
 
 namespace beltrami {
@@ -34,6 +35,16 @@ class VertexSums {
   /// terms. Returns the sum over the faces of what `give` returns.
   template <class Give>
   double add_up(const Give& give, std::vector<Vec2>& sums);
+
+  /// What the faces of a block give to their corners, and to the sum over the faces.
+  struct BlockTerms {
+    std::array<FaceBlock::Numbers, 3> x, y;
+    FaceBlock::Numbers value;
+  };
+  /// The same of what `give(first, end, terms)` writes for the faces of a block, of which those
+  /// from `end` on do not count.
+  template <class Give>
+  double add_up_blocks(const Give& give, std::vector<Vec2>& sums);
 
   /// The same of what `give(faces, terms)` writes for kLanes faces at once, as float; the last ones
   /// may be one face several times, of which the first counts.
@@ -90,6 +101,34 @@ double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
     for (std::int64_t f = begin; f < end; ++f) {
       total += give(static_cast<Index>(f), terms);
       for (int k = 0; k < 3; ++k) add(chunk, faces_[f][k], terms[k], sums);
+    }
+    return total;
+  });
+}
+
+template <class Give>
+double VertexSums::add_up_blocks(const Give& give, std::vector<Vec2>& sums) {
+  return sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::size_t chunk) {
+    // Through bare pointers, which nothing that is written can change.
+    double* const to = sums.data()->data();
+    const Triangle* const faces = faces_.data();
+    double total = 0;
+    BlockTerms terms;
+    for (std::int64_t first = begin; first < end; first += FaceBlock::kFaces) {
+      give(first, end, terms);
+      const auto count = std::min<std::int64_t>(FaceBlock::kFaces, end - first);
+      for (std::int64_t i = 0; i < count; ++i) {
+        total += terms.value[i];
+        for (int k = 0; k < 3; ++k) {
+          const Index v = faces[first + i][k];
+          if (chunks_.shared(v)) {
+            aside_.put(chunk, v, {v, {terms.x[k][i], terms.y[k][i]}});
+          } else {
+            to[2 * static_cast<std::size_t>(v)] += terms.x[k][i];
+            to[2 * static_cast<std::size_t>(v) + 1] += terms.y[k][i];
+          }
+        }
+      }
     }
     return total;
   });

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "mesh/face_block.h"
 #include "repair/patch.h"
 #include "repair/patch_tries.h"
 #include "repair/patch_work.h"
@@ -44,6 +45,19 @@ class FaceEnergies {
     return positive ? Density::slopes(map).value : std::numeric_limits<double>::infinity();
   }
 
+  /// The same of all faces of a block.
+  static void energies_of(const FaceBlock& block, FaceBlock::Numbers& energies) {
+    FaceBlock::Numbers det;
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {
+      const LinearMap map = block.map(i);
+      energies[i] = Density::slopes(map).value;
+      det[i] = std::norm(map.fz) - std::norm(map.fzbar);
+    }
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {  // apart, so that the loop above has no branch
+      if (!(det[i] > 0)) energies[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+
   /// Sets the limit by the mean over all positive faces. Returns the faces above it.
   std::vector<Index> find_all(const Work& work) {
     const double least = from_dirichlet<Density>(kLeastEnergy);
@@ -51,12 +65,20 @@ class FaceEnergies {
     std::vector<std::vector<std::pair<Index, double>>> high(sums.size());
     parallel_for(work, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       double sum = 0, area = 0;
-      for (auto f = static_cast<Index>(begin); f < end; ++f) {
-        const double energy = of(f);
-        if (!std::isfinite(energy)) continue;
-        sum += rest_[f].area() * energy;
-        area += rest_[f].area();
-        if (energy > least) high[begin / kGrain].emplace_back(f, energy);
+      FaceBlock block;
+      FaceBlock::Numbers energies;
+      for (std::int64_t first = begin; first < end; first += FaceBlock::kFaces) {
+        block.load(mesh_.faces, rest_, uvs_, first, end);
+        energies_of(block, energies);
+        const auto count = std::min<std::int64_t>(FaceBlock::kFaces, end - first);
+        for (int i = 0; i < count; ++i) {
+          if (!std::isfinite(energies[i])) continue;
+          sum += block.rest(i).area() * energies[i];
+          area += block.rest(i).area();
+          if (energies[i] > least) {
+            high[begin / kGrain].emplace_back(static_cast<Index>(first + i), energies[i]);
+          }
+        }
       }
       sums[begin / kGrain] = sum;
       areas[begin / kGrain] = area;
