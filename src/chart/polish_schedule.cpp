@@ -78,6 +78,7 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
+  bool clean = true;  ///< no step since the last cleaning; it comes mended
   PolishResult last = {};                                      ///< of the last steps
   double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
   bool converged = false;
@@ -91,6 +92,7 @@ void clean(const Setting& setting, const std::vector<Index>& also, State& state)
   state.cleaned_patches +=
       clean_outliers(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs, also,
                      setting.work.part(share(state.iterations), share(state.iterations)));
+  state.clean = true;
 }
 
 /// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
@@ -111,6 +113,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
   state.iterations += state.last.iterations();
+  if (state.last.iterations() > 0) state.clean = false;
   if (state.last.blocked) clean(setting, state.last.blocking, state);
 }
 
@@ -134,6 +137,12 @@ bool is_stationary(const Setting& setting, const State& state) {
   return predicted >= 0 && 0.5 * predicted <= setting.bounds.stationary * energy;
 }
 
+/// The same of what the last steps gained: a few faces promise more than that.
+bool gained_little(const Setting& setting, const State& state) {
+  const double energy = state.last.energies.back(), gain = state.last.energies.front() - energy;
+  return gain <= setting.bounds.stationary * setting.comparable(energy);
+}
+
 /// Whether the map is no more distorted than that of the coarser mesh.
 bool is_kept(const Setting& setting, const State& state) {
   const auto distortion = [&](double energy) {
@@ -150,7 +159,8 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (setting.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) || state.iterations == 0)) {
+        (is_stationary(setting, state) || state.iterations == 0 ||
+         (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
     // Springs of the contact change with the gaps, whatever the energy.
@@ -181,6 +191,7 @@ void take_newton_steps(const Setting& setting, State& state) {
       minimise_energy(mesh.faces, setting.fine.rest, only_first_of_boundary(mesh), state.uvs,
                       newton, setting.work.part(0.9, 0.9));
   state.iterations += ended.iterations();
+  if (ended.iterations() > 0) state.clean = false;
   state.converged = ended.converged;
 }
 
@@ -214,8 +225,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
     take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
-    // A map that no step has changed was cleaned when it was mended.
-    if (state.iterations > 0) clean(setting, {}, state);
+    if (!state.clean) clean(setting, {}, state);
     if (contact) scale_best(*fine.mesh, fine.rest, options, inner, state.uvs);
     stage.iterations = state.iterations;
     map.uvs = std::move(state.uvs);

@@ -85,7 +85,9 @@ bool run_newton(const NewtonRun& run, const Work& work, std::vector<double>& ene
     const NewtonStep made = step(proxy, before);
     if (made.length > 0) energies.push_back(made.energy);
     if (proxy) {
-      proxy_steps = made.length > 0 ? proxy_steps - 1 : 0;
+      const bool helps =
+          made.length < newton::kFullStep || made.gain > run.tolerance * run.comparable(before);
+      proxy_steps = made.length > 0 && helps ? proxy_steps - 1 : 0;
       if (!run.impatient) continue;
     } else {
       // No representable decrease: at the minimum (or on a ridge) if little was predicted, stuck

@@ -25,6 +25,7 @@ constexpr double kTimesMean = 4;
 constexpr int kRounds = 3;
 constexpr int kRings = 3;
 constexpr int kNewtonSteps = 10;
+constexpr double kLittle = 3e-3;  // relative gain of a patch, at which it is left as it is
 /// A round that finds more than this share of the faces is no longer about outliers: the global
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
@@ -121,19 +122,25 @@ class FaceEnergies {
   double limit_ = 0;
 };
 
-/// Minimises the energy of each patch from the map as it is now, side by side.
-void minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
+/// Minimises the energy of each patch from the map as it is now, side by side. Returns for each
+/// whether that gained little.
+std::vector<std::uint8_t> minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
               std::vector<PatchTry>& tries) {
   NewtonOptions options;
   options.energy = energy;
   options.max_iterations = kNewtonSteps;
   const Work alone = work.aside();
+  std::vector<std::uint8_t> little(tries.size(), 0);
   parallel_for(work, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
     Patch& patch = tries[i].patch;
     patch.refresh(uvs);
-    minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+    const NewtonResult ended =
+        minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+    const double gain = ended.energies.front() - ended.energies.back();
+    little[i] = ended.converged && gain <= kLittle * comparable_energy(energy, ended.energies.back());
     tries[i].positive = non_positive_faces(patch.faces, patch.uvs, alone).empty();
   });
+  return little;
 }
 
 template <class Density>
@@ -145,7 +152,7 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
   std::vector<Index> outliers = energies.find_all(work);
   energies.keep_outliers(outliers);
   outliers.insert(outliers.end(), also.begin(), also.end());
-  std::unordered_set<Index> treated;
+  std::unordered_set<Index> treated, at_rest;  // of this round; by the last patch at them
   for (int round = 0; round < kRounds && !outliers.empty(); ++round) {
     treated.clear();
     for (std::size_t begin = 0; begin < outliers.size(); begin += kTogether) {
@@ -159,17 +166,26 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
         work.report((round + static_cast<double>(begin) / outliers.size()) / kRounds);
         std::vector<PatchTry> tries =
             take_apart(mesh, rest, uvs, kRings, is_treated, work, waiting);
-        minimise(energy, uvs, work, tries);
-        for (PatchTry& made : tries) {
-          if (!made.positive || !taken.take(made.patch)) continue;
+        const std::vector<std::uint8_t> little = minimise(energy, uvs, work, tries);
+        for (std::size_t i = 0; i < tries.size(); ++i) {
+          Patch& patch = tries[i].patch;
+          if (!tries[i].positive || !taken.take(patch)) continue;
           ++patches;
-          treated.insert(made.patch.mesh_faces.begin(), made.patch.mesh_faces.end());
+          treated.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
+          for (const Index face : patch.mesh_faces) {
+            if (little[i] != 0) {
+              at_rest.insert(face);
+            } else {
+              at_rest.erase(face);
+            }
+          }
         }
       }
     }
     // No other face has changed.
     outliers.insert(outliers.end(), treated.begin(), treated.end());
     energies.keep_outliers(outliers);
+    std::erase_if(outliers, [&](Index face) { return at_rest.contains(face); });
   }
   return patches;
 }
