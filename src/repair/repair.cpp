@@ -42,24 +42,36 @@ class Repair {
   RepairResult run() {
     std::vector<Index> bad = find_bad();
     result_.flips_before = size_of(bad);
-    const bool all_local = mend_locally(bad, 0, kLocalShare);
+    mend_locally(0, kLocalShare, bad);
+    result_.flips_after = size_of(bad);
     if (options_.global_fix &&
-        (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
+        (!bad.empty() || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
       work_.report(kLocalShare);
       mend_globally();
+      result_.flips_after = size_of(find_bad());
     }
-    result_.flips_after = size_of(find_bad());
     return result_;
   }
 
  private:
   std::vector<Index> find_bad() const { return non_positive_faces(mesh_.faces, uvs_, work_); }
 
+  /// Takes out of `bad` what no longer is, and puts in what has become so: only near what has moved
+  /// since the last look.
+  void look_again(std::vector<Index>& bad) {
+    bad.insert(bad.end(), changed_.begin(), changed_.end());
+    changed_.clear();
+    sort_interruptibly(bad.begin(), bad.end(), std::less<>());
+    bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+    std::erase_if(bad, [&](Index face) { return positive(face); });
+  }
+
   std::int64_t crossings() const { return count_crossings(mesh_.boundary, uvs_).count; }
 
-  /// Kernel and patch fixes; returns whether all faces are positive.
-  bool mend_locally(std::vector<Index> bad, double from, double until) {
-    if (bad.empty()) return true;
+  /// Kernel and patch fixes of the faces `bad`, all that are not positive; leaves those that still
+  /// are not.
+  void mend_locally(double from, double until, std::vector<Index>& bad) {
+    if (bad.empty()) return;
     for (const bool neighbours_first : {false, true}) {
       HubTurns turns(mesh_);
       for (const Index face : bad) {
@@ -71,10 +83,10 @@ class Repair {
           if (move_to_kernel(v)) ++result_.kernel_fixes;
         }
       }
-      bad = find_bad();
-      if (bad.empty()) return true;
+      look_again(bad);
+      if (bad.empty()) return;
     }
-    if (bad.size() > options_.most_patches) return false;
+    if (bad.size() > options_.most_patches) return;
     PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;
@@ -86,9 +98,8 @@ class Repair {
         fix_patches(all.subspan(begin, std::min(kTogether, all.size() - begin)), kPatchRings[level],
                     patches);
       }
-      bad = find_bad();
+      look_again(bad);
     }
-    return bad.empty();
   }
 
   void mend_globally() {
@@ -97,9 +108,9 @@ class Repair {
     const std::int64_t crossings_before = crossings();
     if (!embed_with_scaffold(mesh_, uvs_, work_)) return;
     result_.global_fixes = 1;
-    const std::vector<Index> folded = find_bad();
+    std::vector<Index> folded = find_bad();
     // More than it came from: rounding has eaten it, and there is nothing to build on.
-    if (folded.size() <= bad_before || bad_before == 0) mend_locally(folded, kLocalShare, 1);
+    if (folded.size() <= bad_before || bad_before == 0) mend_locally(kLocalShare, 1, folded);
     const std::size_t bad = find_bad().size();
     const bool better = options_.simple_boundary
                             ? std::pair(bad, crossings()) < std::pair(bad_before, crossings_before)
@@ -141,6 +152,7 @@ class Repair {
     }
     if (!all_positive || least < kLeastAreaShare * ring_area / ring.size()) return false;
     uvs_[vertex] = target;
+    mesh_.for_each_outgoing(vertex, [&](Index h) { changed_.push_back(h / 3); });
     return true;
   }
 
@@ -178,6 +190,7 @@ class Repair {
     for (std::size_t i = 0; i < tries.size(); ++i) {
       if (tries[i].positive && patches.take(made[i])) {
         ++result_.patch_fixes;
+        changed_.insert(changed_.end(), made[i].mesh_faces.begin(), made[i].mesh_faces.end());
       } else {
         left.push_back(std::move(tries[i]));
       }
@@ -190,6 +203,7 @@ class Repair {
   std::vector<Vec2>& uvs_;
   const RepairOptions options_;
   const Work work_;
+  std::vector<Index> changed_;  ///< faces of which a corner has moved since the last look at all
   RepairResult result_;
 };
 
