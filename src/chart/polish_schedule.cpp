@@ -18,6 +18,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
 #include "descend/newton.h"
@@ -125,9 +126,10 @@ void fit_factor(const Setting& setting, const State& state) {
     for (double& spring : springs) spring *= setting.contact->strength();
   }
   const DiskMesh& mesh = *setting.fine.mesh;
-  setting.inverse.refit(energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
-                                         state.uvs, setting.work),
-                        springs);
+  std::vector<EdgeWeights> stiffness = energy_stiffness(
+      setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, setting.work);
+  setting.inverse.refit(stiffness, springs);
+  parallel_free(setting.work, stiffness);  // so that the allocator does not keep it
 }
 
 /// Whether the last step looked at promises next to nothing.

@@ -310,6 +310,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
   }
+  // What the allocator kept of them would be there beside what the caller needs next.
+  for (Field* field : {&gradient, &next_gradient, &direction, &trial}) parallel_free(work, *field);
   return result;
 }
 

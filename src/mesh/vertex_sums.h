@@ -54,12 +54,12 @@ class VertexSums {
  private:
   struct Aside {
     Index vertex;
-    Vec2 term;
+    double x, y;  // not a Vec2, whose alignment would take a third more
   };
 
   void add(std::size_t chunk, Index v, const Vec2& term, std::vector<Vec2>& sums) {
     if (chunks_.shared(v)) {
-      aside_.put(chunk, v, {v, term});
+      aside_.put(chunk, v, {v, term.x(), term.y()});
     } else {
       sums[v] += term;
     }
@@ -89,7 +89,7 @@ double VertexSums::sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk
                                       aside_.clear(chunk);
                                       return add_chunk(begin, end, chunk);
                                     });
-  aside_.add_up(work_, [&](const Aside& a) { sums[a.vertex] += a.term; });
+  aside_.add_up(work_, [&](const Aside& a) { sums[a.vertex] += Vec2(a.x, a.y); });
   return total;
 }
 
@@ -122,7 +122,7 @@ double VertexSums::add_up_blocks(const Give& give, std::vector<Vec2>& sums) {
         for (int k = 0; k < 3; ++k) {
           const Index v = faces[first + i][k];
           if (chunks_.shared(v)) {
-            aside_.put(chunk, v, {v, {terms.x[k][i], terms.y[k][i]}});
+            aside_.put(chunk, v, {v, terms.x[k][i], terms.y[k][i]});
           } else {
             to[2 * static_cast<std::size_t>(v)] += terms.x[k][i];
             to[2 * static_cast<std::size_t>(v) + 1] += terms.y[k][i];
