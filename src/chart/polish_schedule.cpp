@@ -8,6 +8,7 @@
 //                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
+//                                                     if a step came since
 //
 // Held up: nearly singular faces would shorten the steps. Patches around these are optimised then.
 // When the time is up, what is left of the rounds and the Newton steps is left out.
