@@ -245,10 +245,9 @@ struct Settling {
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
-                     const Work& work) {
+                     Fields& fields, const Work& work) {
   Objective<Density> objective(size_of(uvs), faces, rest, work);
   PolishResult result;
-  Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
   Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
   Field &direction = fields.direction, &trial = fields.trial;
@@ -310,8 +309,6 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
   }
-  // What the allocator kept of them would be there beside what the caller needs next.
-  for (Field* field : {&gradient, &next_gradient, &direction, &trial}) parallel_free(work, *field);
   return result;
 }
 
@@ -320,9 +317,15 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
                     const PolishOptions& options, const Work& work) {
-  return with_density(options.energy, [&]<class Density>(Density) {
-    return descend<Density>(faces, rest, precondition, uvs, options, work);
+  Fields fields;
+  PolishResult result = with_density(options.energy, [&]<class Density>(Density) {
+    return descend<Density>(faces, rest, precondition, uvs, options, fields, work);
   });
+  // What the allocator kept of them would be there beside what the caller needs next.
+  for (Field* field : {&fields.gradient, &fields.next_gradient, &fields.direction, &fields.trial}) {
+    parallel_free(work, *field);
+  }
+  return result;
 }
 
 }  // namespace beltrami
