@@ -142,7 +142,7 @@ class History {
   /// Writes the direction of descent; `q` is for its own use.
   void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
                       Field& direction) const {
-    q.resize(gradient.size());
+    parallel_assign(work_, q, gradient.size());
     parallel_for(work_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
     });
