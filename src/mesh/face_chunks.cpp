@@ -26,7 +26,8 @@ FaceChunks::FaceChunks(Index vertex_count, const std::vector<Triangle>& faces, c
     const auto chunk = static_cast<Index>(of(begin));
     for (std::int64_t f = begin; f < end; ++f) {
       for (const Index v : faces[f]) {
-        if (std::atomic_ref<Index>(last_chunk[v]).load(std::memory_order_relaxed) == chunk) continue;
+        const std::atomic_ref<Index> last(last_chunk[v]);
+        if (last.load(std::memory_order_relaxed) == chunk) continue;
         std::atomic_ref<std::uint8_t>(shared_[v]).store(1, std::memory_order_relaxed);
       }
     }

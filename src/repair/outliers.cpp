@@ -137,7 +137,8 @@ std::vector<std::uint8_t> minimise(Energy energy, const std::vector<Vec2>& uvs, 
     const NewtonResult ended =
         minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
     const double gain = ended.energies.front() - ended.energies.back();
-    little[i] = ended.converged && gain <= kLittle * comparable_energy(energy, ended.energies.back());
+    const double enough = kLittle * comparable_energy(energy, ended.energies.back());
+    little[i] = ended.converged && gain <= enough;
     tries[i].positive = non_positive_faces(patch.faces, patch.uvs, alone).empty();
   });
   return little;

@@ -52,7 +52,7 @@ constexpr Index kMostFacesAtVertex = 1000;
 struct Surroundings {
   std::vector<Index> faces;
   std::vector<Index> vertices;  ///< of the faces
-  std::vector<Index> inner;     ///< of these, those that were gone around: all their faces are there
+  std::vector<Index> inner;     ///< of these, those that were gone around: with all their faces
 };
 
 /// Each vertex is gone around once.
