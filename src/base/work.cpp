@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "base/pool.h"
+#include "base/processor.h"
 #include "base/resources.h"
 
 namespace beltrami {
@@ -16,6 +17,7 @@ struct Work::Run {
   const Limits limits;
   const Progress progress;
   const double started = wall_seconds();
+  const bool avx2 = has_avx2();
   double fraction = 0;  // that was reported last
   Pool pool;
 };
@@ -35,6 +37,10 @@ Pool& Work::pool() const {
 
 LoopTrace* Work::trace() const {
   return run_->limits.trace;
+}
+
+bool Work::on_avx2() const {
+  return run_->avx2;
 }
 
 std::int64_t Work::memory_limit() const {

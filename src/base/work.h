@@ -38,6 +38,7 @@ class Work {
   int threads() const;                ///< for a loop of this share, the caller's included
   Pool& pool() const;                 ///< the threads of the run; parallel_for lends them
   LoopTrace* trace() const;           ///< or null
+  bool on_avx2() const;               ///< what has_avx2() said, which is slow, when the run began
   std::int64_t memory_limit() const;  ///< bytes; 0: none
 
   /// Whether the time is up. Work that improves on what it has ends then, and keeps the best.

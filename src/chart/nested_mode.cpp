@@ -118,12 +118,15 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
         footpoints(coarse.mesh, coarse.fine_vertex, coarse.nearby, mesh, inner);
     inner.report(0.5);
     level.carried = carried(climb.map.uvs, points, inner);
-    TargetEquations equations = target_equations(
-        options.energy, mesh, level.problem.rest,
-        carried_derivatives(coarse.mesh, climb.map.uvs, points, inner), level.carried, inner);
+    std::vector<VertexDerivative> derivatives =
+        carried_derivatives(coarse.mesh, climb.map.uvs, points, inner);
+    TargetEquations equations = target_equations(options.energy, mesh, level.problem.rest,
+                                                 derivatives, level.carried, inner);
+    parallel_free(inner, derivatives);
     level.residual = std::move(equations.residual);
     cycle.add(mesh, std::move(points));
     cycle.set(equations.weights, {});
+    parallel_free(inner, equations.weights);
   });
   return level;
 }

@@ -8,6 +8,7 @@
 //                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
+//                                                     if a step came since
 //
 // Held up: nearly singular faces would shorten the steps. Patches around these are optimised then.
 // When the time is up, what is left of the rounds and the Newton steps is left out.
@@ -18,6 +19,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
 #include "descend/newton.h"
@@ -78,6 +80,7 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
+  bool clean = true;  ///< no step since the last cleaning; it comes mended
   PolishResult last = {};                                      ///< of the last steps
   double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
   bool converged = false;
@@ -91,6 +94,7 @@ void clean(const Setting& setting, const std::vector<Index>& also, State& state)
   state.cleaned_patches +=
       clean_outliers(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs, also,
                      setting.work.part(share(state.iterations), share(state.iterations)));
+  state.clean = true;
 }
 
 /// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
@@ -111,6 +115,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
   state.iterations += state.last.iterations();
+  if (state.last.iterations() > 0) state.clean = false;
   if (state.last.blocked) clean(setting, state.last.blocking, state);
 }
 
@@ -122,9 +127,10 @@ void fit_factor(const Setting& setting, const State& state) {
     for (double& spring : springs) spring *= setting.contact->strength();
   }
   const DiskMesh& mesh = *setting.fine.mesh;
-  setting.inverse.refit(energy_stiffness(setting.options.energy, mesh.faces, setting.fine.rest,
-                                         state.uvs, setting.work),
-                        springs);
+  std::vector<EdgeWeights> stiffness = energy_stiffness(
+      setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, setting.work);
+  setting.inverse.refit(stiffness, springs);
+  parallel_free(setting.work, stiffness);  // so that the allocator does not keep it
 }
 
 /// Whether the last step looked at promises next to nothing.
@@ -132,6 +138,12 @@ bool is_stationary(const Setting& setting, const State& state) {
   const double energy = setting.comparable(state.last.energies.back());
   const double predicted = state.last.predicted;  // below 0 where it would lead uphill
   return predicted >= 0 && 0.5 * predicted <= setting.bounds.stationary * energy;
+}
+
+/// The same of what the last steps gained: a few faces promise more than that.
+bool gained_little(const Setting& setting, const State& state) {
+  const double energy = state.last.energies.back(), gain = state.last.energies.front() - energy;
+  return gain <= setting.bounds.stationary * setting.comparable(energy);
 }
 
 /// Whether the map is no more distorted than that of the coarser mesh.
@@ -150,7 +162,8 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (setting.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) || state.iterations == 0)) {
+        (is_stationary(setting, state) || state.iterations == 0 ||
+         (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
     // Springs of the contact change with the gaps, whatever the energy.
@@ -181,6 +194,7 @@ void take_newton_steps(const Setting& setting, State& state) {
       minimise_energy(mesh.faces, setting.fine.rest, only_first_of_boundary(mesh), state.uvs,
                       newton, setting.work.part(0.9, 0.9));
   state.iterations += ended.iterations();
+  if (ended.iterations() > 0) state.clean = false;
   state.converged = ended.converged;
 }
 
@@ -214,8 +228,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
     take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
-    // A map that no step has changed was cleaned when it was mended.
-    if (state.iterations > 0) clean(setting, {}, state);
+    if (!state.clean) clean(setting, {}, state);
     if (contact) scale_best(*fine.mesh, fine.rest, options, inner, state.uvs);
     stage.iterations = state.iterations;
     map.uvs = std::move(state.uvs);

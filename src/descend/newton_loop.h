@@ -21,7 +21,7 @@ inline constexpr double kShift = 1e-13, kLargestShift = 1e-3;
 
 /// Of SLIM at the start, and again whenever a step is blocked by nearly singular faces: they save a
 /// third of all steps on ordinary meshes, and on hard ones make the difference between 75 steps and
-/// none that helps.
+/// none that helps. A full one with little gain is the last.
 inline constexpr int kProxySteps = 5;
 /// Steps below this length are blocked by faces that are nearly singular.
 inline constexpr double kBlockedStep = 0.02;
@@ -85,7 +85,9 @@ bool run_newton(const NewtonRun& run, const Work& work, std::vector<double>& ene
     const NewtonStep made = step(proxy, before);
     if (made.length > 0) energies.push_back(made.energy);
     if (proxy) {
-      proxy_steps = made.length > 0 ? proxy_steps - 1 : 0;
+      const bool helps =
+          made.length < newton::kFullStep || made.gain > run.tolerance * run.comparable(before);
+      proxy_steps = made.length > 0 && helps ? proxy_steps - 1 : 0;
       if (!run.impatient) continue;
     } else {
       // No representable decrease: at the minimum (or on a ridge) if little was predicted, stuck

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
+#include "mesh/face_block.h"
 #include "mesh/vertex_sums.h"
 
 namespace beltrami {
@@ -68,32 +69,47 @@ class Objective {
   /// Infinite where a face is not positive or the boundary touches itself; the gradient is of no
   /// use then.
   double evaluate(const Field& uvs, Field& gradient) {
-    const auto give = [&](Index f, VertexSums::Terms& terms) {
-      const Triangle& t = faces_[f];
-      const RestTriangle& r = rest_[f];
-      const LinearMap map = linear_map(r, uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-      const double weight = r.area() * inverse_area_;
-      const DensitySlopes slopes = Density::slopes(map);
-      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
-      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
-      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
-      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
-      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2;
-      const Vec2 gx = inverse_x1 * Vec2(by_x.real(), by_x.imag());
-      const Vec2 gy = inverse_y2 * Vec2(i_by_y.imag(), -i_by_y.real());
-      terms[1] = gx - (r.x2 * inverse_x1) * gy;
-      terms[2] = gy;
-      terms[0] = -terms[1] - terms[2];
-      const bool positive = std::norm(map.fz) > std::norm(map.fzbar);
-      return positive ? weight * slopes.value : std::numeric_limits<double>::infinity();
+    const auto give = [&](std::int64_t first, std::int64_t end, VertexSums::BlockTerms& terms) {
+      give_block(uvs, first, end, terms);
     };
-    const double sum = sums_.add_up(give, gradient);
+    const double sum = sums_.add_up_blocks(give, gradient);
     if (!contact_ || !std::isfinite(sum)) return sum;
     const double strength = contact_->strength() * inverse_area_;
     return sum + strength * contact_->add_gradient(uvs, strength, gradient);
   }
 
  private:
+  /// The energies of some faces and their gradients.
+  void give_block(const Field& uvs, std::int64_t first, std::int64_t end,
+                  VertexSums::BlockTerms& terms) const {
+    FaceBlock block;
+    block.load(faces_, rest_, uvs, first, end);
+    FaceBlock::Numbers det;
+    const double inverse_area = inverse_area_;
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {
+      const RestTriangle r = block.rest(i);
+      const LinearMap map = block.map(i);
+      const double weight = r.area() * inverse_area;
+      const DensitySlopes slopes = Density::slopes(map);
+      // Through the derivatives f_x = fz + fzbar and f_y = i (fz - fzbar).
+      const Complex by_z = 0.5 * weight * slopes.by_fz * map.fz;
+      const Complex by_zbar = 0.5 * weight * slopes.by_fzbar * map.fzbar;
+      const Complex by_x = by_z + by_zbar, i_by_y = by_zbar - by_z;
+      const double inverse_x1 = 1 / r.x1, inverse_y2 = 1 / r.y2, shear = r.x2 * inverse_x1;
+      terms.x[2][i] = inverse_y2 * i_by_y.imag();
+      terms.y[2][i] = inverse_y2 * -i_by_y.real();
+      terms.x[1][i] = inverse_x1 * by_x.real() - shear * terms.x[2][i];
+      terms.y[1][i] = inverse_x1 * by_x.imag() - shear * terms.y[2][i];
+      terms.x[0][i] = -terms.x[1][i] - terms.x[2][i];
+      terms.y[0][i] = -terms.y[1][i] - terms.y[2][i];
+      terms.value[i] = weight * slopes.value;
+      det[i] = std::norm(map.fz) - std::norm(map.fzbar);
+    }
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {  // apart, so that the loop above has no branch
+      if (!(det[i] > 0)) terms.value[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
   const BoundaryContact* contact_ = nullptr;
@@ -126,7 +142,7 @@ class History {
   /// Writes the direction of descent; `q` is for its own use.
   void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
                       Field& direction) const {
-    q.resize(gradient.size());
+    parallel_assign(work_, q, gradient.size());
     parallel_for(work_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
     });
@@ -229,10 +245,9 @@ struct Settling {
 template <class Density>
 PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
-                     const Work& work) {
+                     Fields& fields, const Work& work) {
   Objective<Density> objective(size_of(uvs), faces, rest, work);
   PolishResult result;
-  Fields fields;
   // Not structured bindings, which clang does not let lambdas capture.
   Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
   Field &direction = fields.direction, &trial = fields.trial;
@@ -302,9 +317,15 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
                     const PolishOptions& options, const Work& work) {
-  return with_density(options.energy, [&]<class Density>(Density) {
-    return descend<Density>(faces, rest, precondition, uvs, options, work);
+  Fields fields;
+  PolishResult result = with_density(options.energy, [&]<class Density>(Density) {
+    return descend<Density>(faces, rest, precondition, uvs, options, fields, work);
   });
+  // What the allocator kept of them would be there beside what the caller needs next.
+  for (Field* field : {&fields.gradient, &fields.next_gradient, &fields.direction, &fields.trial}) {
+    parallel_free(work, *field);
+  }
+  return result;
 }
 
 }  // namespace beltrami

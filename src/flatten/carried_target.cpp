@@ -100,6 +100,7 @@ TargetEquations target_equations(Energy energy, const DiskMesh& mesh,
       equations.residual[v] = residual[v].cast<float>();
     }
   });
+  parallel_free(work, residual);
   return equations;
 }
 

@@ -124,6 +124,7 @@ void VCycle::refit(const std::vector<EdgeWeights>& stiffness, const std::vector<
     }
   });
   set(weights, springs);
+  parallel_free(work_, weights);
 }
 
 /// x = about the inverse of a level's Laplacian times rhs; level 0 is the coarsest.
@@ -153,6 +154,8 @@ void VCycle::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
     for (std::int64_t v = begin; v < end; ++v) single[v] = rhs[v].cast<float>();
   });
   apply(levels_.size(), single, result);
+  if (!levels_.empty()) parallel_free(work_, levels_.back()->spare);
+  parallel_free(work_, single);
   x.resize(rhs.size());
   parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) x[v] = result[v].cast<double>();

@@ -1,7 +1,8 @@
 #include "linear/smoother.h"
 
+#include <array>
+#include <cstddef>
 #include <numeric>
-#include <utility>
 
 #include "base/parallel.h"
 
@@ -22,6 +23,13 @@ void for_each_edge(const Surface& mesh, Index v, const Visit& visit) {
   if (h == kNone) visit(mesh.origin(Surface::previous(last)), Surface::previous(last), kNone);
 }
 
+/// Of the row of a vertex of the block [begin, end), where its neighbour is: 0 and 1 for an earlier
+/// and a later one of the block, 2 outside. Without branches, which nobody could predict.
+std::size_t part_of(Index neighbour, Index vertex, std::int64_t begin, std::int64_t end) {
+  const bool outside = (neighbour < begin) | (neighbour >= end), later = neighbour > vertex;
+  return (std::size_t{outside} << 1U) | (std::size_t{later} & std::size_t{!outside});
+}
+
 }  // namespace
 
 Smoother::Smoother(const Surface& mesh, const Work& work)
@@ -33,15 +41,22 @@ Smoother::Smoother(const Surface& mesh, const Work& work)
   parallel_for(work, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
     Index total = 0;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      rows_[v].begin = total;
-      for_each_edge(mesh, v, [&](Index, Index, Index) { ++total; });
+      std::array<Index, 3> counts{};
+      for_each_edge(mesh, v, [&](Index u, Index, Index) { ++counts[part_of(u, v, begin, end)]; });
+      rows_[v] = {total, total + counts[0], total + counts[0] + counts[1]};
+      total += counts[0] + counts[1] + counts[2];
     }
     before[begin / kBlock + 1] = total;
   });
   std::partial_sum(before.begin(), before.end(), before.begin());
   const Index total = before.back();
   parallel_for(work, count_, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) rows_[v].begin += before[begin / kBlock];
+    const Index offset = before[begin / kBlock];
+    for (std::int64_t v = begin; v < end; ++v) {
+      rows_[v].begin += offset;
+      rows_[v].upper += offset;
+      rows_[v].outside += offset;
+    }
   });
   rows_[count_].begin = total;
   column_ = Scratch<Index>(work, static_cast<std::size_t>(total));
@@ -54,30 +69,14 @@ void Smoother::set(const Surface& mesh, const std::vector<SingleWeights>& weight
     return h == kNone ? 0.0F : weights[h / 3][previous_corner(h % 3)];
   };
   parallel_for(work_, mesh.vertex_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::pair<Index, float>> upper, outside;  // to come after those put at once
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      upper.clear();
-      outside.clear();
-      Row& row = rows_[v];
-      Index at = row.begin;
-      const auto put = [&](Index u, float weight) {
-        column_[at] = u;
-        weight_[at++] = weight;
-      };
+      const Row& row = rows_[v];
+      std::array<Index, 3> next = {row.begin, row.upper, row.outside};
       for_each_edge(mesh, v, [&](Index u, Index h, Index other) {
-        const float weight = weight_of(h) + weight_of(other);
-        if (u < begin || u >= end) {
-          outside.emplace_back(u, weight);
-        } else if (u > v) {
-          upper.emplace_back(u, weight);
-        } else {
-          put(u, weight);
-        }
+        const Index at = next[part_of(u, v, begin, end)]++;
+        column_[at] = u;
+        weight_[at] = weight_of(h) + weight_of(other);
       });
-      row.upper = at;
-      for (const auto& [u, weight] : upper) put(u, weight);
-      row.outside = at;
-      for (const auto& [u, weight] : outside) put(u, weight);
     }
   });
   set_springs(springs);

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "mesh/face_block.h"
 #include "mesh/face_chunks.h"
 
 namespace beltrami {
@@ -35,6 +36,16 @@ class VertexSums {
   template <class Give>
   double add_up(const Give& give, std::vector<Vec2>& sums);
 
+  /// What the faces of a block give to their corners, and to the sum over the faces.
+  struct BlockTerms {
+    std::array<FaceBlock::Numbers, 3> x, y;
+    FaceBlock::Numbers value;
+  };
+  /// The same of what `give(first, end, terms)` writes for the faces of a block, of which those
+  /// from `end` on do not count.
+  template <class Give>
+  double add_up_blocks(const Give& give, std::vector<Vec2>& sums);
+
   /// The same of what `give(faces, terms)` writes for kLanes faces at once, as float; the last ones
   /// may be one face several times, of which the first counts.
   template <class Give>
@@ -43,12 +54,12 @@ class VertexSums {
  private:
   struct Aside {
     Index vertex;
-    Vec2 term;
+    double x, y;  // not a Vec2, whose alignment would take a third more
   };
 
   void add(std::size_t chunk, Index v, const Vec2& term, std::vector<Vec2>& sums) {
     if (chunks_.shared(v)) {
-      aside_.put(chunk, v, {v, term});
+      aside_.put(chunk, v, {v, term.x(), term.y()});
     } else {
       sums[v] += term;
     }
@@ -78,7 +89,7 @@ double VertexSums::sum_chunks(std::vector<Vec2>& sums, const AddChunk& add_chunk
                                       aside_.clear(chunk);
                                       return add_chunk(begin, end, chunk);
                                     });
-  aside_.add_up(work_, [&](const Aside& a) { sums[a.vertex] += a.term; });
+  aside_.add_up(work_, [&](const Aside& a) { sums[a.vertex] += Vec2(a.x, a.y); });
   return total;
 }
 
@@ -90,6 +101,34 @@ double VertexSums::add_up(const Give& give, std::vector<Vec2>& sums) {
     for (std::int64_t f = begin; f < end; ++f) {
       total += give(static_cast<Index>(f), terms);
       for (int k = 0; k < 3; ++k) add(chunk, faces_[f][k], terms[k], sums);
+    }
+    return total;
+  });
+}
+
+template <class Give>
+double VertexSums::add_up_blocks(const Give& give, std::vector<Vec2>& sums) {
+  return sum_chunks(sums, [&](std::int64_t begin, std::int64_t end, std::size_t chunk) {
+    // Through bare pointers, which nothing that is written can change.
+    double* const to = sums.data()->data();
+    const Triangle* const faces = faces_.data();
+    double total = 0;
+    BlockTerms terms;
+    for (std::int64_t first = begin; first < end; first += FaceBlock::kFaces) {
+      give(first, end, terms);
+      const auto count = std::min<std::int64_t>(FaceBlock::kFaces, end - first);
+      for (std::int64_t i = 0; i < count; ++i) {
+        total += terms.value[i];
+        for (int k = 0; k < 3; ++k) {
+          const Index v = faces[first + i][k];
+          if (chunks_.shared(v)) {
+            aside_.put(chunk, v, {v, terms.x[k][i], terms.y[k][i]});
+          } else {
+            to[2 * static_cast<std::size_t>(v)] += terms.x[k][i];
+            to[2 * static_cast<std::size_t>(v) + 1] += terms.y[k][i];
+          }
+        }
+      }
     }
     return total;
   });

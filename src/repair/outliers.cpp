@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "mesh/face_block.h"
 #include "repair/patch.h"
 #include "repair/patch_tries.h"
 #include "repair/patch_work.h"
@@ -24,6 +25,7 @@ constexpr double kTimesMean = 4;
 constexpr int kRounds = 3;
 constexpr int kRings = 3;
 constexpr int kNewtonSteps = 10;
+constexpr double kLittle = 3e-3;  // relative gain of a patch, at which it is left as it is
 /// A round that finds more than this share of the faces is no longer about outliers: the global
 /// optimisation is faster there.
 constexpr double kMostFaces = 0.001;
@@ -44,6 +46,19 @@ class FaceEnergies {
     return positive ? Density::slopes(map).value : std::numeric_limits<double>::infinity();
   }
 
+  /// The same of all faces of a block.
+  static void energies_of(const FaceBlock& block, FaceBlock::Numbers& energies) {
+    FaceBlock::Numbers det;
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {
+      const LinearMap map = block.map(i);
+      energies[i] = Density::slopes(map).value;
+      det[i] = std::norm(map.fz) - std::norm(map.fzbar);
+    }
+    for (int i = 0; i < FaceBlock::kFaces; ++i) {  // apart, so that the loop above has no branch
+      if (!(det[i] > 0)) energies[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+
   /// Sets the limit by the mean over all positive faces. Returns the faces above it.
   std::vector<Index> find_all(const Work& work) {
     const double least = from_dirichlet<Density>(kLeastEnergy);
@@ -51,12 +66,20 @@ class FaceEnergies {
     std::vector<std::vector<std::pair<Index, double>>> high(sums.size());
     parallel_for(work, mesh_.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       double sum = 0, area = 0;
-      for (auto f = static_cast<Index>(begin); f < end; ++f) {
-        const double energy = of(f);
-        if (!std::isfinite(energy)) continue;
-        sum += rest_[f].area() * energy;
-        area += rest_[f].area();
-        if (energy > least) high[begin / kGrain].emplace_back(f, energy);
+      FaceBlock block;
+      FaceBlock::Numbers energies;
+      for (std::int64_t first = begin; first < end; first += FaceBlock::kFaces) {
+        block.load(mesh_.faces, rest_, uvs_, first, end);
+        energies_of(block, energies);
+        const auto count = std::min<std::int64_t>(FaceBlock::kFaces, end - first);
+        for (int i = 0; i < count; ++i) {
+          if (!std::isfinite(energies[i])) continue;
+          sum += block.rest(i).area() * energies[i];
+          area += block.rest(i).area();
+          if (energies[i] > least) {
+            high[begin / kGrain].emplace_back(static_cast<Index>(first + i), energies[i]);
+          }
+        }
       }
       sums[begin / kGrain] = sum;
       areas[begin / kGrain] = area;
@@ -99,19 +122,26 @@ class FaceEnergies {
   double limit_ = 0;
 };
 
-/// Minimises the energy of each patch from the map as it is now, side by side.
-void minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
+/// Minimises the energy of each patch from the map as it is now, side by side. Returns for each
+/// whether that gained little.
+std::vector<std::uint8_t> minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
               std::vector<PatchTry>& tries) {
   NewtonOptions options;
   options.energy = energy;
   options.max_iterations = kNewtonSteps;
   const Work alone = work.aside();
+  std::vector<std::uint8_t> little(tries.size(), 0);
   parallel_for(work, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
     Patch& patch = tries[i].patch;
     patch.refresh(uvs);
-    minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+    const NewtonResult ended =
+        minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+    const double gain = ended.energies.front() - ended.energies.back();
+    const double enough = kLittle * comparable_energy(energy, ended.energies.back());
+    little[i] = ended.converged && gain <= enough;
     tries[i].positive = non_positive_faces(patch.faces, patch.uvs, alone).empty();
   });
+  return little;
 }
 
 template <class Density>
@@ -123,7 +153,7 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
   std::vector<Index> outliers = energies.find_all(work);
   energies.keep_outliers(outliers);
   outliers.insert(outliers.end(), also.begin(), also.end());
-  std::unordered_set<Index> treated;
+  std::unordered_set<Index> treated, at_rest;  // of this round; by the last patch at them
   for (int round = 0; round < kRounds && !outliers.empty(); ++round) {
     treated.clear();
     for (std::size_t begin = 0; begin < outliers.size(); begin += kTogether) {
@@ -137,17 +167,26 @@ std::int64_t clean(Energy energy, const DiskMesh& mesh, const std::vector<RestTr
         work.report((round + static_cast<double>(begin) / outliers.size()) / kRounds);
         std::vector<PatchTry> tries =
             take_apart(mesh, rest, uvs, kRings, is_treated, work, waiting);
-        minimise(energy, uvs, work, tries);
-        for (PatchTry& made : tries) {
-          if (!made.positive || !taken.take(made.patch)) continue;
+        const std::vector<std::uint8_t> little = minimise(energy, uvs, work, tries);
+        for (std::size_t i = 0; i < tries.size(); ++i) {
+          Patch& patch = tries[i].patch;
+          if (!tries[i].positive || !taken.take(patch)) continue;
           ++patches;
-          treated.insert(made.patch.mesh_faces.begin(), made.patch.mesh_faces.end());
+          treated.insert(patch.mesh_faces.begin(), patch.mesh_faces.end());
+          for (const Index face : patch.mesh_faces) {
+            if (little[i] != 0) {
+              at_rest.insert(face);
+            } else {
+              at_rest.erase(face);
+            }
+          }
         }
       }
     }
     // No other face has changed.
     outliers.insert(outliers.end(), treated.begin(), treated.end());
     energies.keep_outliers(outliers);
+    std::erase_if(outliers, [&](Index face) { return at_rest.contains(face); });
   }
   return patches;
 }

@@ -13,9 +13,10 @@
 namespace beltrami {
 
 /// Minimises the energy in patches of 3 rings around every face whose energy is above
-/// max(20, 4 x mean), and around the faces `also`, in place, in up to three rounds. A patch that
-/// moves boundary vertices is taken back if it adds boundary crossings. Faces that are not positive
-/// are left alone. Ends where the time is up. Returns the number of patches.
+/// max(20, 4 x mean), and around the faces `also`, in place, in up to three rounds, of which one
+/// leaves alone the patches that gained little in the one before. A patch that moves boundary
+/// vertices is taken back if it adds boundary crossings. Faces that are not positive are left
+/// alone. Ends where the time is up. Returns the number of patches.
 std::int64_t clean_outliers(Energy energy, const DiskMesh& mesh,
                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                             const std::vector<Index>& also, const Work& work);

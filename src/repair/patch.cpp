@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <utility>
 
 #include "base/interrupt.h"
 #include "repair/hub_turns.h"
@@ -47,25 +48,48 @@ void merge_into(std::vector<Index>& known, const std::vector<Index>& items) {
 /// A hub with more faces is left where it is: a patch with all of them is not small.
 constexpr Index kMostFacesAtVertex = 1000;
 
+/// What lies around a face, each list increasing.
+struct Surroundings {
+  std::vector<Index> faces;
+  std::vector<Index> vertices;  ///< of the faces
+  std::vector<Index> inner;     ///< of these, those that were gone around: with all their faces
+};
+
 /// Each vertex is gone around once.
-std::vector<Index> faces_around(const DiskMesh& mesh, Index face, int rings) {
-  std::vector<Index> faces{face}, front{face}, vertices;
-  for (int ring = 0; ring < rings && !front.empty(); ++ring) {
+Surroundings look_around(const DiskMesh& mesh, Index face, int rings) {
+  Surroundings found{{face}, {}, {}};
+  std::vector<Index> front{face};
+  for (int ring = 0; ring <= rings && !front.empty(); ++ring) {
     const std::vector<Index> corners = without(gather(front,
                                                       [&](Index f, const auto& take) {
                                                         for (const Index v : mesh.faces[f]) take(v);
                                                       }),
-                                               vertices);
+                                               found.vertices);
+    merge_into(found.vertices, corners);
+    if (ring == rings) break;
+    std::vector<Index> inner;
     front = without(gather(corners,
                            [&](Index v, const auto& take) {
                              if (is_hub(mesh, v, kMostFacesAtVertex)) return;
+                             inner.push_back(v);
                              mesh.for_each_outgoing(v, [&](Index h) { take(h / 3); });
                            }),
-                    faces);
-    merge_into(vertices, corners);
-    merge_into(faces, front);
+                    found.faces);
+    merge_into(found.inner, inner);
+    merge_into(found.faces, front);
   }
-  return faces;
+  return found;
+}
+
+/// Whether all faces at the vertex are among these, which increase; not of a hub, which is fixed.
+bool is_inside(const DiskMesh& mesh, Index vertex, const std::vector<Index>& faces) {
+  if (is_hub(mesh, vertex, kMostFacesAtVertex)) return false;
+  Index h = mesh.outgoing[vertex];
+  do {
+    if (!std::binary_search(faces.begin(), faces.end(), h / 3)) return false;
+    h = mesh.rotate(h);
+  } while (h != kNone && h != mesh.outgoing[vertex]);
+  return true;
 }
 
 }  // namespace
@@ -83,13 +107,9 @@ void Patch::exchange(std::vector<Vec2>& mesh_uvs) {
 Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const std::vector<Vec2>& uvs, Index face, int rings) {
   Patch patch;
-  patch.mesh_faces = faces_around(mesh, face, rings);
-  for (const Index f : patch.mesh_faces) {
-    patch.mesh_vertices.insert(patch.mesh_vertices.end(), mesh.faces[f].begin(),
-                               mesh.faces[f].end());
-    if (!rest.empty()) patch.rest.push_back(rest[f]);
-  }
-  sort_unique(patch.mesh_vertices);
+  Surroundings around = look_around(mesh, face, rings);
+  patch.mesh_faces = std::move(around.faces);
+  patch.mesh_vertices = std::move(around.vertices);
   const auto local = [&](Index v) {
     const auto& all = patch.mesh_vertices;
     return static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
@@ -97,20 +117,20 @@ Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   for (const Index f : patch.mesh_faces) {
     const Triangle& t = mesh.faces[f];
     patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
+    if (!rest.empty()) patch.rest.push_back(rest[f]);
   }
   patch.fixed.assign(patch.mesh_vertices.size(), false);
   PollSometimes poll;
+  auto inner = around.inner.begin();
   for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
+    poll();
     const Index v = patch.mesh_vertices[i];
     patch.uvs.push_back(uvs[v]);
-    patch.fixed[i] = is_hub(mesh, v, kMostFacesAtVertex);
-    if (patch.fixed[i]) continue;
-    mesh.for_each_outgoing(v, [&](Index h) {
-      poll();
-      if (!std::binary_search(patch.mesh_faces.begin(), patch.mesh_faces.end(), h / 3)) {
-        patch.fixed[i] = true;
-      }
-    });
+    if (inner != around.inner.end() && *inner == v) {
+      ++inner;
+    } else {
+      patch.fixed[i] = !is_inside(mesh, v, patch.mesh_faces);
+    }
     patch.moves_boundary = patch.moves_boundary || (!patch.fixed[i] && mesh.on_boundary[v]);
   }
   // A patch that is the whole mesh would drift.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -42,24 +43,36 @@ class Repair {
   RepairResult run() {
     std::vector<Index> bad = find_bad();
     result_.flips_before = size_of(bad);
-    const bool all_local = mend_locally(bad, 0, kLocalShare);
+    mend_locally(0, kLocalShare, bad);
+    result_.flips_after = size_of(bad);
     if (options_.global_fix &&
-        (!all_local || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
+        (!bad.empty() || (options_.simple_boundary && !is_simple(mesh_.boundary, uvs_)))) {
       work_.report(kLocalShare);
       mend_globally();
+      result_.flips_after = size_of(find_bad());
     }
-    result_.flips_after = size_of(find_bad());
     return result_;
   }
 
  private:
   std::vector<Index> find_bad() const { return non_positive_faces(mesh_.faces, uvs_, work_); }
 
+  /// Takes out of `bad` what no longer is, and puts in what has become so: only near what has moved
+  /// since the last look.
+  void look_again(std::vector<Index>& bad) {
+    bad.insert(bad.end(), changed_.begin(), changed_.end());
+    changed_.clear();
+    sort_interruptibly(bad.begin(), bad.end(), std::less<>());
+    bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+    std::erase_if(bad, [&](Index face) { return positive(face); });
+  }
+
   std::int64_t crossings() const { return count_crossings(mesh_.boundary, uvs_).count; }
 
-  /// Kernel and patch fixes; returns whether all faces are positive.
-  bool mend_locally(std::vector<Index> bad, double from, double until) {
-    if (bad.empty()) return true;
+  /// Kernel and patch fixes of the faces `bad`, all that are not positive; leaves those that still
+  /// are not.
+  void mend_locally(double from, double until, std::vector<Index>& bad) {
+    if (bad.empty()) return;
     for (const bool neighbours_first : {false, true}) {
       HubTurns turns(mesh_);
       for (const Index face : bad) {
@@ -71,10 +84,10 @@ class Repair {
           if (move_to_kernel(v)) ++result_.kernel_fixes;
         }
       }
-      bad = find_bad();
-      if (bad.empty()) return true;
+      look_again(bad);
+      if (bad.empty()) return;
     }
-    if (bad.size() > options_.most_patches) return false;
+    if (bad.size() > options_.most_patches) return;
     PatchWork patches(mesh_, uvs_);
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;
@@ -86,9 +99,8 @@ class Repair {
         fix_patches(all.subspan(begin, std::min(kTogether, all.size() - begin)), kPatchRings[level],
                     patches);
       }
-      bad = find_bad();
+      look_again(bad);
     }
-    return bad.empty();
   }
 
   void mend_globally() {
@@ -97,9 +109,9 @@ class Repair {
     const std::int64_t crossings_before = crossings();
     if (!embed_with_scaffold(mesh_, uvs_, work_)) return;
     result_.global_fixes = 1;
-    const std::vector<Index> folded = find_bad();
+    std::vector<Index> folded = find_bad();
     // More than it came from: rounding has eaten it, and there is nothing to build on.
-    if (folded.size() <= bad_before || bad_before == 0) mend_locally(folded, kLocalShare, 1);
+    if (folded.size() <= bad_before || bad_before == 0) mend_locally(kLocalShare, 1, folded);
     const std::size_t bad = find_bad().size();
     const bool better = options_.simple_boundary
                             ? std::pair(bad, crossings()) < std::pair(bad_before, crossings_before)
@@ -141,48 +153,87 @@ class Repair {
     }
     if (!all_positive || least < kLeastAreaShare * ring_area / ring.size()) return false;
     uvs_[vertex] = target;
+    mesh_.for_each_outgoing(vertex, [&](Index h) { changed_.push_back(h / 3); });
     return true;
   }
 
-  /// Mends patches around the faces, side by side where none moves a vertex of another.
+  /// Mends patches around the faces, side by side where none moves a vertex of another. Most of
+  /// those that are in each other's way fail, which changes nothing: after a failure twice as many
+  /// layers of them are tried at once, as if in turn, and what was tried after a patch that is put
+  /// in waits again.
   void fix_patches(std::span<const Index> faces, int rings, PatchWork& patches) {
     std::vector<PatchTry> waiting;
     for (const Index face : faces) waiting.push_back({face, {}});
     const auto is_positive = [&](Index face) { return positive(face); };
+    std::size_t layers = 1;
     while (!waiting.empty()) {
       poll_interrupt();
-      std::vector<PatchTry> tries =
-          take_apart(mesh_, rest_, uvs_, rings, is_positive, work_, waiting);
-      for (PatchTry& made : tries) made.patch.refresh(uvs_);
-      try_patches([](Patch&) {}, patches, tries);
-      std::erase_if(tries, [](const PatchTry& made) { return !made.positive; });
-      // The sides of a slit can be in each other's way.
-      try_patches([&](Patch& patch) { hold_boundary(mesh_, patch); }, patches, tries);
-      // From a boundary that is folded, faces can end all positive and twice around a vertex.
-      try_patches([&](Patch& patch) { patches.straighten_boundary(patch); }, patches, tries);
+      std::vector<PatchTry> tries;
+      std::vector<std::size_t> ends;  // of each layer
+      while (ends.size() < layers && !waiting.empty()) {
+        auto apart = take_apart(mesh_, rest_, uvs_, rings, is_positive, work_, waiting);
+        std::move(apart.begin(), apart.end(), std::back_inserter(tries));
+        ends.push_back(tries.size());
+      }
+      for (PatchTry& next : tries) next.patch.refresh(uvs_);
+      std::vector<Patch> made = untangled([](Patch&) {}, tries);
+      std::size_t begin = 0;
+      bool any = false;
+      for (std::size_t l = 0; l < ends.size() && !any; begin = ends[l++]) {
+        any = put_in({made.data() + begin, ends[l] - begin}, patches,
+                     {tries.data() + begin, ends[l] - begin});
+      }
+      layers = any ? 1 : 2 * layers;
+      for (; begin < tries.size(); ++begin) waiting.push_back(std::move(tries[begin]));
+      std::sort(waiting.begin(), waiting.end(),
+                [](const PatchTry& one, const PatchTry& other) { return one.face < other.face; });
     }
   }
 
-  /// Untangles the patches as they are once prepared, puts in what comes out positive, in turn, and
-  /// leaves the others as they were.
-  void try_patches(const std::function<void(Patch&)>& prepare, PatchWork& patches,
-                   std::vector<PatchTry>& tries) {
+  /// The patches of the tries as `prepare` makes them, and untangled where those are positive then.
+  std::vector<Patch> untangled(const std::function<void(Patch&)>& prepare,
+                               std::span<PatchTry> tries) {
     std::vector<Patch> made;
     for (const PatchTry& next : tries) prepare(made.emplace_back(next.patch));
     const Work alone = work_.aside();
-    parallel_for(work_, size_of(tries), 1, [&](std::int64_t i, std::int64_t) {
-      Patch& patch = made[i];
-      tries[i].positive = untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
-    });
+    parallel_for(work_, static_cast<std::int64_t>(tries.size()), 1,
+                 [&](std::int64_t i, std::int64_t) {
+                   Patch& patch = made[i];
+                   tries[i].positive =
+                       untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
+                 });
+    return made;
+  }
+
+  /// Puts in what came out positive, in turn; what adds crossings again in other ways. Returns
+  /// whether anything has changed.
+  bool put_in(std::span<Patch> made, PatchWork& patches, std::span<PatchTry> tries) {
     std::vector<PatchTry> left;
-    for (std::size_t i = 0; i < tries.size(); ++i) {
-      if (tries[i].positive && patches.take(made[i])) {
-        ++result_.patch_fixes;
-      } else {
-        left.push_back(std::move(tries[i]));
+    bool any = false;
+    const auto take_all = [&](std::span<Patch> all, std::span<PatchTry> of, bool keep_failed) {
+      std::vector<PatchTry> next;
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        if (of[i].positive && patches.take(all[i])) {
+          any = true;
+          ++result_.patch_fixes;
+          changed_.insert(changed_.end(), all[i].mesh_faces.begin(), all[i].mesh_faces.end());
+        } else if (of[i].positive || keep_failed) {
+          next.push_back(std::move(of[i]));
+        }
       }
-    }
-    tries.swap(left);
+      left.swap(next);
+    };
+    take_all(made, tries, false);
+    // The sides of a slit can be in each other's way.
+    std::vector<Patch> held = untangled([&](Patch& patch) { hold_boundary(mesh_, patch); }, left);
+    std::vector<PatchTry> again = std::move(left);
+    take_all(held, again, true);
+    // From a boundary that is folded, faces can end all positive and twice around a vertex.
+    std::vector<Patch> straight =
+        untangled([&](Patch& patch) { patches.straighten_boundary(patch); }, left);
+    again = std::move(left);
+    take_all(straight, again, true);
+    return any;
   }
 
   const DiskMesh& mesh_;
@@ -190,6 +241,7 @@ class Repair {
   std::vector<Vec2>& uvs_;
   const RepairOptions options_;
   const Work work_;
+  std::vector<Index> changed_;  ///< faces of which a corner has moved since the last look at all
   RepairResult result_;
 };
 

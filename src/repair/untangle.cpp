@@ -28,13 +28,13 @@ struct RegularisedDirichlet {
   double epsilon = 1;
 
   double value(double s1, double s2) const {
-    const double x = chi(s1 * s2);
+    const double d = s1 * s2, x = chi(d, portable::hypot(epsilon, d));
     return 0.5 * (s1 * s1 + s2 * s2) * (1 + 1 / (x * x));
   }
 
   DensityModel model(double s1, double s2) const {
     const double d = s1 * s2, n = s1 * s1 + s2 * s2;
-    const double root = portable::hypot(epsilon, d), x = chi(d);
+    const double root = portable::hypot(epsilon, d), x = chi(d, root);
     const double x1 = x / root, x2 = epsilon * epsilon / (2 * root * root * root);
     // g(d) = (1 + chi^-2) / 2, so that the density is n g(d).
     const double g = 0.5 * (1 + 1 / (x * x));
@@ -54,9 +54,8 @@ struct RegularisedDirichlet {
   }
 
  private:
-  /// For negative d the sum would cancel.
-  double chi(double d) const {
-    const double root = portable::hypot(epsilon, d);
+  /// `root`: of eps^2 + d^2. For negative d the sum would cancel.
+  double chi(double d, double root) const {
     return d >= 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d);
   }
 

@@ -482,10 +482,6 @@ const Kernels<T>& kernels([[maybe_unused]] Vectors vectors) {
 
 }  // namespace
 
-Vectors widest_vectors() {
-  return has_avx2() ? Vectors::kAvx2 : Vectors::kBaseline;
-}
-
 template <class T>
 bool factorize(Vectors vectors, T* panel, int height, int width, T* update, T* buffer,
                const ForChunks& for_chunks) {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "base/work.h"
+
 namespace beltrami::front {
 
 /// Rows of a packed group. Leading dimensions of update matrices are multiples of it.
@@ -23,9 +25,10 @@ inline std::int64_t buffer_size(int height, int width) {
 
 /// The vectors that the kernels use.
 enum class Vectors { kBaseline, kAvx2 };
-/// The widest of this machine. Asking takes as long as a small factorization, and on a virtual
-/// machine longer: ask once for a solver.
-Vectors widest_vectors();
+/// The widest of the machine that the run is on.
+inline Vectors widest_vectors(const Work& work) {
+  return work.on_avx2() ? Vectors::kAvx2 : Vectors::kBaseline;
+}
 
 /// Calls body(begin, end) over [0, count) in chunks, maybe side by side.
 using ForChunks = std::function<void(int count, const std::function<void(int, int)>& body)>;

@@ -377,7 +377,7 @@ class NativeSolver final : public SpdSolver {
   const SolverOptions options_;
   const int least_single_;
   const Work work_;
-  const front::Vectors vectors_ = front::widest_vectors();
+  const front::Vectors vectors_ = front::widest_vectors(work_);
   Symbolic symbolic_;
   PermutedPattern pattern_;
   // The matrix in the order of L, scaled; with factors in single precision only, which need it.
