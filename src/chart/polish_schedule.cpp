@@ -80,8 +80,8 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
-  bool clean = true;  ///< no step since the last cleaning; it comes mended
-  PolishResult last = {};                                      ///< of the last steps
+  bool clean = true;       ///< no step since the last cleaning; it comes mended
+  PolishResult last = {};  ///< of the last steps
   double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
   bool converged = false;
 };
@@ -127,8 +127,8 @@ void fit_factor(const Setting& setting, const State& state) {
     for (double& spring : springs) spring *= setting.contact->strength();
   }
   const DiskMesh& mesh = *setting.fine.mesh;
-  std::vector<EdgeWeights> stiffness = energy_stiffness(
-      setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, setting.work);
+  std::vector<EdgeWeights> stiffness = energy_stiffness(setting.options.energy, mesh.faces,
+                                                        setting.fine.rest, state.uvs, setting.work);
   setting.inverse.refit(stiffness, springs);
   parallel_free(setting.work, stiffness);  // so that the allocator does not keep it
 }

@@ -34,9 +34,9 @@ class SeamSearch {
              std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
-  /// by what is gained for the cost. `exactly`: the last one, which reaches it, is the cheapest part
-  /// of a path that does; a start is better off with what is worth most. False where nothing helps
-  /// any more.
+  /// by what is gained for the cost. `exactly`: the last one, which reaches it, is the cheapest
+  /// part of a path that does; a start is better off with what is worth most. False where nothing
+  /// helps any more.
   bool extend(double target, bool exactly = false);
 
   /// Joins the parts that fall apart without an arc of the seams again where that is cheapest, arc

@@ -125,7 +125,7 @@ class FaceEnergies {
 /// Minimises the energy of each patch from the map as it is now, side by side. Returns for each
 /// whether that gained little.
 std::vector<std::uint8_t> minimise(Energy energy, const std::vector<Vec2>& uvs, const Work& work,
-              std::vector<PatchTry>& tries) {
+                                   std::vector<PatchTry>& tries) {
   NewtonOptions options;
   options.energy = energy;
   options.max_iterations = kNewtonSteps;

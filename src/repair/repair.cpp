@@ -196,12 +196,11 @@ class Repair {
     std::vector<Patch> made;
     for (const PatchTry& next : tries) prepare(made.emplace_back(next.patch));
     const Work alone = work_.aside();
-    parallel_for(work_, static_cast<std::int64_t>(tries.size()), 1,
-                 [&](std::int64_t i, std::int64_t) {
-                   Patch& patch = made[i];
-                   tries[i].positive =
-                       untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
-                 });
+    parallel_for(
+        work_, static_cast<std::int64_t>(tries.size()), 1, [&](std::int64_t i, std::int64_t) {
+          Patch& patch = made[i];
+          tries[i].positive = untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
+        });
     return made;
   }
 
