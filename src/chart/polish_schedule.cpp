@@ -25,6 +25,7 @@
 #include "descend/newton.h"
 #include "descend/polish.h"
 #include "energy/energy.h"
+#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "base/interrupt.h"
+#include "base/types.h"
 #include "cut/across.h"
+#include "cut/seam_paths.h"
 #include "cut/seam_search.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

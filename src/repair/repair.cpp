@@ -207,31 +207,27 @@ class Repair {
   /// Puts in what came out positive, in turn; what adds crossings again in other ways. Returns
   /// whether anything has changed.
   bool put_in(std::span<Patch> made, PatchWork& patches, std::span<PatchTry> tries) {
-    std::vector<PatchTry> left;
     bool any = false;
     const auto take_all = [&](std::span<Patch> all, std::span<PatchTry> of, bool keep_failed) {
-      std::vector<PatchTry> next;
+      std::vector<PatchTry> left;
       for (std::size_t i = 0; i < of.size(); ++i) {
         if (of[i].positive && patches.take(all[i])) {
           any = true;
           ++result_.patch_fixes;
           changed_.insert(changed_.end(), all[i].mesh_faces.begin(), all[i].mesh_faces.end());
         } else if (of[i].positive || keep_failed) {
-          next.push_back(std::move(of[i]));
+          left.push_back(std::move(of[i]));
         }
       }
-      left.swap(next);
+      return left;
     };
-    take_all(made, tries, false);
+    std::vector<PatchTry> left = take_all(made, tries, false);
     // The sides of a slit can be in each other's way.
-    std::vector<Patch> held = untangled([&](Patch& patch) { hold_boundary(mesh_, patch); }, left);
-    std::vector<PatchTry> again = std::move(left);
-    take_all(held, again, true);
+    std::vector<Patch> again = untangled([&](Patch& patch) { hold_boundary(mesh_, patch); }, left);
+    left = take_all(again, left, true);
     // From a boundary that is folded, faces can end all positive and twice around a vertex.
-    std::vector<Patch> straight =
-        untangled([&](Patch& patch) { patches.straighten_boundary(patch); }, left);
-    again = std::move(left);
-    take_all(straight, again, true);
+    again = untangled([&](Patch& patch) { patches.straighten_boundary(patch); }, left);
+    take_all(again, left, true);
     return any;
   }
 
