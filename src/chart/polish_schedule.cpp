@@ -156,6 +156,12 @@ bool is_kept(const Setting& setting, const State& state) {
          kNothingLost * distortion(setting.fine.statistics.coarse_energy);
 }
 
+/// Whether steps came to rest where no distortion has come on, though a few faces promise more.
+bool has_settled(const Setting& setting, const State& state) {
+  return setting.bounds.in_haste && state.last.iterations() > 0 && is_kept(setting, state) &&
+         gained_little(setting, state);
+}
+
 void take_rounds(const Setting& setting, State& state) {
   double before_last_round = std::numeric_limits<double>::infinity();
   // Rounds of cleaning alone, without a step, are bounded too.
@@ -204,7 +210,7 @@ void end_with_newton(const Setting& setting, State& state) {
   const double energy = setting.comparable(state.last.energies.back());
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
-  state.converged = is_stationary(setting, state);
+  state.converged = is_stationary(setting, state) || has_settled(setting, state);
   if (!setting.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);
