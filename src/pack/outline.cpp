@@ -18,11 +18,11 @@ using Directed = std::array<Index, 2>;
 /// The edges that are left once opposite ones have cancelled one another, by their lower end, then
 /// by the other one. `count`: of the points.
 std::vector<Directed> uncancelled(const std::vector<Directed>& edges, Index count) {
-  constexpr std::size_t kPollEvery = 1 << 16;
+  PollSometimes poll;
   std::vector<Index> first(static_cast<std::size_t>(count) + 1, 0);  // of those with a lower end
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (e % kPollEvery == 0) poll_interrupt();
-    ++first[std::min(edges[e][0], edges[e][1]) + 1];
+  for (const auto& [from, to] : edges) {
+    poll();
+    ++first[std::min(from, to) + 1];
   }
   for (Index p = 0; p < count; ++p) first[p + 1] += first[p];
   struct Rest {
@@ -30,18 +30,18 @@ std::vector<Directed> uncancelled(const std::vector<Directed>& edges, Index coun
     Index balance;  ///< 1: from low to high, -1: back
   };
   std::vector<Rest> sorted(edges.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (e % kPollEvery == 0) poll_interrupt();
-    const auto& [from, to] = edges[e];
+  for (const auto& [from, to] : edges) {
+    poll();
     sorted[first[std::min(from, to)]++] = {std::max(from, to), from < to ? 1 : -1};
   }
   // By now `first` has the ends.
   std::vector<Directed> left;
   for (Index low = 0; low < count; ++low) {
-    if (low % kPollEvery == 0) poll_interrupt();
+    poll();
     const auto begin = sorted.begin() + (low > 0 ? first[low - 1] : 0);
     const auto end = sorted.begin() + first[low];
-    std::sort(begin, end, [](const Rest& a, const Rest& b) { return a.high < b.high; });
+    // A hub may have most of the edges.
+    sort_interruptibly(begin, end, [](const Rest& a, const Rest& b) { return a.high < b.high; });
     for (auto next = begin; next != end;) {
       const Index high = next->high;
       Index balance = 0;
