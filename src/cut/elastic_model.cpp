@@ -27,6 +27,15 @@ constexpr double kVirtualArea = 1e-3;
 /// The least area of a vertex, of their mean.
 constexpr double kLeastArea = 1e-6;
 
+/// Energies are compared over such a distance, in roots of the area, but over this many edges at
+/// most.
+constexpr double kAround = 0.05;
+constexpr int kMostAround = 40;
+/// Where both energies are small nothing is learnt: so much of the mean, or of this, is added.
+constexpr double kNoise = 0.15, kLeastMean = 1e-4;
+/// What strain costs is within so many times of what it was taken for.
+constexpr double kMostPrice = 10;
+
 /// From so many entries of its row on a vertex is a hub.
 constexpr int kHub = 128;
 
@@ -109,10 +118,53 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   for (Index v = 0; v < count; ++v) entries.emplace_back(v, v, 0);
   SparseMatrix laplacian(count, count);
   laplacian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd softness =
-      (area.array().max(kLeastArea * area.mean()) / whole).inverse().matrix();
-  bilaplacian_ = bilaplacian(laplacian, softness);
+  area_ = area.array().max(kLeastArea * area.mean()) / whole;
+  price_ = Eigen::VectorXd::Ones(count);
+  laplacian_ = std::move(laplacian);
+  assemble();
+}
+
+/// In proportion to the price of strain the stress yields less, for the same curvature.
+void ElasticModel::assemble() {
+  bilaplacian_ = bilaplacian(laplacian_, area_.cwiseProduct(price_).cwiseInverse());
   lower_ = bilaplacian_.triangularView<Eigen::Lower>();
+}
+
+/// What each vertex has goes to those around it, by as many steps as lead over the distance.
+Eigen::VectorXd ElasticModel::spread(Eigen::VectorXd field) const {
+  const double edge_squared = 2.3 / std::max<double>(surface_.face_count(), 1);
+  const int steps = std::clamp(static_cast<int>(kAround * kAround / edge_squared), 1, kMostAround);
+  std::vector<int> degree(static_cast<std::size_t>(field.size()));
+  for (Index h = 0; h < size_of(surface_.twin); ++h) ++degree[surface_.origin(h)];
+  for (int i = 0; i < steps; ++i) {
+    poll_interrupt();
+    Eigen::VectorXd next = field / 2;
+    for (Index h = 0; h < size_of(surface_.twin); ++h) {
+      const Index from = surface_.origin(h);
+      next[surface_.target(h)] += field[from] / (2 * degree[from]);
+    }
+    field.swap(next);
+  }
+  return field;
+}
+
+/// Strain leaves the places where it has become dear: half the way is gone.
+void ElasticModel::calibrate(const std::vector<double>& excess) {
+  const Sheet& sheet = this->sheet();
+  const auto count = static_cast<Eigen::Index>(excess.size());
+  const Eigen::VectorXd strain =
+      laplacian_ * Eigen::Map<const Eigen::VectorXd>(sheet.stress.data(), count);
+  const Eigen::VectorXd model =
+      spread(2 * strain.cwiseAbs2().cwiseQuotient(area_.cwiseProduct(price_)));
+  const Eigen::VectorXd real = spread(Eigen::Map<const Eigen::VectorXd>(excess.data(), count));
+  const double noise = kNoise * std::max(real.sum(), kLeastMean);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    const double ratio = (real[v] + noise * area_[v]) / (model[v] + noise * area_[v]);
+    price_[v] = std::clamp(price_[v] * std::sqrt(ratio), 1 / kMostPrice, kMostPrice);
+  }
+  now_.pinned.clear();
+  before_.pinned.clear();
+  assemble();
 }
 
 ElasticModel::Sheet ElasticModel::unpinned() const {

@@ -69,6 +69,13 @@ class ElasticModel {
   /// the model's, and up to 2 times where most vertices lie on seams.
   double energy() const { return sheet().energy; }
 
+  /// Learns from real maps along the seams at the pinned vertices where strain costs more or less
+  /// than it was taken for, so that the energies around each place come nearer to those of the maps
+  /// (space mapping, Bandler et al. 1994, place by place). The whole may still err by a factor.
+  /// Calibrating again goes on from there. `excess`: per vertex, the energy over 2 of what is
+  /// around it, times its share of the area.
+  void calibrate(const std::vector<double>& excess);
+
   /// Where `vertices` are pinned, too. Precondition: none of them is.
   ModelChange with(std::span<const Index> vertices) const;
 
@@ -85,13 +92,18 @@ class ElasticModel {
     double energy = 2;
   };
 
+  void assemble();
+  Eigen::VectorXd spread(Eigen::VectorXd field) const;
   Sheet unpinned() const;
   const Sheet& sheet() const;
 
   const Surface& surface_;
   const Work work_;
   Eigen::VectorXd defect_;    ///< per vertex: K
-  SparseMatrix bilaplacian_;  ///< of the intrinsic Delaunay triangulation, whole
+  SparseMatrix laplacian_;    ///< of the intrinsic Delaunay triangulation
+  Eigen::VectorXd area_;      ///< per vertex, the share of the whole
+  Eigen::VectorXd price_;     ///< per vertex: what was learnt, times what strain there costs
+  SparseMatrix bilaplacian_;  ///< whole
   SparseMatrix lower_;        ///< its lower triangle, diagonal included
   std::vector<bool> pinned_;
   mutable Sheet now_, before_;  ///< of the vertices asked about last, and before

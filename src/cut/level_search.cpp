@@ -26,8 +26,9 @@ namespace {
 constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
-/// Tolerance of the maps that judge: their energies are within 1% of the excess over 2.
-constexpr double kMapTolerance = 1e-3;
+/// Tolerances of the maps that judge: their energies are within some 3% of the excess over 2, and
+/// within .2%.
+constexpr double kFastTolerance = 1e-3, kMapTolerance = 1e-4;
 /// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
 /// so much of the excess, or the map is parted, too, where it lies on itself on less.
 constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
@@ -39,8 +40,8 @@ constexpr int kJoins = 6;
 constexpr double kWorthMapping = 1e-3;
 /// Beyond any excess of the model; and what differs by less is one.
 constexpr double kFar = 1e9, kSame = 1.02;
-constexpr int kRounds = 8, kTrims = 6;
-/// Where the excess is so near to the one asked for, a further round gains nothing; trimming goes
+constexpr int kRounds = 8, kSettling = 6;
+/// Where the excess is so near to the one asked for, a further round gains nothing; settling goes
 /// on to there.
 constexpr double kNear = 0.98, kFull = 0.997;
 /// The next target of the model aims at so much of the excess asked for.
@@ -49,8 +50,19 @@ constexpr double kAim = 0.99;
 constexpr double kLeastStep = 0.3, kMostStep = 2;
 /// The model's excess is not to be believed below.
 constexpr double kLeastExcess = 1e-4;
-/// An excess so far below the one asked for leaves the model in doubt.
-constexpr double kDoubtful = 0.9;
+/// By no less of the excess asked for is it told what seams would cost that just reach it.
+constexpr double kLeastShare = 1e-3;
+/// An excess so far below the one asked for leaves the model in doubt, or so far above.
+constexpr double kDoubtful = 0.9, kFarAbove = 3;
+/// Seams that promise more when they are brought to the excess asked for have been spoilt on the
+/// way: half a step is tried.
+constexpr double kSpoilt = 1.003;
+/// The excess at a face counts up to that where the model is taught: a needle says nothing of what
+/// is around it.
+constexpr double kMostExcess = 10;
+/// Searches vary so much of what they found in a round: branches by two to six, and by the costs of
+/// so many starts.
+constexpr int kLeastRuin = 2, kMostRuin = 6, kAstrayStarts = 8;
 
 /// Costs for the first paths of a start: smooth, and the same wherever the surface is moved to.
 std::vector<double> costs_astray(const Surface& surface, const std::vector<double>& cost,
@@ -87,15 +99,17 @@ bool Attempt::is_better_than(const Attempt& other) const {
 }
 
 double Attempt::promised() const {
-  return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, 1.0)));
+  return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, kLeastShare)));
 }
 
 LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-                         const SeamTarget& target, const Work& work, const Mirror* mirror)
+                         const SeamTarget& target, bool is_thorough, const Work& work,
+                         const Mirror* mirror)
     : level_(level),
       mirror_(mirror),
       start_(start),
       target_(target),
+      is_thorough_(is_thorough),
       work_(work),
       path_cost_(path_costs(level)),
       search_(level.surface, level.real_faces, path_cost_, std::move(seams.seams),
@@ -124,12 +138,13 @@ void LevelSearch::shorten_seams(double model_energy, bool exactly) {
   if (!is_better) search_.take(before, anchors);
 }
 
-/// The first paths of this start. Whether the energy is reached.
-bool LevelSearch::extend_first(double model_energy) {
-  std::vector<double> cost = costs_astray(level_.surface, path_cost_, start_.number, work_.aside());
+/// Adds paths that go astray, after the seams were opened again along them where `reopens`. Whether
+/// the energy is reached.
+bool LevelSearch::extend_astray(double model_energy, int number, bool reopens) {
+  std::vector<double> cost = costs_astray(level_.surface, path_cost_, number, work_.aside());
   path_cost_.swap(cost);
   search_.take(search_.seams());
-  search_.reopen();
+  if (reopens) search_.reopen();
   const bool reaches = search_.extend(model_energy);
   path_cost_.swap(cost);
   search_.take(search_.seams());
@@ -137,21 +152,25 @@ bool LevelSearch::extend_first(double model_energy) {
 }
 
 Attempt LevelSearch::sketch() {
-  extend_first(target_.energy);
+  extend_astray(target_.energy, start_.number, true);
   shorten_seams(target_.energy);
   search_.exchange(std::max(target_.energy, search_.energy()));
   search_.reopen();
   shorten_seams(target_.energy);
   Attempt sketch;
   sketch.seams = {search_.seams(), search_.anchors()};
-  sketch.energy = sketch.model_energy = search_.energy();
+  sketch.energy = search_.energy();
   sketch.cost = search_.cost();
   sketch.excess = (sketch.energy - 2) / (target_.energy - 2);
   return sketch;
 }
 
+double LevelSearch::tolerance() const {
+  return is_thorough_ ? kMapTolerance : kFastTolerance;
+}
+
 LocalMaps LevelSearch::map(const LocalMaps* before) const {
-  return map_locally(level_.surface, level_.real_faces, search_.seams(), kMapTolerance, before,
+  return map_locally(level_.surface, level_.real_faces, search_.seams(), tolerance(), before,
                      work_);
 }
 
@@ -217,11 +236,10 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
       if (mirror_ != nullptr) mirror_seams();
       maps = map(&maps);
     }
-    apart = with_contact(maps, level_.real_faces, kMapTolerance, work_);
+    apart = with_contact(maps, level_.real_faces, tolerance(), work_);
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }
   attempt = {{search_.seams(), search_.anchors()},
-             search_.energy(),
              search_.cost(),
              apart.energy,
              missed_by(apart),
@@ -229,28 +247,78 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
   return true;
 }
 
-/// Gives back what is left of the energy asked for: ends of branches.
-void LevelSearch::trim(LocalMaps& maps, Attempt& best) {
-  double share = 1;
-  for (int i = 0; i < kTrims && best.excess < kFull && !work_.out_of_time(); ++i) {
-    const double excess = best.model_energy - 2;
-    search_.take(best.seams.seams, best.seams.anchors);
-    search_.shrink(2 + excess * (1 + share * (kFull / std::max(best.excess, 0.5) - 1)));
-    if (search_.cost() >= best.cost) return;
-    Attempt attempt;
-    const bool fine = judge(false, maps, attempt);
-    if (fine && attempt.is_better_than(best)) {
-      best = std::move(attempt);
+/// The energy of the model at which maps would have nearly that asked for, if it errs as it does
+/// for the seams that it is at, whose maps have `excess`.
+double LevelSearch::aim(double excess) const {
+  return 2 + (search_.energy() - 2) * kAim / std::clamp(excess, kDoubtful, kFarAbove);
+}
+
+/// Brings seams to where maps just have the excess asked for: ends of branches go, or paths are
+/// added. All that is better than `best` on the way takes its place.
+void LevelSearch::settle(Attempt now, LocalMaps& maps, Attempt& best) {
+  double step = 1;  // of the way
+  for (int i = 0; i < kSettling && !work_.out_of_time(); ++i) {
+    if (now.excess <= 1 && now.excess >= kFull) return;
+    search_.take(now.seams.seams, now.seams.anchors);
+    const double whole = std::clamp(kFull / now.excess, kLeastStep, kMostStep);
+    const double goal = 2 + (search_.energy() - 2) * (1 + step * (whole - 1));
+    if (now.excess <= 1) {
+      search_.shrink(goal);
+      if (search_.cost() >= now.cost) return;
     } else {
-      share /= 2;
+      search_.extend(goal, true);
+      if (search_.cost() <= now.cost) return;
+    }
+    Attempt attempt;
+    if (!judge(false, maps, attempt)) return;
+    if (attempt.is_better_than(best)) best = attempt;
+    if (attempt.promised() > kSpoilt * now.promised()) {
+      step /= 2;
+    } else {
+      now = std::move(attempt);
     }
   }
 }
 
+/// Teaches the model what maps cost.
+void LevelSearch::calibrate(const LocalMaps& maps) {
+  const Surface& surface = level_.surface;
+  std::vector<double> excess(surface.positions.size());
+  double whole = 0;
+  for (Index f = 0; f < level_.real_faces; ++f) {
+    const auto [i, j, k] = surface.faces[f];
+    const std::vector<Vec3>& p = surface.positions;
+    const double area = triangle_area(p[i], p[j], p[k]);
+    whole += area;
+    if (!std::isfinite(maps.energies[f])) continue;
+    const double over = std::clamp(maps.energies[f] - 2, 0.0, kMostExcess);
+    for (const Index v : surface.faces[f]) excess[v] += over * area / 3;
+  }
+  if (!(whole > 0)) return;
+  for (double& e : excess) e /= whole;
+  search_.calibrate(excess);
+}
+
 Attempt LevelSearch::run(bool is_sketched) {
-  Attempt best;
+  return approach(target_.energy, is_sketched, 0);
+}
+
+Attempt LevelSearch::run_calibrated(int calibrations) {
   LocalMaps maps;
-  double model_energy = target_.energy;
+  Attempt found;
+  judge(true, maps, found);
+  calibrate(maps);
+  const double energy = aim(found.excess);
+  if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()));
+  Attempt attempt = approach(energy, true, calibrations);
+  return attempt.is_better_than(found) ? attempt : found;
+}
+
+/// From seams with which the model is to have an energy, until maps have the one asked for. The
+/// model is calibrated so often on the way.
+Attempt LevelSearch::approach(double model_energy, bool is_sketched, int calibrations) {
+  Attempt best, promising;
+  LocalMaps maps;
   std::array<double, 2> last = {-1, -1};  // cost and energy of the model, judged before
   double excess = kFar;
   double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
@@ -259,8 +327,8 @@ Attempt LevelSearch::run(bool is_sketched) {
     const bool is_first = round == 0 && !is_sketched;
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool is_correction = round > 0;
-    const bool goes_on =
-        is_first ? extend_first(model_energy) : search_.extend(model_energy, is_correction);
+    const bool goes_on = is_first ? extend_astray(model_energy, start_.number, true)
+                                  : search_.extend(model_energy, is_correction);
     shorten_seams(model_energy, is_correction);
     if (is_first) {
       search_.exchange(std::max(model_energy, search_.energy()));
@@ -273,9 +341,20 @@ Attempt LevelSearch::run(bool is_sketched) {
       Attempt attempt;
       const bool is_near = judge(is_last, maps, attempt);
       excess = attempt.excess;
+      if (is_near && attempt.promised() < promising.promised()) promising = attempt;
       if (is_near && attempt.is_better_than(best)) best = std::move(attempt);
     }
     last = {search_.cost(), search_.energy()};
+    if (calibrations > 0 && !ends && excess <= kWorthParting) {
+      --calibrations;
+      calibrate(maps);
+      reached = 0;
+      missed = kFar;
+      last = {-1, -1};
+      model_energy = aim(excess);
+      search_.exchange(std::max(model_energy, search_.energy()));
+      continue;
+    }
     if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
     // An aim between the energies that there are ends at one of them.
     const double aimed = model_energy - 2;
@@ -293,25 +372,60 @@ Attempt LevelSearch::run(bool is_sketched) {
       model_energy = 2 + model_excess * step;
     }
   }
-  if (best.excess <= 1) trim(maps, best);
+  if (is_thorough_ && promising.promised() < best.cost) settle(std::move(promising), maps, best);
+  if (best.excess <= 1) settle(Attempt(best), maps, best);
   return best;
 }
 
+/// Takes branches that are near one another away and lets others grow, at costs that go astray,
+/// and keeps what is better by its maps (ruin and recreate, Schrimpf et al. 2000).
+void LevelSearch::vary(int rounds, Attempt& best) {
+  if (mirror_ != nullptr) return;
+  LocalMaps maps;
+  for (int round = 1; round <= rounds && best.excess <= 1 && !work_.out_of_time(); ++round) {
+    search_.take(best.seams.seams, best.seams.anchors);
+    const double energy = aim(best.excess);
+    const int count = kLeastRuin + round % (kMostRuin - kLeastRuin + 1);
+    if (!search_.ruin(round, count)) return;
+    extend_astray(energy, round % kAstrayStarts, false);
+    shorten_seams(energy);
+    if (search_.energy() < energy) search_.shrink(energy);
+    if (search_.cost() >= best.cost) continue;
+    const double promised = best.promised();
+    Attempt attempt;
+    if (!judge(false, maps, attempt) || attempt.promised() > promised * (1 - kWorthMapping)) {
+      continue;
+    }
+    if (attempt.is_better_than(best)) best = attempt;
+    settle(std::move(attempt), maps, best);
+  }
+}
+
+void LevelSearch::improve(int rounds, Attempt& best) {
+  if (best.seams.seams.empty()) return;
+  search_.take(best.seams.seams, best.seams.anchors);
+  Attempt attempt = run_calibrated(1);
+  if (attempt.is_better_than(best)) best = std::move(attempt);
+  join_charts(best);
+  vary(rounds, best);
+}
+
+/// Charts that were parted are joined elsewhere on trial, where that makes it better.
 void LevelSearch::join_charts(Attempt& best) {
   std::vector<Index> tried;
   for (int i = 0; i < kJoins && best.excess <= 1 && !work_.out_of_time();) {
     work_.report(static_cast<double>(i) / kJoins);
     search_.take(best.seams.seams, best.seams.anchors);
     const CutSurface cut = cut_into_charts(level_.surface, search_.seams(), work_);
-    const double aim = 2 + (best.model_energy - 2) * kAim / std::max(best.excess, kDoubtful);
+    const double energy = aim(best.excess);
     bool gained = false;
-    for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, aim)) {
+    for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, energy)) {
       if (std::find(tried.begin(), tried.end(), joint.middle()) != tried.end()) continue;
       tried.push_back(joint.middle());
       search_.take(best.seams.seams, best.seams.anchors);
       search_.join(joint);
-      search_.extend(aim, true);
-      shorten_seams(aim, true);
+      search_.extend(energy, true);
+      shorten_seams(energy, true);
       if (search_.cost() > best.cost * (1 - kWorthMapping)) continue;
       LocalMaps maps;
       Attempt attempt;

@@ -23,7 +23,6 @@ struct Start {
 /// Seams and what is known of them.
 struct Attempt {
   AnchoredSeams seams;
-  double model_energy = 2;
   double cost = std::numeric_limits<double>::infinity();
   double energy = std::numeric_limits<double>::infinity();
   double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
@@ -32,17 +31,19 @@ struct Attempt {
   /// Of two that reach the target the shorter one, else the one that is nearer to it.
   bool is_better_than(const Attempt& other) const;
 
-  /// What it would cost to reach the target, about.
+  /// What it would cost to just reach the target, about.
   double promised() const;
 };
 
 /// The search on one level. All that is asked for it does from the seams that it stands at.
 class LevelSearch {
  public:
-  /// `seams` open the surface into disks. `mirror`: they are symmetric to it and to stay so, or
-  /// null. Keeps references to `level`, `target` and the mirror.
+  /// `seams` open the surface into disks. `is_thorough`: maps judge with more digits, and what
+  /// just misses the target is brought there, too. `mirror`: the seams are symmetric to it and to
+  /// stay so, or null. Keeps references to `level`, `target` and the mirror.
   LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-              const SeamTarget& target, const Work& work, const Mirror* mirror = nullptr);
+              const SeamTarget& target, bool is_thorough, const Work& work,
+              const Mirror* mirror = nullptr);
 
   /// By the model alone.
   Attempt sketch();
@@ -50,24 +51,36 @@ class LevelSearch {
   /// Until maps have the energy asked for. `is_sketched`: the seams are a sketch.
   Attempt run(bool is_sketched);
 
-  /// Charts of `best` that were parted are joined elsewhere on trial, where that makes it better.
-  void join_charts(Attempt& best);
+  /// The same from seams that are near it: the model learns first what maps along them cost, and
+  /// `calibrations` times more on the way.
+  Attempt run_calibrated(int calibrations);
+
+  /// What is found from `best` with a calibrated model, with charts joined elsewhere, and with
+  /// branches put elsewhere in so many rounds, where that is better.
+  void improve(int rounds, Attempt& best);
 
  private:
-  bool extend_first(double model_energy);
+  bool extend_astray(double model_energy, int number, bool reopens);
   void shorten_seams(double model_energy, bool exactly = false);
   double cost_with_turns() const;
+  double tolerance() const;
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps, double tolerance);
   void mirror_seams();
   double missed_by(const LocalMaps& maps) const;
   bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);
-  void trim(LocalMaps& maps, Attempt& best);
+  double aim(double excess) const;
+  void settle(Attempt now, LocalMaps& maps, Attempt& best);
+  void calibrate(const LocalMaps& maps);
+  Attempt approach(double model_energy, bool is_sketched, int calibrations);
+  void join_charts(Attempt& best);
+  void vary(int rounds, Attempt& best);
 
   const SearchLevel& level_;
   const Mirror* mirror_;  ///< or null
   const Start start_;
   const SeamTarget& target_;
+  const bool is_thorough_;
   const Work work_;
   std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
   SeamSearch search_;

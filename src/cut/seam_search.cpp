@@ -23,6 +23,8 @@ constexpr std::size_t kEnds = 6;
 constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
+/// Of what is numbered, those of consecutive rounds are apart and all get their turn.
+constexpr double kGoldenTurn = 0.6180339887498949;
 /// The image of a path is followed within so many rings, and that of the tip of a branch is another
 /// tip within so much, in roots of the area.
 constexpr int kBeside = 2;
@@ -454,6 +456,32 @@ void SeamSearch::exchange(double target) {
     take(before, anchors);
     return;
   }
+}
+
+bool SeamSearch::ruin(int number, int count) {
+  std::vector<Index> tips;
+  for (Index v = 0; v < surface_.vertex_count(); ++v) {
+    if (degree_[v] == 1 && !surface_.on_boundary[v]) tips.push_back(v);
+  }
+  if (tips.empty()) return false;
+  const double turn = number * kGoldenTurn;
+  const auto first = static_cast<std::size_t>((turn - std::floor(turn)) * std::ssize(tips));
+  const Vec3 center = surface_.positions[tips[first]];
+  std::vector<std::pair<double, Index>> near;
+  for (const Index v : tips) near.emplace_back((surface_.positions[v] - center).norm(), v);
+  std::sort(near.begin(), near.end());
+  bool any = false;
+  for (const auto& [distance, tip] : near) {
+    if (count == 0) break;
+    if (degree_[tip] != 1) continue;
+    const Branch branch = branch_from(tip);
+    if (branch.halfedges.empty() || !is_branch(branch)) continue;
+    remove(branch);
+    any = true;
+    --count;
+  }
+  refresh();
+  return any;
 }
 
 std::vector<SeamSearch::Joint> SeamSearch::joints(const std::vector<Index>& chart,

@@ -55,6 +55,13 @@ class SeamSearch {
   /// `target`, and goes there, as long as something is gained.
   void exchange(double target);
 
+  /// Takes `count` branches that are near one another away; by `number` they are others. Whether
+  /// any went.
+  bool ruin(int number, int count);
+
+  /// As ElasticModel has it.
+  void calibrate(const std::vector<double>& excess) { model_.calibrate(excess); }
+
   /// A seam between two charts, and what it is worth.
   struct Joint {
     std::vector<Index> halfedges;  ///< in order

@@ -33,9 +33,15 @@ constexpr Index kRoughFaces = 3000;
 /// few long ones, and the better is taken.
 constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
 /// With care, a surface is searched from so many starts with either, of which so many are finished,
-/// and their charts joined on trial: seams are 2% shorter.
-constexpr int kStarts = 3;
+/// and the best improved: seams are 4% shorter. A small one, on which a start costs little, is from
+/// more.
+constexpr int kStarts = 3, kStartsOfSmall = 6;
 constexpr std::size_t kFinished = 3;
+constexpr Index kSmall = 2000;
+/// What was found is varied in rounds that go over so many faces in all, within these bounds.
+constexpr Index kFacesToVary = 120'000, kLeastRounds = 4, kMostRounds = 40;
+/// Up to so many faces, seams that were carried are finished by maps of the surface itself.
+constexpr Index kFinishedFaces = 30'000;
 /// What is within so much of the root of the area when mirrored is symmetric.
 constexpr double kMirrorTolerance = 0.01;
 /// Straightening that gains more than the rest moves seams from where they are needed.
@@ -71,10 +77,10 @@ Attempt best_of(std::vector<Attempt> made) {
 
 /// Of one level alone.
 Attempt search_directly(const SearchLevel& level, const std::vector<Start>& starts,
-                        const SeamTarget& target, const Work& work) {
+                        bool is_thorough, const SeamTarget& target, const Work& work) {
   const AnchoredSeams open = opened(level, work);
   return best_of(attempts(work, starts, [&](const Start& start, const Work& part) {
-    return LevelSearch(level, open, start, target, part).run(false);
+    return LevelSearch(level, open, start, target, is_thorough, part).run(false);
   }));
 }
 
@@ -83,18 +89,19 @@ Attempt search_directly(const SearchLevel& level, const std::vector<Start>& star
 Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
                      const SeamWeights& weights, const Mirror* mirror, const Work& work) {
   std::vector<Start> starts;
-  for (int number = 0; number < (is_thorough ? kStarts : 1); ++number) {
+  const int count = level.surface.face_count() <= kSmall ? kStartsOfSmall : kStarts;
+  for (int number = 0; number < (is_thorough ? count : 1); ++number) {
     for (const double least_cost : {kManyPaths, kFewPaths}) starts.push_back({least_cost, number});
   }
   SearchLevel rough =
       coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
                     kRoughFaces, weights, level.hints, work);
-  if (rough.fine_vertex.empty()) return search_directly(level, starts, target, work);
+  if (rough.fine_vertex.empty()) return search_directly(level, starts, is_thorough, target, work);
   if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
   const AnchoredSeams open = opened(rough, work);
   const std::vector<Attempt> sketches =
       attempts(work.part(0, 0.3), starts, [&](const Start& start, const Work& part) {
-        return LevelSearch(rough, open, start, target, part).sketch();
+        return LevelSearch(rough, open, start, target, is_thorough, part).sketch();
       });
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), 0);
@@ -109,7 +116,8 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
     const bool is_open = level.locked.empty() ||
                          cut_into_charts(level.surface, carried.seams, part).non_disks.empty();
     if (!is_open) carried = opened(level, part);
-    return LevelSearch(level, std::move(carried), starts[i], target, part).run(is_open);
+    return LevelSearch(level, std::move(carried), starts[i], target, is_thorough, part)
+        .run(is_open);
   }));
 }
 
@@ -133,9 +141,9 @@ double length_of(const Surface& surface, const EdgeMarks& marks) {
 /// What half of the seams and its image make, as one that reaches the target, or comes as near to
 /// it as they do; they themselves where that costs more than `most` times as much, by `cost`, or
 /// breaks another bound that they keep. Whether it did not.
-bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTarget& target,
-                    const std::vector<double>& cost, double most, const Work& work,
-                    Attempt& found) {
+bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thorough,
+                    const SeamTarget& target, const std::vector<double>& cost, double most,
+                    const Work& work, Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
   if (std::find(seams.begin(), seams.end(), true) == seams.end()) return true;
   const std::vector<double> path_cost = path_costs(level);
@@ -145,7 +153,8 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
         mirrored_seams(level.surface, mirror, found.seams, side, path_cost, level.locked, part);
     half.seams = straighten(level.surface, half.seams, level.cost, half.anchors, level.locked,
                             level.straightness, part);
-    return LevelSearch(level, std::move(half), Start(), target, part, &mirror).run(true);
+    return LevelSearch(level, std::move(half), Start(), target, is_thorough, part, &mirror)
+        .run(true);
   }));
   const Surface& surface = level.surface;
   if (best.excess > std::max(1.0, found.excess)) return false;
@@ -169,9 +178,12 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
 /// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
 Attempt search_anew(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
-  Attempt found = search_level(level, is_thorough, target, weights, mirror, work.part(0, 0.9));
+  Attempt found = search_level(level, is_thorough, target, weights, mirror, work.part(0, 0.8));
   if (is_thorough) {
-    LevelSearch(level, found.seams, Start(), target, work.part(0.9, 1)).join_charts(found);
+    const Index rounds =
+        std::clamp(kFacesToVary / level.surface.face_count(), kLeastRounds, kMostRounds);
+    LevelSearch(level, found.seams, Start(), target, true, work.part(0.8, 1))
+        .improve(rounds, found);
   }
   return found;
 }
@@ -205,10 +217,11 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   SearchedSeams searched;
   BegunSearch& search = searched.search;
   search = {begun.level, {}, begun.mirror};
+  const bool is_thorough = surface.face_count() <= kThoroughFaces;
   Attempt found;
   if (begun.level && !begun.seams.seams.empty()) {
-    found = LevelSearch(*begun.level, begun.seams, Start(), target, work.part(0.3, 0.9),
-                        begun.mirror.get())
+    found = LevelSearch(*begun.level, begun.seams, Start(), target, is_thorough,
+                        work.part(0.3, 0.9), begun.mirror.get())
                 .run(true);
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
@@ -219,10 +232,9 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
     }
-    const bool is_thorough = surface.face_count() <= kThoroughFaces;
     found = search_anew(*search.level, is_thorough, target, weights, search.mirror.get(),
                         work.part(0.3, 0.85));
-    if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, cost,
+    if (search.mirror && !make_symmetric(*search.level, *search.mirror, is_thorough, target, cost,
                                          1 + weights.symmetry, work.part(0.85, 0.88), found)) {
       search.mirror.reset();
       SearchLevel level = *search.level;
@@ -245,9 +257,21 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   hold_bends(coarse, work.aside(), found);
   std::vector<double> cost = finer_costs(coarse, surface, real_faces, weights, hints, work);
   if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
-  searched.seams =
-      carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1))
-          .seams;
+  AnchoredSeams carried =
+      carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
+  if (surface.face_count() <= kFinishedFaces && !search.mirror &&
+      cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
+    const SearchLevel whole = coarser_level(surface, real_faces, topology, locked,
+                                            surface.face_count(), weights, hints, work);
+    found = LevelSearch(whole, carried, Start(), target, true, work.aside()).run_calibrated(0);
+    if (found.excess <= 1) {
+      searched.energy = found.energy;
+      searched.seams = std::move(found.seams.seams);
+      searched.maps = std::move(found.maps);
+      return searched;
+    }
+  }
+  searched.seams = std::move(carried.seams);
   return searched;
 }
 

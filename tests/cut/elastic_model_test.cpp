@@ -73,6 +73,16 @@ std::vector<Index> picked(const Surface& surface, const std::vector<bool>& is_wa
   return found;
 }
 
+/// Of about such a mean.
+std::vector<double> random_excess(const Surface& surface, double mean, std::mt19937_64& generator) {
+  std::vector<double> excess;
+  for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+    const double share = 2 * mean / static_cast<double>(surface.positions.size());
+    excess.push_back(share * random_below(generator, 1000) / 1000);
+  }
+  return excess;
+}
+
 TEST(ElasticModel, NothingIsStressedAtPins) {
   std::mt19937_64 generator(1);
   for (const TriangleList& mesh : surfaces()) {
@@ -143,6 +153,7 @@ TEST(ElasticModel, MorePinsAreJudgedAsIfTheyWereThere) {
     for (int trial = 0; trial < 4; ++trial) {
       std::vector<bool> pinned = random_pins(surface, 30, generator);
       model.pin(pinned);
+      if (trial > 1) model.calibrate(random_excess(surface, 0.1, generator));
       const std::vector<bool> all(pinned.size(), true);
       const auto more = picked(surface, all, pinned, false, 1 + 3 * trial, generator);
       const ModelChange with = model.with(more);
@@ -170,6 +181,7 @@ TEST(ElasticModel, FewerPinsAreJudgedAsIfTheyWereGone) {
         wanted[surface.faces[component.first_face][0]] = false;
       }
       model.pin(pinned);
+      if (trial > 1) model.calibrate(random_excess(surface, 0.1, generator));
       const auto gone = picked(surface, wanted, pinned, true, 1 + 5 * trial, generator);
       const ModelChange without = model.without(gone);
       const std::size_t half = gone.size() / 2;
@@ -229,6 +241,44 @@ TEST(ElasticModel, RealMapsHaveAboutItsEnergy) {
   }
 }
 
+TEST(ElasticModel, LearnsWhereMapsCostMore) {
+  TriangleList cone = meshes::fan(8);
+  cone.positions[0].z() = 1;
+  cone = disks::refined(cone, 3);
+  const TriangleList other =
+      meshes::moved(cone, [](const Vec3& p) { return Vec3(p + Vec3(9, 0, 0)); });
+  const Surface surface = built(meshes::together({cone, other}));
+  const Index tips[] = {0, size_of(cone.positions)};
+  ElasticModel model(surface, surface.face_count(), Work(1));
+  model.pin(only(surface, {}));
+  const auto gain = [&](int i) {
+    return model.energy() - model.with(std::vector(1, tips[i])).energy();
+  };
+  const double before = gain(0);
+  EXPECT_NEAR(gain(1), before, 1e-6);
+  // Three times as much at the one as at the other.
+  std::vector<double> excess(surface.positions.size());
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    excess[v] = (v < tips[1] ? 1.5 : 0.5) * (model.energy() - 2) / surface.vertex_count();
+  }
+  model.calibrate(excess);
+  EXPECT_GT(gain(0), 1.4 * gain(1));
+  EXPECT_GT(gain(0), 0.5 * before);
+}
+
+TEST(ElasticModel, LearnsNothingFromNothing) {
+  // As of maps without distortion, or without a face that has area.
+  const Surface surface = built(disks::blob(2));
+  ElasticModel model(surface, surface.face_count(), Work(1));
+  model.pin(only(surface, {0}));
+  const std::vector<double> nothing(surface.positions.size(), 0);
+  for (int i = 0; i < 30; ++i) {
+    model.calibrate(nothing);
+    EXPECT_TRUE(std::isfinite(model.energy()));
+    EXPECT_GE(model.energy(), 2);
+  }
+}
+
 TEST(ElasticModel, SizeDoesNotMatter) {
   for (const TriangleList& mesh : surfaces()) {
     const auto energy = [&](double scale) {
@@ -237,6 +287,7 @@ TEST(ElasticModel, SizeDoesNotMatter) {
       std::mt19937_64 generator(4);
       ElasticModel model(surface, surface.face_count(), Work(1));
       model.pin(random_pins(surface, 20, generator));
+      model.calibrate(random_excess(surface, 0.1, generator));
       return model.energy();
     };
     EXPECT_NEAR(energy(1), energy(1000), 1e-9);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -229,7 +230,7 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
   constexpr double kTargets[] = {2.001, 2.01, 2.05, 2.2, 2.6, 4, 20};
   const double target = kTargets[random_below(generator, 7)];
   const double energy = search.energy(), cost = search.cost();
-  switch (random_below(generator, 6)) {
+  switch (random_below(generator, 7)) {
     case 0: {
       const bool reached = search.extend(target, random_below(generator, 2) == 0);
       EXPECT_EQ(reached, search.energy() <= target);
@@ -254,6 +255,12 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
       EXPECT_LE(search.energy(), std::max(target, energy) + 1e-6);
       EXPECT_LE(search.cost(), cost + 1e-9);
       break;
+    case 5: {
+      const bool went = search.ruin(static_cast<int>(random_below(generator, 50)), 3);
+      EXPECT_GE(search.energy(), energy - 1e-6);
+      EXPECT_EQ(search.cost() < cost, went);
+      break;
+    }
     default:
       search.take(
           straighten(trial.surface, search.seams(), trial.cost, search.anchors(), {}, 0, Work(1)));
@@ -277,6 +284,29 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
       }
     }
   }
+}
+
+TEST(SeamSearch, RuinsSoManyBranchesAndOthersInOtherRounds) {
+  std::mt19937_64 generator(13);
+  const Trial trial(disks::blob(3), 1, generator);
+  SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                    kAnyLength, kLeastCost, Work(1));
+  ASSERT_TRUE(search.extend(2.01));
+  const EdgeMarks whole = search.seams();
+  std::set<EdgeMarks> left;
+  for (int round = 1; round <= 8; ++round) {
+    double cost = search.cost();
+    for (const int count : {1, 2, 4}) {
+      search.take(whole);
+      EXPECT_TRUE(search.ruin(round, count));
+      EXPECT_LT(search.cost(), cost);
+      cost = search.cost();
+      for (std::size_t h = 0; h < whole.size(); ++h) EXPECT_LE(search.seams()[h], whole[h]);
+    }
+    left.insert(search.seams());
+    search.take(whole);
+  }
+  EXPECT_GE(left.size(), 4);
 }
 
 TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {

@@ -198,6 +198,12 @@ TEST(Search, CarriesTheSeamsOfACoarseSurfaceToTheFineOne) {
   const SearchedSeams found = searched(surface, 2.05);
   EXPECT_EQ(charts(surface, found.seams), 1);
   EXPECT_LE(found.energy, 2.05);
+  // And finishes them there.
+  ASSERT_EQ(found.maps.size(), 1);
+  const CutSurface cut = cut_into_charts(surface, found.seams, Work(1));
+  const DiskMesh& mesh = cut.charts[0].mesh;
+  EXPECT_TRUE(certify(mesh.faces, mesh.boundary, found.maps[0], Work(1)).injective());
+  EXPECT_GE(found.energy, 2.045);
 }
 
 TEST(Search, GoesOnFromWhatWasFoundForAnotherTarget) {
