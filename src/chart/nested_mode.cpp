@@ -30,6 +30,7 @@
 #include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
 #include "prolong/interpolation.h"
+#include "repair/regions.h"
 #include "repair/repair.h"
 #include "simplify/levels.h"
 #include "simplify/simplify.h"
@@ -158,6 +159,22 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
   return static_cast<double>(flips) <= most_flips * mesh.face_count();
 }
 
+/// The stage "repair". On a mesh that is `hard` what was flipped is relaxed with what is around it:
+/// there the solve is far from its minimum. Returns whether all faces are positive.
+bool mend_level(const Level& level, const RepairOptions& how, bool hard,
+                const ChartOptions& options, const Work& work, ChartMap& map) {
+  const DiskMesh& mesh = *level.problem.mesh;
+  std::vector<Index> flipped;
+  if (hard) flipped = non_positive_faces(mesh.faces, map.uvs, work);
+  if (!mend(level.problem, how, options, work, map)) return false;
+  if (flipped.empty()) return true;
+  run_stage("repair", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
+    map.statistics.cleaned_patches +=
+        relax_regions(options.energy, mesh, level.problem.rest, map.uvs, flipped, inner);
+  });
+  return true;
+}
+
 /// Polishes where it is worth it; with contact where the boundary would cross itself.
 void polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
                   const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
@@ -195,7 +212,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const auto solve = [&] {
     positive =
         solve_level(level, anchored, bearable.flips, work.part(0.3, 0.5), cycle, climb.map) &&
-        mend(level.problem, how, options, work.part(0.5, 0.6), climb.map);
+        mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
     return positive;
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
@@ -205,9 +222,10 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches                    ? PolishLength::kWhole
-                              : is_finest && !climb.hard ? PolishLength::kShort
-                                                         : PolishLength::kMiddling;
+  const PolishLength length = touches      ? PolishLength::kWhole
+                              : !is_finest ? PolishLength::kMiddling
+                              : climb.hard ? PolishLength::kLong
+                                           : PolishLength::kShort;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;
   const double below = climb.energy;

@@ -8,9 +8,10 @@
 //                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
-//                                                     if a step came since
+//   or of regions                                     if a step came since
 //
-// Held up: nearly singular faces would shorten the steps. Patches around these are optimised then.
+// Held up: nearly singular faces would shorten the steps. Patches around these are optimised then,
+// or whole regions where they are many, each of which a patch would leave to its neighbours.
 // When the time is up, what is left of the rounds and the Newton steps is left out.
 #include "chart/polish_schedule.h"
 
@@ -22,6 +23,7 @@
 #include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
+#include "descend/line_search.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
 #include "energy/energy.h"
@@ -30,17 +32,23 @@
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
 #include "repair/outliers.h"
+#include "repair/regions.h"
 
 namespace beltrami {
 namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
-constexpr int kMostSteps = 30;
+constexpr int kMostSteps = 30, kLongSteps = 20;
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
 constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
 constexpr double kAsFitted = 2e-3;         // relative decrease up to which a factor is as good
+
+/// With more faces in the way, in a mesh that is large or not, patches hold each other up, and
+/// regions around the worst of them are relaxed instead.
+constexpr double kManyOf = 1e-4, kMany = 10;
+constexpr double kMostRelaxed = 1e-2;  // of the faces
 
 /// What a length of the polish means.
 struct Bounds {
@@ -50,16 +58,19 @@ struct Bounds {
   double stationary;  ///< predicted relative decrease that is none
   bool newton;        ///< may end with Newton steps
   bool in_haste;  ///< one factor will do, where no distortion has come on since the coarser mesh
+  bool regions;   ///< many faces in the way are relaxed in regions
 };
 
 Bounds bounds_of(PolishLength length) {
   switch (length) {
     case PolishLength::kShort:
-      return {4e-4, 1e-4, 8, 1e-3, false, true};
+      return {4e-4, 1e-4, 8, 1e-3, false, true, false};
     case PolishLength::kMiddling:
-      return {1e-4, 3e-4, kMostSteps, 1e-3, false, false};
+      return {1e-4, 3e-4, kMostSteps, 1e-3, false, false, false};
+    case PolishLength::kLong:
+      return {1e-4, 5e-4, kLongSteps, 1e-3, false, false, true};
     default:
-      return {0, 1e-3, kMostSteps, 1e-4, true, false};
+      return {0, 1e-3, kMostSteps, 1e-4, true, false, true};
   }
 }
 
@@ -98,6 +109,32 @@ void clean(const Setting& setting, const std::vector<Index>& also, State& state)
   state.clean = true;
 }
 
+std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
+  std::vector<Index> faces;
+  for (const SingularStep& s : steps) faces.push_back(s.face);
+  return faces;
+}
+
+/// Of what held the last steps up: in patches, or in regions around the worst of it.
+void clear_way(const Setting& setting, State& state) {
+  std::vector<SingularStep> blocking = state.last.blocking;
+  const DiskMesh& mesh = *setting.fine.mesh;
+  const bool many =
+      static_cast<double>(blocking.size()) > std::max(kMany, kManyOf * mesh.face_count());
+  if (!setting.bounds.regions || !many) {
+    clean(setting, faces_of(blocking), state);
+    return;
+  }
+  std::sort(blocking.begin(), blocking.end(), [](const SingularStep& a, const SingularStep& b) {
+    return a.length != b.length ? a.length < b.length : a.face < b.face;
+  });
+  const auto most = static_cast<std::size_t>(kMostRelaxed * mesh.face_count());
+  if (blocking.size() > most) blocking.resize(most);
+  const double done = share(state.iterations);
+  state.cleaned_patches += relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs,
+                                         faces_of(blocking), setting.work.part(done, done));
+}
+
 /// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
 void take_steps(const Setting& setting, int steps, bool force_first, State& state) {
   // The objective is a mean, the stiffness that of a sum.
@@ -117,7 +154,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
                       setting.work.part(share(before), share(before + steps)));
   state.iterations += state.last.iterations();
   if (state.last.iterations() > 0) state.clean = false;
-  if (state.last.blocked) clean(setting, state.last.blocking, state);
+  if (state.last.blocked) clear_way(setting, state);
 }
 
 /// Fits the factor to the map.

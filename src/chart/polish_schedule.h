@@ -17,6 +17,7 @@ namespace beltrami {
 enum class PolishLength {
   kWhole,     ///< to a stationary point
   kMiddling,  ///< of a map that a finer mesh starts from
+  kLong,      ///< of a map of the finest mesh where coarser ones were hard
   kShort,  ///< of a map that came from a polished one of a coarser mesh: ends where a step promises
            ///< little
 };

@@ -185,11 +185,10 @@ void move_rigidly(const Triangle& face, const SingularStep& singular, Field& dir
 /// along what is left, and the faces found at first. Without `rigidly` the direction stays as it
 /// is.
 double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly,
-                 Field& direction, std::vector<Index>& blocking, const Work& work) {
+                 Field& direction, std::vector<SingularStep>& blocking, const Work& work) {
   constexpr double kLimit = 1 / kSingularShare;
   std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, nullptr, work);
-  blocking.clear();
-  for (const SingularStep& s : singular) blocking.push_back(s.face);
+  blocking = singular;
   std::vector<std::uint8_t> changed;
   for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
     changed.resize(uvs.size());

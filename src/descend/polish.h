@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "descend/contact.h"
+#include "descend/line_search.h"
 #include "energy/energy.h"
 #include "mesh/rest_shape.h"
 
@@ -31,8 +32,8 @@ struct PolishResult {
   bool converged = false;        ///< ended so, after a step of at least 1/2 or, with contact,
                                  ///< after three that gained as little as the next one would
   bool blocked = false;          ///< the next step would have had to be shorter than that
-  std::vector<Index> blocking;   ///< because of these faces, which it would make nearly singular
-  double predicted = 0;          ///< -gradient . direction of the last step looked at
+  std::vector<SingularStep> blocking;  ///< because of these, near to which it would come
+  double predicted = 0;                ///< -gradient . direction of the last step looked at
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };
 

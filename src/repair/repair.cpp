@@ -19,6 +19,7 @@
 #include "repair/patch.h"
 #include "repair/patch_tries.h"
 #include "repair/patch_work.h"
+#include "repair/regions.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -27,6 +28,9 @@ namespace {
 /// A moved vertex must leave every face of its ring at least this share of the mean one: tiny
 /// positive areas pass the exact test and give energies of 1e25.
 constexpr double kLeastAreaShare = 1e-3;
+/// With more faces left by the kernel fix, regions around all of them come before the patches.
+constexpr std::size_t kManyFlips = 30;
+constexpr int kRegionRings = 4;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
 constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
 
@@ -89,6 +93,10 @@ class Repair {
     }
     if (bad.size() > options_.most_patches) return;
     PatchWork patches(mesh_, uvs_);
+    if (bad.size() > kManyFlips) {
+      untangle_regions(bad, patches);
+      look_again(bad);
+    }
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;
       const double share = (until - from) / kPatchRings.size();
@@ -100,6 +108,23 @@ class Repair {
                     patches);
       }
       look_again(bad);
+    }
+  }
+
+  /// Of many faces most patches have others on their edges, which hold them.
+  void untangle_regions(const std::vector<Index>& bad, PatchWork& patches) {
+    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings);
+    std::vector<std::uint8_t> positive(regions.size(), 0);
+    const Work alone = work_.aside();
+    parallel_for(work_, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
+      Patch& region = regions[i];
+      positive[i] = untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
+    });
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      if (positive[i] == 0 || !patches.take(regions[i])) continue;
+      ++result_.patch_fixes;
+      const std::vector<Index>& faces = regions[i].mesh_faces;
+      changed_.insert(changed_.end(), faces.begin(), faces.end());
     }
   }
 

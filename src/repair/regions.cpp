@@ -1,0 +1,179 @@
+#include "repair/regions.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "descend/newton.h"
+#include "exact/certificate.h"
+#include "repair/hub_turns.h"
+#include "repair/patch_work.h"
+
+namespace beltrami {
+namespace {
+
+constexpr int kRings = 4;
+constexpr int kNewtonSteps = 30;
+constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours change anyway
+/// Of the vertices, beyond which regions are not widened: their systems are to stay small beside
+/// what the mesh takes.
+constexpr Index kMostOf = 7;
+constexpr Index kMostFacesAtVertex = 1000;
+
+/// Calls visit(u) for the neighbours of a vertex, for some of them twice.
+template <class Visit>
+void for_each_neighbour(const DiskMesh& mesh, Index vertex, const Visit& visit) {
+  mesh.for_each_outgoing(vertex, [&](Index h) {
+    visit(mesh.target(h));
+    visit(mesh.origin(Surface::previous(h)));
+  });
+}
+
+/// Where each vertex belongs: to a region by its number, to none yet, or to none for good.
+class Membership {
+ public:
+  explicit Membership(const DiskMesh& mesh) : mesh_(mesh), of_(mesh.positions.size(), kOutside) {}
+
+  /// Takes the vertex in. Returns whether it was outside and may move.
+  bool take(Index vertex) {
+    if (of_[vertex] != kOutside) return false;
+    const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
+    of_[vertex] = hub ? kHub : kWaiting;
+    return !hub;
+  }
+
+  /// The vertices of the region that one belongs to, increasing; empty where they have been given.
+  std::vector<Index> connected_to(Index vertex, Index region) {
+    std::vector<Index> members;
+    if (of_[vertex] != kWaiting) return members;
+    PollSometimes poll;
+    of_[vertex] = region;
+    members.push_back(vertex);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      for_each_neighbour(mesh_, members[i], [&](Index u) {
+        poll();
+        if (of_[u] != kWaiting) return;
+        of_[u] = region;
+        members.push_back(u);
+      });
+    }
+    std::sort(members.begin(), members.end());
+    return members;
+  }
+
+  bool moves(Index vertex, Index region) const { return of_[vertex] == region; }
+
+ private:
+  static constexpr Index kOutside = -1, kWaiting = -2, kHub = -3;
+
+  const DiskMesh& mesh_;
+  std::vector<Index> of_;
+};
+
+/// The vertices that are to move, each once.
+std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces, int rings,
+                          Membership& membership) {
+  std::vector<Index> found;
+  PollSometimes poll;
+  for (const Index face : faces) {
+    for (const Index v : mesh.faces[face]) {
+      if (membership.take(v)) found.push_back(v);
+    }
+  }
+  std::size_t begin = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::size_t end = found.size();
+    if (static_cast<Index>(end) > mesh.vertex_count() / kMostOf) break;
+    for (; begin < end; ++begin) {
+      for_each_neighbour(mesh, found[begin], [&](Index u) {
+        poll();
+        if (membership.take(u)) found.push_back(u);
+      });
+    }
+  }
+  return found;
+}
+
+template <class Item>
+void sort_unique(std::vector<Item>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+/// The faces at these vertices, which are those of a region. `local` is for its own use.
+Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+               const std::vector<Vec2>& uvs, const std::vector<Index>& vertices,
+               const Membership& membership, Index region, std::vector<Index>& local) {
+  Patch patch;
+  PollSometimes poll;
+  for (const Index v : vertices) {
+    poll();
+    mesh.for_each_outgoing(v, [&](Index h) { patch.mesh_faces.push_back(h / 3); });
+  }
+  sort_unique(patch.mesh_faces);
+  for (const Index f : patch.mesh_faces) {
+    const Triangle& corners = mesh.faces[f];
+    patch.mesh_vertices.insert(patch.mesh_vertices.end(), corners.begin(), corners.end());
+  }
+  sort_unique(patch.mesh_vertices);
+  for (const Index v : patch.mesh_vertices) {
+    const bool moves = membership.moves(v, region);
+    local[v] = size_of(patch.uvs);
+    patch.uvs.push_back(uvs[v]);
+    patch.fixed.push_back(!moves);
+    patch.moves_boundary = patch.moves_boundary || (moves && mesh.on_boundary[v]);
+  }
+  for (const Index f : patch.mesh_faces) {
+    const Triangle& t = mesh.faces[f];
+    patch.faces.push_back({local[t[0]], local[t[1]], local[t[2]]});
+    if (!rest.empty()) patch.rest.push_back(rest[f]);
+  }
+  // A region that is the whole mesh would drift.
+  if (vertices.size() == patch.fixed.size()) patch.fixed[0] = true;
+  return patch;
+}
+
+}  // namespace
+
+std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                               const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
+                               int rings) {
+  Membership membership(mesh);
+  std::vector<Patch> regions;
+  std::vector<Index> local(mesh.positions.size());
+  for (const Index v : around(mesh, faces, rings, membership)) {
+    const auto region = size_of(regions);
+    const std::vector<Index> vertices = membership.connected_to(v, region);
+    if (vertices.empty()) continue;
+    regions.push_back(patch_of(mesh, rest, uvs, vertices, membership, region, local));
+  }
+  return regions;
+}
+
+std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
+                           const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                           const std::vector<Index>& faces, const Work& work) {
+  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, kRings);
+  NewtonOptions options;
+  options.energy = energy;
+  options.tolerance = kTolerance;
+  options.max_iterations = kNewtonSteps;
+  options.proxy_steps = 0;  // the map is near its minimum but for some faces
+  const Work alone = work.aside();
+  std::vector<std::uint8_t> positive(regions.size(), 0);
+  parallel_for(work, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
+    Patch& region = regions[i];
+    minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+    positive[i] = non_positive_faces(region.faces, region.uvs, alone).empty();
+  });
+  PatchWork taken(mesh, uvs);
+  std::int64_t changed = 0;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (positive[i] != 0 && taken.take(regions[i])) ++changed;
+  }
+  return changed;
+}
+
+}  // namespace beltrami

@@ -1,0 +1,33 @@
+// Whole regions around faces that are in each other's way, optimised at once where patches would
+// each hold what the next one has to move.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "energy/energy.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+#include "repair/patch.h"
+
+namespace beltrami {
+
+/// The vertices of the faces and those up to `rings` rings around move, or fewer rings where that
+/// would be more than a seventh of all vertices; what hangs together is one patch, so that none
+/// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay fixed. `rest` may be
+/// empty, and that of the patches then is. Takes time for the mesh.
+std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                               const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
+                               int rings);
+
+/// Minimises the energy in the regions within 4 rings of the faces, in place, to a relative
+/// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken
+/// back if it adds boundary crossings. Ends where the time is up. Returns the number of regions
+/// that changed. Precondition: the faces of the mesh are positive; they stay so.
+std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
+                           const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                           const std::vector<Index>& faces, const Work& work);
+
+}  // namespace beltrami
