@@ -300,7 +300,7 @@ void LevelSearch::calibrate(const LocalMaps& maps) {
 }
 
 Attempt LevelSearch::run(bool is_sketched) {
-  return approach(target_.energy, is_sketched, 0);
+  return approach(target_.energy, is_sketched, false, 0);
 }
 
 Attempt LevelSearch::run_calibrated(int calibrations) {
@@ -310,13 +310,14 @@ Attempt LevelSearch::run_calibrated(int calibrations) {
   calibrate(maps);
   const double energy = aim(found.excess);
   if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()));
-  Attempt attempt = approach(energy, true, calibrations);
+  Attempt attempt = approach(energy, true, true, calibrations);
   return attempt.is_better_than(found) ? attempt : found;
 }
 
 /// From seams with which the model is to have an energy, until maps have the one asked for. The
 /// model is calibrated so often on the way.
-Attempt LevelSearch::approach(double model_energy, bool is_sketched, int calibrations) {
+Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_calibrated,
+                              int calibrations) {
   Attempt best, promising;
   LocalMaps maps;
   std::array<double, 2> last = {-1, -1};  // cost and energy of the model, judged before
@@ -372,7 +373,7 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, int calibra
       model_energy = 2 + model_excess * step;
     }
   }
-  if (is_thorough_ && promising.promised() < best.cost) settle(std::move(promising), maps, best);
+  if (is_calibrated && promising.promised() < best.cost) settle(std::move(promising), maps, best);
   if (best.excess <= 1) settle(Attempt(best), maps, best);
   return best;
 }

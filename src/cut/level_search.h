@@ -72,7 +72,7 @@ class LevelSearch {
   double aim(double excess) const;
   void settle(Attempt now, LocalMaps& maps, Attempt& best);
   void calibrate(const LocalMaps& maps);
-  Attempt approach(double model_energy, bool is_sketched, int calibrations);
+  Attempt approach(double model_energy, bool is_sketched, bool is_calibrated, int calibrations);
   void join_charts(Attempt& best);
   void vary(int rounds, Attempt& best);
 

@@ -39,7 +39,7 @@ constexpr int kStarts = 3, kStartsOfSmall = 6;
 constexpr std::size_t kFinished = 3;
 constexpr Index kSmall = 2000;
 /// What was found is varied in rounds that go over so many faces in all, within these bounds.
-constexpr Index kFacesToVary = 120'000, kLeastRounds = 4, kMostRounds = 40;
+constexpr Index kFacesToVary = 60'000, kLeastRounds = 2, kMostRounds = 40;
 /// Up to so many faces, seams that were carried are finished by maps of the surface itself.
 constexpr Index kFinishedFaces = 30'000;
 /// What is within so much of the root of the area when mirrored is symmetric.
@@ -220,9 +220,9 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   const bool is_thorough = surface.face_count() <= kThoroughFaces;
   Attempt found;
   if (begun.level && !begun.seams.seams.empty()) {
-    found = LevelSearch(*begun.level, begun.seams, Start(), target, is_thorough,
-                        work.part(0.3, 0.9), begun.mirror.get())
-                .run(true);
+    LevelSearch again(*begun.level, begun.seams, Start(), target, is_thorough, work.part(0.3, 0.9),
+                      begun.mirror.get());
+    found = is_thorough ? again.run_calibrated(0) : again.run(true);
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
     if (!begun.level || weights.symmetry > 0) {
@@ -261,10 +261,11 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
   if (surface.face_count() <= kFinishedFaces && !search.mirror &&
       cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
-    const SearchLevel whole = coarser_level(surface, real_faces, topology, locked,
-                                            surface.face_count(), weights, hints, work);
-    found = LevelSearch(whole, carried, Start(), target, true, work.aside()).run_calibrated(0);
+    auto whole = std::make_shared<const SearchLevel>(coarser_level(
+        surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));
+    found = LevelSearch(*whole, carried, Start(), target, true, work.aside()).run_calibrated(0);
     if (found.excess <= 1) {
+      search = {std::move(whole), found.seams, {}};
       searched.energy = found.energy;
       searched.seams = std::move(found.seams.seams);
       searched.maps = std::move(found.maps);
