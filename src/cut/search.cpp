@@ -39,7 +39,7 @@ constexpr int kStarts = 3, kStartsOfSmall = 6;
 constexpr std::size_t kFinished = 3;
 constexpr Index kSmall = 2000;
 /// What was found is varied in rounds that go over so many faces in all, within these bounds.
-constexpr Index kFacesToVary = 60'000, kLeastRounds = 2, kMostRounds = 40;
+constexpr Index kFacesToVary = 120'000, kLeastRounds = 2, kMostRounds = 40;
 /// Up to so many faces, seams that were carried are finished by maps of the surface itself.
 constexpr Index kFinishedFaces = 30'000;
 /// What is within so much of the root of the area when mirrored is symmetric.
