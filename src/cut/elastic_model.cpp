@@ -120,7 +120,7 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   laplacian.setFromTriplets(entries.begin(), entries.end());
   area_ = area.array().max(kLeastArea * area.mean()) / whole;
   price_ = Eigen::VectorXd::Ones(count);
-  laplacian_ = std::move(laplacian);
+  laplacian_.swap(laplacian);
   assemble();
 }
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "mesh/surface.h"
 #include "repair/hub_turns.h"
 #include "repair/patch_work.h"
 
