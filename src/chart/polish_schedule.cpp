@@ -48,6 +48,7 @@ constexpr double kAsFitted = 2e-3;         // relative decrease up to which a fa
 /// With more faces in the way, in a mesh that is large or not, patches hold each other up, and
 /// regions around the worst of them are relaxed instead.
 constexpr double kManyOf = 1e-4, kMany = 10;
+constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
 
 /// What a length of the polish means.
@@ -121,7 +122,7 @@ void clear_way(const Setting& setting, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
   const bool many =
       static_cast<double>(blocking.size()) > std::max(kMany, kManyOf * mesh.face_count());
-  if (!setting.bounds.regions || !many) {
+  if (!setting.bounds.regions || !many || mesh.face_count() < kLeastFaces) {
     clean(setting, faces_of(blocking), state);
     return;
   }

@@ -54,6 +54,10 @@ AnchoredSeams opened(const SearchLevel& level, const Work& work) {
           std::vector<bool>(surface.positions.size(), false)};
 }
 
+bool any_of(const EdgeMarks& marks) {
+  return std::find(marks.begin(), marks.end(), true) != marks.end();
+}
+
 /// What `run` makes of each of the items, side by side.
 template <class Item, class Run>
 std::vector<Attempt> attempts(const Work& work, const std::vector<Item>& items, const Run& run) {
@@ -145,7 +149,7 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
                     const SeamTarget& target, const std::vector<double>& cost, double most,
                     const Work& work, Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
-  if (std::find(seams.begin(), seams.end(), true) == seams.end()) return true;
+  if (!any_of(seams)) return true;
   const std::vector<double> path_cost = path_costs(level);
   const std::vector<int> sides = {1, -1};
   Attempt best = best_of(attempts(work, sides, [&](int side, const Work& part) {
@@ -247,9 +251,7 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   searched.energy = found.energy;
   const SearchLevel& coarse = *search.level;
   if (coarse.fine_vertex.empty()) {
-    const EdgeMarks& seams = found.seams.seams;
-    const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
-    if (is_cut) searched.maps = std::move(found.maps);
+    if (any_of(found.seams.seams)) searched.maps = std::move(found.maps);
     searched.seams = std::move(found.seams.seams);
     return searched;
   }
@@ -259,7 +261,7 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
   AnchoredSeams carried =
       carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
-  if (surface.face_count() <= kFinishedFaces && !search.mirror &&
+  if (surface.face_count() <= kFinishedFaces && any_of(carried.seams) && !search.mirror &&
       cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
     auto whole = std::make_shared<const SearchLevel>(coarser_level(
         surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));

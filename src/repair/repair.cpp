@@ -28,8 +28,10 @@ namespace {
 /// A moved vertex must leave every face of its ring at least this share of the mean one: tiny
 /// positive areas pass the exact test and give energies of 1e25.
 constexpr double kLeastAreaShare = 1e-3;
-/// With more faces left by the kernel fix, regions around all of them come before the patches.
+/// With more faces left by the kernel fix, regions around all of them come before the patches,
+/// unless they are so many of all that regions would be the mesh.
 constexpr std::size_t kManyFlips = 30;
+constexpr double kMostFlips = 0.02;
 constexpr int kRegionRings = 4;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
 constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
@@ -93,7 +95,8 @@ class Repair {
     }
     if (bad.size() > options_.most_patches) return;
     PatchWork patches(mesh_, uvs_);
-    if (bad.size() > kManyFlips) {
+    const auto count = static_cast<double>(bad.size());
+    if (bad.size() > kManyFlips && count <= kMostFlips * mesh_.face_count()) {
       untangle_regions(bad, patches);
       look_again(bad);
     }

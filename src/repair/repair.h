@@ -38,8 +38,8 @@ struct RepairResult {
 /// 2. Patch fix: injective untangling of 2, 4, 6, 8 rings, in which boundary vertices may move too
 ///    (an ear that became collinear cannot be mended otherwise); a patch is taken only if all its
 ///    faces are then positive and the boundary has no more crossings than before. Where it would
-///    have more, again with the boundary held, and from a straight one. Of over 30 faces the
-///    regions within 4 rings come first, each untangled at once.
+///    have more, again with the boundary held, and from a straight one. Of over 30 faces, but no
+///    more than 2% of all, the regions within 4 rings come first, each untangled at once.
 /// 3. Global fix: see global_fix.h; taken if it leaves fewer faces that are not positive, or no
 ///    crossing where a simple boundary was asked for. What rounding folded in it goes through 1 and
 ///    2 again.
