@@ -157,9 +157,9 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
 
 // Every patch within the block has others on its edges that hold it.
 TEST(Repair, UntanglesABlockOfManyFacesAsAWhole) {
-  const Index n = 30;
+  const Index n = 70;
   const DiskMesh mesh = disks::disk(meshes::grid(n, n));
-  std::vector<Vec2> uvs = mirrored_block(mesh, n, 12, 18);
+  std::vector<Vec2> uvs = mirrored_block(mesh, n, 32, 38);
   const RepairResult result =
       repair(mesh, disks::rest_of(mesh), uvs, {.global_fix = false}, Work(1));
   EXPECT_GT(result.flips_before, 30);
