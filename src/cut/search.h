@@ -36,10 +36,10 @@ struct BegunSearch {
 
 struct SearchedSeams {
   EdgeMarks seams;    ///< on the surface given
-  double energy = 2;  ///< of the coarse maps along them
+  double energy = 2;  ///< of the maps along them that judged, most often coarse ones
   BegunSearch search;
-  /// The maps, where the surface is its own coarse one and is cut at all: per chart of it cut along
-  /// the seams.
+  /// The maps, where the surface is its own coarse one or the seams were finished on it, and is cut
+  /// at all: per chart of it cut along the seams.
   std::vector<std::vector<Vec2>> maps;
 };
 
