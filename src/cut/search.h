@@ -30,7 +30,7 @@ inline constexpr Index kThoroughFaces = 100'000;
 /// What a search leaves to one of the same surface for another target.
 struct BegunSearch {
   std::shared_ptr<const SearchLevel> level;  ///< on which seams were decided; null: none were
-  AnchoredSeams seams;  ///< what was found there; empty where the surface is its own coarse one
+  AnchoredSeams seams;  ///< what was found there; empty where no coarser one was searched
   std::shared_ptr<const Mirror> mirror;  ///< that the seams are symmetric to; null: none
 };
 
