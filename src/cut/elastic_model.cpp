@@ -132,6 +132,7 @@ void ElasticModel::assemble() {
 
 /// What each vertex has goes to those around it, by as many steps as lead over the distance.
 Eigen::VectorXd ElasticModel::spread(Eigen::VectorXd field) const {
+  // As if all faces were equilateral: 4 / sqrt(3) times the area of one.
   const double edge_squared = 2.3 / std::max<double>(surface_.face_count(), 1);
   const int steps = std::clamp(static_cast<int>(kAround * kAround / edge_squared), 1, kMostAround);
   std::vector<int> degree(static_cast<std::size_t>(field.size()));
@@ -148,7 +149,8 @@ Eigen::VectorXd ElasticModel::spread(Eigen::VectorXd field) const {
   return field;
 }
 
-/// Strain leaves the places where it has become dear: half the way is gone.
+/// The root of the ratio is taken: strain leaves the places where it has become dear, and a whole
+/// step would leave the energy of the model too low.
 void ElasticModel::calibrate(const std::vector<double>& excess) {
   const Sheet& sheet = this->sheet();
   const auto count = static_cast<Eigen::Index>(excess.size());

@@ -27,7 +27,7 @@ constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Tolerances of the maps that judge: their energies are within some 3% of the excess over 2, and
-/// within .2%.
+/// within 1%.
 constexpr double kFastTolerance = 1e-3, kMapTolerance = 1e-4;
 /// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
 /// so much of the excess, or the map is parted, too, where it lies on itself on less.
@@ -315,7 +315,8 @@ Attempt LevelSearch::run_calibrated(int calibrations) {
 }
 
 /// From seams with which the model is to have an energy, until maps have the one asked for. The
-/// model is calibrated so often on the way.
+/// model is calibrated so often on the way. `is_calibrated`: it was already, and what just misses
+/// the target is worth settling.
 Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_calibrated,
                               int calibrations) {
   Attempt best, promising;

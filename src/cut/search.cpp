@@ -33,8 +33,8 @@ constexpr Index kRoughFaces = 3000;
 /// few long ones, and the better is taken.
 constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
 /// With care, a surface is searched from so many starts with either, of which so many are finished,
-/// and the best improved: seams are 4% shorter. A small one, on which a start costs little, is from
-/// more.
+/// and the best improved: seams are 3% shorter. A small one, on which a start costs little, is
+/// searched from more.
 constexpr int kStarts = 3, kStartsOfSmall = 6;
 constexpr std::size_t kFinished = 3;
 constexpr Index kSmall = 2000;

@@ -15,7 +15,6 @@
 namespace beltrami {
 namespace {
 
-constexpr int kRings = 4;
 constexpr int kNewtonSteps = 30;
 constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours change anyway
 /// Of the vertices, beyond which regions are not widened: their systems are to stay small beside
@@ -156,7 +155,7 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                            const std::vector<Index>& faces, const Work& work) {
-  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, kRings);
+  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, kRegionRings);
   NewtonOptions options;
   options.energy = energy;
   options.tolerance = kTolerance;

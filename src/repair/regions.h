@@ -14,6 +14,9 @@
 
 namespace beltrami {
 
+/// Rings around the faces that regions reach over.
+inline constexpr int kRegionRings = 4;
+
 /// The vertices of the faces and those up to `rings` rings around move, or fewer rings where that
 /// would be more than a seventh of all vertices; what hangs together is one patch, so that none
 /// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay fixed. `rest` may be

@@ -32,7 +32,6 @@ constexpr double kLeastAreaShare = 1e-3;
 /// unless they are so many of all that regions would be the mesh.
 constexpr std::size_t kManyFlips = 30;
 constexpr double kMostFlips = 0.02;
-constexpr int kRegionRings = 4;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
 constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
 
