@@ -66,9 +66,11 @@ double method_bytes(const MeshCounts& n, const ChartOptions& options, int thread
   }
 }
 
-/// An extra beside the factor of the metric solve.
+/// An extra, as a rule beside the factor of the metric solve.
 double extra_bytes(const MeshCounts& n, Extra extra, int threads) {
   switch (extra) {
+    case Extra::kLevelHessian:
+      return nested_hessian_bytes(n, threads);
     case Extra::kNewtonSteps:
       return metric_factor_bytes(n, threads) + newton_bytes(n, threads);
     case Extra::kHarmonicMap:

@@ -12,9 +12,10 @@ namespace beltrami {
 /// What a run does on hard meshes only, beyond its estimate, and does without where its memory
 /// limit is too low for it.
 enum class Extra {
-  kHarmonicMap,  ///< beside the metric one, where that flips many faces
-  kNewtonSteps,  ///< after a polish that nearly singular faces block: several times the memory
-  kGlobalFix,    ///< of the repair
+  kHarmonicMap,   ///< beside the metric one, where that flips many faces
+  kLevelHessian,  ///< of the level below the finest of several, where its polish takes long
+  kNewtonSteps,   ///< after a polish that nearly singular faces block: several times the memory
+  kGlobalFix,     ///< of the repair
 };
 
 /// Bytes at the peak of a run with these options on so many threads, the context's mesh and results

@@ -92,6 +92,8 @@ double metric_factor_bytes(const MeshCounts& n, int threads);
 double harmonic_bytes(const MeshCounts& n, int threads);
 /// In levels, where the finest needs no factor.
 double nested_bytes(const MeshCounts& n, int threads);
+/// The same with a Hessian of the level below the finest.
+double nested_hessian_bytes(const MeshCounts& n, int threads);
 double dirichlet_bytes(const MeshCounts& n, int threads);
 double reduced_bytes(const MeshCounts& n, int threads);
 double boundary_first_bytes(const MeshCounts& n, int threads);

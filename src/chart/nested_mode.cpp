@@ -12,6 +12,7 @@
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
 #include "chart/memory.h"
+#include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "chart/polish_schedule.h"
@@ -25,6 +26,7 @@
 #include "flatten/metric.h"
 #include "flatten/v_cycle.h"
 #include "linear/smoother.h"
+#include "linear/spd_solver.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -42,18 +44,20 @@ namespace {
 constexpr Index kLeastFaces = 100000;
 /// Times the coarse faces, at least.
 constexpr Index kLeastRatio = 8;
-constexpr Index kCoarsestFaces = 10000;  // of the coarsest level
+constexpr Index kCoarsestFaces = 5000;  // of the coarsest level
+/// Up to so many composite majorization takes hardly longer than anything else.
+constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
 constexpr Index kMostFactored = 150000;
-constexpr int kSteps = 2;           // of conjugate gradients from an interpolated map
-constexpr int kRounds = 3;          // of so many steps, while more than
+constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolated map
+constexpr int kMostSteps = 6;       // while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
-/// solved by its factor instead. Where a factor is cheap, and on any level.
+/// hard for the V-cycle. Where there are few faces, where a factor is cheap, and on any level.
 struct Bearable {
   double flips, patches;
 };
-constexpr Bearable kWhereCheap{1e-3, 1e-4}, kOnAnyLevel{2e-3, 5e-4};
+constexpr Bearable kOfFew{5e-2, 5e-2}, kWhereCheap{1e-3, 1e-4}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
 /// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
@@ -71,11 +75,19 @@ constexpr double kLevels = 1.0 / 7;
 
 /// A map on the way up, with what it took.
 struct Climb {
-  ChartMap map;       ///< of the level reached
-  double energy = 0;  ///< mean, of that level
-  bool hard = false;  ///< a polish did not end stationary, or a level needed its factor
+  ChartMap map;                 ///< of the level reached
+  double energy = 0;            ///< mean, of that level
+  bool hard = false;            ///< a polish did not end stationary, or a level needed its factor
+  bool hardest = false;         ///< the latter
+  bool affords_hessian = true;  ///< of a level of more than kFewFaces
   std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
+
+/// What a mesh of so many faces has of these counts.
+MeshCounts part_of(const MeshCounts& n, double faces) {
+  const double share = std::min(1.0, faces / n.faces);
+  return {share * n.vertices, share * n.faces, share * n.boundary, n.regular, n.metas};
+}
 
 std::size_t share_of(const DiskMesh& mesh, double share) {
   return static_cast<std::size_t>(share * mesh.face_count());
@@ -132,10 +144,10 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
   return level;
 }
 
-/// The stage "flatten": a few steps from the carried map, whose anchored vertices stay. Returns
-/// whether no more than a share of `most_flips` of the faces is flipped.
-bool solve_level(const Level& level, const std::vector<bool>& anchored, double most_flips,
-                 const Work& work, VCycle& cycle, ChartMap& map) {
+/// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
+/// itself where it has fewer flips.
+void solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
+                 VCycle& cycle, ChartMap& map) {
   std::size_t flips = 0;
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
@@ -143,20 +155,18 @@ bool solve_level(const Level& level, const std::vector<bool>& anchored, double m
     parallel_copy(inner, level.carried, map.uvs);
     SingleField residual;
     parallel_copy(inner, level.residual, residual);
-    for (int round = 0; round < kRounds; ++round) {
-      cycle.improve(kSteps, residual, map.uvs);
+    const auto enough = [&](int step) {
+      if (step < kLeastSteps) return false;
       flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
-      if (static_cast<double>(flips) <= kFewFlips * mesh.face_count()) break;
-    }
+      return static_cast<double>(flips) <= kFewFlips * mesh.face_count();
+    };
+    cycle.improve(kMostSteps, enough, residual, map.uvs);
     put_in_place(anchored, level.carried, map.uvs);
     if (static_cast<double>(flips) <= kFewFlips * mesh.face_count()) return;
-    const std::size_t of_carried = non_positive_faces(mesh.faces, level.carried, inner).size();
-
-    if (of_carried >= flips) return;
-    flips = of_carried;
-    map.uvs = level.carried;
+    if (non_positive_faces(mesh.faces, level.carried, inner).size() < flips) {
+      map.uvs = level.carried;
+    }
   });
-  return static_cast<double>(flips) <= most_flips * mesh.face_count();
 }
 
 /// The stage "repair". On a mesh that is `hard` what was flipped is relaxed with what is around it:
@@ -209,10 +219,18 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
                           .global_fix = false};
   bool positive = false;
+  const auto bears = [&](const std::vector<Vec2>& uvs) {
+    return non_positive_faces(mesh.faces, uvs, work).size() <= share_of(mesh, bearable.flips);
+  };
+  const auto mend_from = [&](const std::vector<Vec2>& start) {
+    if (!bears(start)) return false;
+    if (&start != &climb.map.uvs) parallel_copy(work, start, climb.map.uvs);
+    return mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
+  };
   const auto solve = [&] {
-    positive =
-        solve_level(level, anchored, bearable.flips, work.part(0.3, 0.5), cycle, climb.map) &&
-        mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
+    solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
+    // What is folded in the one may not be in the other.
+    positive = mend_from(climb.map.uvs) || mend_from(level.carried);
     return positive;
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
@@ -222,10 +240,11 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches      ? PolishLength::kWhole
-                              : !is_finest ? PolishLength::kMiddling
-                              : climb.hard ? PolishLength::kLong
-                                           : PolishLength::kShort;
+  const PolishLength length = touches         ? PolishLength::kWhole
+                              : !is_finest    ? PolishLength::kMiddling
+                              : climb.hardest ? PolishLength::kLongest
+                              : climb.hard    ? PolishLength::kLong
+                                              : PolishLength::kShort;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;
   const double below = climb.energy;
@@ -256,7 +275,7 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   climb.map.converged = map.converged;
   climb.map.in_contact = in_contact;
   climb.map.statistics.append(map.statistics);
-  climb.hard = true;
+  climb.hard = climb.hardest = true;
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 
@@ -264,13 +283,51 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
 void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
                  Climb& climb) {
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
-  climb.energy = mean_energy(options.energy, mesh.faces, rest, climb.map.uvs, work);
+  const std::vector<Vec2>& uvs = climb.map.uvs;
+  climb.energy = mean_energy(options.energy, mesh.faces, rest, uvs, work);
   climb.cycle = std::make_unique<VCycle>(
-      mesh, energy_stiffness(options.energy, mesh.faces, rest, climb.map.uvs, work), work);
+      mesh, energy_stiffness(options.energy, mesh.faces, rest, uvs, work), work);
+  if (mesh.face_count() > kFewFaces && !climb.affords_hessian) return;
+  climb.cycle->take_hessian(options.energy, rest, uvs);
+}
+
+/// Composite majorization from the map reached, or from scratch where that is of no use.
+bool finish_few(const DiskMesh& mesh, bool of_use, const ChartOptions& options, const Work& work,
+                Climb& climb) {
+  const std::vector<Vec2> start = of_use ? std::move(climb.map.uvs) : std::vector<Vec2>();
+  ChartMap map = cm_mode(mesh, "coarse", start, options, work);
+  map.statistics.coarse_faces = 0;  // that is the coarsest level
+  map.statistics.coarse_energy = 0;
+  climb.hard = !map.converged;
+  climb.map.uvs = std::move(map.uvs);
+  climb.map.converged = map.converged;
+  climb.map.in_contact = map.in_contact;
+  climb.map.statistics.append(map.statistics);
+  return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
+}
+
+/// Goes on with the polish of a level by its own Hessian, with which a new cycle begins.
+void polish_by_hessian(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
+                       Climb& climb) {
+  run_stage("flatten", work, climb.map.statistics.stages,
+            [&](StageStatistics&, const Work& inner) { begin_cycle(mesh, options, inner, climb); });
+  FineProblem problem{.mesh = &mesh, .rest = rest_triangles(mesh.positions, mesh.faces, work)};
+  problem.statistics.coarse_energy = climb.energy;
+  ChartMap polished = polish_map(problem, nullptr, PolishLength::kMiddling, options, work,
+                                 *climb.cycle, climb.map.uvs);
+  if (keeps_boundary_simple(options) && !find_crossings(mesh.boundary, polished.uvs).empty()) {
+    climb.map.statistics.stages.push_back(given_up(polished.statistics.stages));
+    return;
+  }
+  climb.map.uvs = std::move(polished.uvs);
+  climb.map.converged = polished.converged;
+  climb.map.statistics.append(polished.statistics);
+  climb.energy = mean_energy(options.energy, mesh.faces, problem.rest, climb.map.uvs, work);
 }
 
 /// From the map of a coarse level to that of the next finer one; returns whether it is injective.
-/// A level that is hard for the V-cycle is solved by its factor, with which a new one begins.
+/// A level that is hard for the V-cycle is solved by a factor of its own, with which a new one
+/// begins.
 bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
               const ChartOptions& options, const Work& work, Climb& climb) {
   const ChartMap& reached = climb.map;
@@ -278,11 +335,25 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
   const ChartStatistics before = reached.statistics;
   const bool in_contact = reached.in_contact, was_hard = climb.hard;
   const double energy = climb.energy;
+  const bool few = mesh.face_count() <= kFewFaces && !is_finest;
   const bool cheap = mesh.face_count() <= kMostFactored && !is_finest;
-  const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kOnAnyLevel, is_finest,
-                                   options, work.part(0, 0.5), climb);
+  const bool done = climb_by_cycle(mesh, coarse,
+                                   few     ? kOfFew
+                                   : cheap ? kWhereCheap
+                                           : kOnAnyLevel,
+                                   is_finest, options, work.part(0, 0.5), climb);
   if (done && (reached.converged || !cheap)) return true;
   climb.cycle.reset();
+  const Work rest = work.part(0.5, 1);
+  if (few) {
+    if (!finish_few(mesh, done, options, rest, climb)) return false;
+    begin_cycle(mesh, options, rest, climb);
+    return true;
+  }
+  if (done && !reached.in_contact && climb.affords_hessian) {
+    polish_by_hessian(mesh, options, rest, climb);
+    return true;
+  }
   ChartStatistics statistics = before;
   const auto& stages = reached.statistics.stages;
   statistics.stages.push_back(
@@ -293,8 +364,8 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
   climb.map.statistics = std::move(statistics);
   climb.hard = was_hard;
   climb.energy = energy;
-  if (!climb_by_factor(mesh, coarse, options, work.part(0.5, 1), climb)) return false;
-  if (!is_finest) begin_cycle(mesh, options, work, climb);
+  if (!climb_by_factor(mesh, coarse, options, rest, climb)) return false;
+  if (!is_finest) begin_cycle(mesh, options, rest, climb);
   return true;
 }
 
@@ -304,6 +375,7 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
   const DiskMesh& coarsest = levels.back().mesh;
   const Work begin = work.part(0, kStarted), rest = work.part(kStarted, 1);
   Climb climb;
+  climb.affords_hessian = affords(mesh, options, Extra::kLevelHessian, work);
   const Index faces = coarse_faces(coarsest.face_count(), options.coarse_faces);
   climb.map = beltrami_mode(coarsest, faces, {}, options, begin);
   bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);
@@ -322,6 +394,11 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
 
 }  // namespace
 
+double nested_hessian_bytes(const MeshCounts& n, int threads) {
+  const MeshCounts level = part_of(n, std::min<double>(kMostFactored, n.faces / kLeastRatio));
+  return nested_bytes(n, threads) + system_bytes(level, 2, Precision::kSingle, threads).kept;
+}
+
 double nested_bytes(const MeshCounts& n, int threads) {
   const double row = sizeof(Footpoint) + 3 * sizeof(Index) + sizeof(float) +
                      kNeighbours * (sizeof(Index) + sizeof(float));
@@ -331,9 +408,7 @@ double nested_bytes(const MeshCounts& n, int threads) {
                        kLevels * n.vertices * kLevel;
   // The coarsest level, or a hard one with its factor; so it never takes less than a disk that has
   // no levels yet.
-  const double share = std::min(1.0, kMostFactored / n.faces);
-  const MeshCounts coarsest{share * n.vertices, share * n.faces, share * n.boundary, n.regular,
-                            n.metas};
+  const MeshCounts coarsest = part_of(n, kMostFactored);
   return std::max({climb, coarse_bytes(coarsest, 0, threads), metric_bytes(coarsest, threads)});
 }
 

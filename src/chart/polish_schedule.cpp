@@ -38,7 +38,7 @@ namespace beltrami {
 namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
-constexpr int kMostSteps = 30, kLongSteps = 20;
+constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16;
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
 constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
@@ -54,7 +54,8 @@ constexpr double kMostRelaxed = 1e-2;  // of the faces
 /// What a length of the polish means.
 struct Bounds {
   double enough;       ///< predicted relative decrease at which it ends
-  double little_gain;  ///< of a round of steps that ends blocked: it is the last one
+  double little_gain;  ///< of a round of steps that ends blocked: it is the last one, where
+  int rounds;          ///< as many have gained no more in their mean
   int most_steps;
   double stationary;  ///< predicted relative decrease that is none
   bool newton;        ///< may end with Newton steps
@@ -65,13 +66,15 @@ struct Bounds {
 Bounds bounds_of(PolishLength length) {
   switch (length) {
     case PolishLength::kShort:
-      return {4e-4, 1e-4, 8, 1e-3, false, true, false};
+      return {4e-4, 1e-4, 1, 8, 1e-3, false, true, false};
     case PolishLength::kMiddling:
-      return {1e-4, 3e-4, kMostSteps, 1e-3, false, false, false};
+      return {1e-4, 3e-4, 1, kMiddlingSteps, 3e-4, false, false, false};
     case PolishLength::kLong:
-      return {1e-4, 5e-4, kLongSteps, 1e-3, false, false, true};
+      return {1e-4, 2e-3, 1, kLongSteps, 1e-3, false, false, true};
+    case PolishLength::kLongest:
+      return {1e-4, 6e-4, 2, kLongSteps, 1e-3, false, false, true};
     default:
-      return {0, 1e-3, kMostSteps, 1e-4, true, false, true};
+      return {0, 1e-3, 1, kMostSteps, 1e-4, true, false, true};
   }
 }
 
@@ -194,14 +197,15 @@ bool is_kept(const Setting& setting, const State& state) {
          kNothingLost * distortion(setting.fine.statistics.coarse_energy);
 }
 
-/// Whether steps came to rest where no distortion has come on, though a few faces promise more.
+/// Whether steps came to rest, or none was taken, where no distortion has come on, though a few
+/// faces promise more.
 bool has_settled(const Setting& setting, const State& state) {
-  return setting.bounds.in_haste && state.last.iterations() > 0 && is_kept(setting, state) &&
-         gained_little(setting, state);
+  return setting.bounds.in_haste && is_kept(setting, state) && gained_little(setting, state);
 }
 
 void take_rounds(const Setting& setting, State& state) {
-  double before_last_round = std::numeric_limits<double>::infinity();
+  const int span = setting.bounds.rounds;
+  std::vector<double> starts(span, std::numeric_limits<double>::infinity());  // of the last rounds
   // Rounds of cleaning alone, without a step, are bounded too.
   for (int round = 0; round < kMostSteps; ++round) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
@@ -220,9 +224,9 @@ void take_rounds(const Setting& setting, State& state) {
     if (!state.last.blocked) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.
     const double energy = state.last.energies.back();
-    const double gained = before_last_round - energy;
-    before_last_round = state.last.energies.front();
-    if (gained <= setting.bounds.little_gain * setting.comparable(energy)) return;
+    const double gained = starts[round % span] - energy;
+    starts[round % span] = state.last.energies.front();
+    if (gained <= span * setting.bounds.little_gain * setting.comparable(energy)) return;
   }
 }
 

@@ -78,6 +78,12 @@ VCycle::VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, 
 
 VCycle::~VCycle() = default;
 
+void VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
+                          const std::vector<Vec2>& uvs) {
+  hessian_.emplace(energy, coarsest_, rest, uvs, work_);
+  if (!hessian_->found()) hessian_.reset();
+}
+
 void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
   const DiskMesh& below = levels_.empty() ? coarsest_ : levels_.back()->mesh;
   levels_.push_back(std::make_unique<Level>(mesh, std::move(points), below.vertex_count(), work_));
@@ -113,9 +119,11 @@ void VCycle::set_springs_below(std::size_t level, const std::vector<float>& spri
     return;
   }
   factor_.refit(coarsest_stiffness_, {below.begin(), below.end()});
+  hessian_.reset();  // it knows nothing of springs
 }
 
 void VCycle::refit(const std::vector<EdgeWeights>& stiffness, const std::vector<double>& springs) {
+  if (levels_.empty()) return;
   std::vector<SingleWeights> weights;
   parallel_assign(work_, weights, stiffness.size());
   parallel_for(work_, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -127,12 +135,22 @@ void VCycle::refit(const std::vector<EdgeWeights>& stiffness, const std::vector<
   parallel_free(work_, weights);
 }
 
+/// coarsest_x_ = about the inverse of the coarsest level's Laplacian, or Hessian, times
+/// coarsest_rhs_.
+void VCycle::solve_coarsest(bool by_hessian) {
+  if (by_hessian && hessian_) {
+    hessian_->precondition(coarsest_rhs_, coarsest_x_);
+  } else {
+    factor_.precondition(coarsest_rhs_, coarsest_x_);
+  }
+}
+
 /// x = about the inverse of a level's Laplacian times rhs; level 0 is the coarsest.
-void VCycle::apply(std::size_t level, const SingleField& rhs, SingleField& x) {
+void VCycle::apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x) {
   if (level == 0) {
     coarsest_rhs_.resize(rhs.size());
     for (std::size_t v = 0; v < rhs.size(); ++v) coarsest_rhs_[v] = rhs[v].cast<double>();
-    factor_.precondition(coarsest_rhs_, coarsest_x_);
+    solve_coarsest(by_hessian);
     x.resize(rhs.size());
     for (std::size_t v = 0; v < rhs.size(); ++v) x[v] = coarsest_x_[v].cast<float>();
     return;
@@ -141,7 +159,7 @@ void VCycle::apply(std::size_t level, const SingleField& rhs, SingleField& x) {
   l.smoother.sweep_forward(rhs, x);
   l.smoother.residual_after_forward(x, l.spare);
   restrict_to(l.points, l.spare, Eigen::Vector2f(0, 0), l.coarse_rhs, work_);
-  apply(level - 1, l.coarse_rhs, l.coarse_x);
+  apply(level - 1, l.coarse_rhs, by_hessian, l.coarse_x);
   parallel_for(work_, size_of(x), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) x[v] += interpolated(l.points[v], l.coarse_x);
   });
@@ -153,7 +171,7 @@ void VCycle::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
   parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) single[v] = rhs[v].cast<float>();
   });
-  apply(levels_.size(), single, result);
+  apply(levels_.size(), single, true, result);
   if (!levels_.empty()) parallel_free(work_, levels_.back()->spare);
   parallel_free(work_, single);
   x.resize(rhs.size());
@@ -162,7 +180,8 @@ void VCycle::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
   });
 }
 
-void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
+void VCycle::improve(int most, const std::function<bool(int step)>& enough, SingleField& residual,
+                     std::vector<Vec2>& uvs) {
   const Level& finest = *levels_.back();
   const auto add_up = [&](auto&& body) {
     parallel_for(work_, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -171,8 +190,8 @@ void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
   };
   SingleField z, direction, product;
   double before = 0;
-  for (int step = 0; step < steps; ++step) {
-    apply(levels_.size(), residual, z);
+  for (int step = 0; step < most; ++step) {
+    apply(levels_.size(), residual, false, z);
     const double now = dot(residual, z, work_);
     if (step == 0) {
       parallel_copy(work_, z, direction);
@@ -189,6 +208,7 @@ void VCycle::improve(int steps, SingleField& residual, std::vector<Vec2>& uvs) {
       uvs[v] += length * direction[v].cast<double>();
       residual[v] -= static_cast<float>(length) * product[v];
     });
+    if (enough(step + 1)) return;
   }
 }
 

@@ -3,16 +3,21 @@
 // "Multi-level adaptive solutions to boundary-value problems"; Hackbusch 1985, chapter 4).
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/types.h"
 #include "base/work.h"
+#include "energy/energy.h"
+#include "flatten/hessian_factor.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "flatten/stiffness_inverse.h"
 #include "linear/smoother.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
 #include "prolong/interpolation.h"
 
 namespace beltrami {
@@ -25,6 +30,12 @@ class VCycle final : public StiffnessInverse {
   VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, const Work& work);
   ~VCycle() override;
 
+  /// From now on precondition() has on the coarsest level a factor of the Hessian of the energy at
+  /// this map of it, as long as there are no springs: what is left over there of a descent by
+  /// stiffness, which is slow along motions of large parts, takes a few steps with it.
+  void take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
+                    const std::vector<Vec2>& uvs);
+
   /// Adds the next finer level, without weights yet; `points`: of its vertices on the one before.
   void add(const DiskMesh& mesh, std::vector<Footpoint> points);
 
@@ -34,25 +45,30 @@ class VCycle final : public StiffnessInverse {
   /// Gives all levels stiff springs at these vertices of the finest, see kStiffSpring; one entry
   /// per vertex.
   void anchor(const std::vector<bool>& vertices);
+  /// Of the finest level, unless that is the coarsest, which keeps what it has.
   void refit(const std::vector<EdgeWeights>& stiffness,
              const std::vector<double>& springs) override;
 
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) override;
 
-  /// Adds to `uvs` what `steps` steps of conjugate gradients with this preconditioner make of the
-  /// residual, on the finest level, and leaves what is left of it.
-  void improve(int steps, SingleField& residual, std::vector<Vec2>& uvs);
+  /// Adds to `uvs` what conjugate gradients with the V-cycle of the stiffness make of the residual,
+  /// on the finest level, and leaves what is left of it: up to `most` steps, until `enough(uvs)`
+  /// says so after one.
+  void improve(int most, const std::function<bool(int step)>& enough, SingleField& residual,
+               std::vector<Vec2>& uvs);
 
  private:
   struct Level;
 
-  void apply(std::size_t level, const SingleField& rhs, SingleField& x);
+  void apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x);
+  void solve_coarsest(bool by_hessian);
   void set_springs_below(std::size_t level, const std::vector<float>& springs);
 
   Work work_;
   const DiskMesh& coarsest_;
   std::vector<EdgeWeights> coarsest_stiffness_;
   MetricLaplacian factor_;
+  std::optional<HessianFactor> hessian_;
   std::vector<std::unique_ptr<Level>> levels_;  ///< from the coarsest that has no factor
   std::vector<Vec2> coarsest_rhs_, coarsest_x_;
 };

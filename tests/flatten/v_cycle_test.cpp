@@ -153,7 +153,8 @@ TEST(VCycle, ASmoothSolutionIsFoundInAFewSteps) {
   smoother.multiply(wanted, residual);
   const double before = dot(residual, wanted);
   std::vector<Vec2> found(wanted.size(), Vec2::Zero());
-  levels.cycle.improve(4, residual, found);
+  levels.cycle.improve(
+      4, [](int) { return false; }, residual, found);
   SingleField error;
   for (std::size_t v = 0; v < found.size(); ++v)
     error.push_back(wanted[v] - found[v].cast<float>());

@@ -1,0 +1,40 @@
+// A factor of the Hessian of an energy at a map, as composite majorization has it: what a descent
+// on a finer mesh is preconditioned with where a stiffness is not good enough.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/types.h"
+#include "base/work.h"
+#include "energy/energy.h"
+#include "linear/mesh_matrix.h"
+#include "linear/spd_solver.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/rest_shape.h"
+
+namespace beltrami {
+
+/// Of the integral of the energy over the mesh, with one vertex of the boundary held. A stiffness
+/// is the same for u and v; this knows how they go together, and so along which motions of the
+/// whole map the energy hardly changes (Shtengel et al. 2017, "Geometric Optimization via Composite
+/// Majorization").
+class HessianFactor {
+ public:
+  /// `uvs`: all faces positive.
+  HessianFactor(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                const std::vector<Vec2>& uvs, const Work& work);
+
+  /// Whether there is one: in floating point the matrix may not be definite.
+  bool found() const { return solver_ != nullptr; }
+
+  /// Sets `x` to about its inverse times `rhs`; one entry per vertex. Linear, symmetric, definite.
+  /// Precondition: found().
+  void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
+
+ private:
+  MeshMatrix matrix_;
+  std::unique_ptr<SpdSolver> solver_;  ///< null where the matrix is not definite
+};
+
+}  // namespace beltrami
