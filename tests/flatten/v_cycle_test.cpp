@@ -172,6 +172,39 @@ TEST(VCycle, HasTheSameBitsAtAnyNumberOfThreads) {
   EXPECT_EQ(x, y);
 }
 
+TEST(VCycle, IsSymmetricAndDefiniteWithTheHessianOfTheCoarsestLevelToo) {
+  Cycle levels(1);
+  const auto a = doubled(random_field(levels.fine.vertex_count(), 1));
+  const auto b = doubled(random_field(levels.fine.vertex_count(), 2));
+  std::vector<Vec2> without, of_a, of_b;
+  levels.cycle.precondition(a, without);
+  const DiskMesh& coarsest = levels.coarse.mesh;
+  levels.cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(coarsest),
+                            disks::flat_uvs(coarsest));
+  levels.cycle.precondition(a, of_a);
+  levels.cycle.precondition(b, of_b);
+  EXPECT_NE(of_a, without);
+  EXPECT_GT(dot(a, of_a), 0);
+  EXPECT_GT(dot(b, of_b), 0);
+  EXPECT_NEAR(dot(of_a, b), dot(a, of_b), 1e-3 * std::sqrt(dot(a, of_a) * dot(b, of_b)));
+}
+
+TEST(VCycle, GivesTheHessianUpForSprings) {
+  Cycle with(1), without(1);
+  std::vector<double> springs(with.fine.positions.size(), 0);
+  springs[with.fine.boundary.front()] = 1e6;
+  const DiskMesh& coarsest = with.coarse.mesh;
+  with.cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(coarsest),
+                          disks::flat_uvs(coarsest));
+  const auto rhs = doubled(random_field(with.fine.vertex_count(), 9));
+  std::vector<Vec2> x, y;
+  for (Cycle* levels : {&with, &without}) {
+    levels->cycle.set(single(levels->stiffness(levels->fine)), springs);
+    levels->cycle.precondition(rhs, levels == &with ? x : y);
+  }
+  EXPECT_EQ(x, y);
+}
+
 TEST(VCycle, SpringsHoldOnEveryLevel) {
   Cycle levels(1);
   std::vector<double> springs(levels.fine.positions.size(), 0);

@@ -186,13 +186,13 @@ options! {
         Choice(Energy::NAMES), 0..=2, default 0, calls 3;
 
     /// Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-    /// at least 10,000.
+    /// at least 10,000, or about 5,000 where larger meshes go through levels.
     ///
     /// From 0 to 700000000.
     ///
     /// Default: 0.
     coarse_faces(u32) of [Options UnwrapOptions] = 2 "coarse-faces"
-        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000."
+        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000, or about 5,000 where larger meshes go through levels."
         Int(&[]), 0..=700000000, default 0, calls 3;
 
     /// Relative decrease of the energy in one iteration below which composite majorization stops.
