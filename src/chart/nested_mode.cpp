@@ -51,7 +51,8 @@ constexpr Index kFewFaces = 25000;
 constexpr Index kMostFactored = 150000;
 constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolated map
 constexpr int kMostSteps = 6;       // while more than
-constexpr double kFewFlips = 2e-5;  // of the faces are flipped
+constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
+constexpr double kFairlyFew = 1e-4;
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
 /// hard for the V-cycle. Where there are few faces, where a factor is cheap, and on any level.
 struct Bearable {
@@ -158,11 +159,12 @@ void solve_level(const Level& level, const std::vector<bool>& anchored, const Wo
     const auto enough = [&](int step) {
       if (step < kLeastSteps) return false;
       flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
-      return static_cast<double>(flips) <= kFewFlips * mesh.face_count();
+      const double few = step > kLeastSteps ? kFairlyFew : kFewFlips;
+      return static_cast<double>(flips) <= few * mesh.face_count();
     };
     cycle.improve(kMostSteps, enough, residual, map.uvs);
     put_in_place(anchored, level.carried, map.uvs);
-    if (static_cast<double>(flips) <= kFewFlips * mesh.face_count()) return;
+    if (static_cast<double>(flips) <= kFairlyFew * mesh.face_count()) return;
     if (non_positive_faces(mesh.faces, level.carried, inner).size() < flips) {
       map.uvs = level.carried;
     }
