@@ -146,9 +146,9 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
 }
 
 /// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
-/// itself where it has fewer flips.
-void solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
-                 VCycle& cycle, ChartMap& map) {
+/// itself where it has fewer flips. Returns about how many there are.
+std::size_t solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
+                        VCycle& cycle, ChartMap& map) {
   std::size_t flips = 0;
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
@@ -165,10 +165,12 @@ void solve_level(const Level& level, const std::vector<bool>& anchored, const Wo
     cycle.improve(kMostSteps, enough, residual, map.uvs);
     put_in_place(anchored, level.carried, map.uvs);
     if (static_cast<double>(flips) <= kFairlyFew * mesh.face_count()) return;
-    if (non_positive_faces(mesh.faces, level.carried, inner).size() < flips) {
-      map.uvs = level.carried;
-    }
+    const std::size_t of_carried = non_positive_faces(mesh.faces, level.carried, inner).size();
+    if (of_carried >= flips) return;
+    flips = of_carried;
+    map.uvs = level.carried;
   });
+  return flips;
 }
 
 /// The stage "repair". On a mesh that is `hard` what was flipped is relaxed with what is around it:
@@ -221,18 +223,16 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
                           .global_fix = false};
   bool positive = false;
-  const auto bears = [&](const std::vector<Vec2>& uvs) {
-    return non_positive_faces(mesh.faces, uvs, work).size() <= share_of(mesh, bearable.flips);
-  };
-  const auto mend_from = [&](const std::vector<Vec2>& start) {
-    if (!bears(start)) return false;
-    if (&start != &climb.map.uvs) parallel_copy(work, start, climb.map.uvs);
-    return mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
+  const auto mend_flips = [&](std::size_t flips) {
+    return flips <= share_of(mesh, bearable.flips) &&
+           mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
   };
   const auto solve = [&] {
-    solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
-    // What is folded in the one may not be in the other.
-    positive = mend_from(climb.map.uvs) || mend_from(level.carried);
+    positive = mend_flips(solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map));
+    if (positive) return true;
+    // What cannot be unfolded in the one map may be in the other.
+    parallel_copy(work, level.carried, climb.map.uvs);
+    positive = mend_flips(non_positive_faces(mesh.faces, level.carried, work).size());
     return positive;
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
@@ -344,7 +344,7 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
                                    : cheap ? kWhereCheap
                                            : kOnAnyLevel,
                                    is_finest, options, work.part(0, 0.5), climb);
-  if (done && (reached.converged || !cheap)) return true;
+  if (done && (reached.converged || !cheap || work.out_of_time())) return true;
   climb.cycle.reset();
   const Work rest = work.part(0.5, 1);
   if (few) {

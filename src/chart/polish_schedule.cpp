@@ -3,9 +3,11 @@
 // one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
-// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all (8 on that level),
-//   or held up                  where it has changed  while a round gains a thousandth of the
-//                                                     energy
+// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all (8 on that level,
+// 20
+//   or held up                  where it has changed  where coarser ones were hard, 16 on these),
+//                                                     while a round gains enough, as a rule a
+//                                                     thousandth of the energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since

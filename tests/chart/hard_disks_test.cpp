@@ -10,6 +10,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "chart/modes.h"
 #include "chart/options.h"
