@@ -281,16 +281,25 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 
-/// A cycle of the level reached alone.
+/// A cycle of a level alone, with a stiffness and a Hessian at the map reached.
+std::unique_ptr<VCycle> cycle_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                                 const ChartOptions& options, const Work& work,
+                                 const Climb& climb) {
+  const std::vector<Vec2>& uvs = climb.map.uvs;
+  auto cycle = std::make_unique<VCycle>(
+      mesh, energy_stiffness(options.energy, mesh.faces, rest, uvs, work), work);
+  if (mesh.face_count() <= kFewFaces || climb.affords_hessian) {
+    cycle->take_hessian(options.energy, rest, uvs);
+  }
+  return cycle;
+}
+
+/// From now on with a cycle that begins with the level reached.
 void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
                  Climb& climb) {
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
-  const std::vector<Vec2>& uvs = climb.map.uvs;
-  climb.energy = mean_energy(options.energy, mesh.faces, rest, uvs, work);
-  climb.cycle = std::make_unique<VCycle>(
-      mesh, energy_stiffness(options.energy, mesh.faces, rest, uvs, work), work);
-  if (mesh.face_count() > kFewFaces && !climb.affords_hessian) return;
-  climb.cycle->take_hessian(options.energy, rest, uvs);
+  climb.energy = mean_energy(options.energy, mesh.faces, rest, climb.map.uvs, work);
+  climb.cycle = cycle_of(mesh, rest, options, work, climb);
 }
 
 /// Composite majorization from the map reached, or from scratch where that is of no use.
@@ -308,15 +317,18 @@ bool finish_few(const DiskMesh& mesh, bool of_use, const ChartOptions& options, 
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 
-/// Goes on with the polish of a level by its own Hessian, with which a new cycle begins.
+/// Goes on with the polish of a level by a Hessian of its own. Finer ones do without that: it takes
+/// memory, and where the cycle has led here it leads on.
 void polish_by_hessian(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
                        Climb& climb) {
-  run_stage("flatten", work, climb.map.statistics.stages,
-            [&](StageStatistics&, const Work& inner) { begin_cycle(mesh, options, inner, climb); });
   FineProblem problem{.mesh = &mesh, .rest = rest_triangles(mesh.positions, mesh.faces, work)};
   problem.statistics.coarse_energy = climb.energy;
-  ChartMap polished = polish_map(problem, nullptr, PolishLength::kMiddling, options, work,
-                                 *climb.cycle, climb.map.uvs);
+  std::unique_ptr<VCycle> own;
+  run_stage("flatten", work, climb.map.statistics.stages, [&](StageStatistics&, const Work& inner) {
+    own = cycle_of(mesh, problem.rest, options, inner, climb);
+  });
+  ChartMap polished =
+      polish_map(problem, nullptr, PolishLength::kMiddling, options, work, *own, climb.map.uvs);
   if (keeps_boundary_simple(options) && !find_crossings(mesh.boundary, polished.uvs).empty()) {
     climb.map.statistics.stages.push_back(given_up(polished.statistics.stages));
     return;
@@ -328,8 +340,8 @@ void polish_by_hessian(const DiskMesh& mesh, const ChartOptions& options, const 
 }
 
 /// From the map of a coarse level to that of the next finer one; returns whether it is injective.
-/// A level that is hard for the V-cycle is solved by a factor of its own, with which a new one
-/// begins.
+/// A level that is hard for the V-cycle gets a Hessian of its own for its polish, or is solved by a
+/// factor of its own, with which a new cycle begins.
 bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
               const ChartOptions& options, const Work& work, Climb& climb) {
   const ChartMap& reached = climb.map;
@@ -345,9 +357,9 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
                                            : kOnAnyLevel,
                                    is_finest, options, work.part(0, 0.5), climb);
   if (done && (reached.converged || !cheap || work.out_of_time())) return true;
-  climb.cycle.reset();
   const Work rest = work.part(0.5, 1);
   if (few) {
+    climb.cycle.reset();
     if (!finish_few(mesh, done, options, rest, climb)) return false;
     begin_cycle(mesh, options, rest, climb);
     return true;
@@ -356,6 +368,7 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
     polish_by_hessian(mesh, options, rest, climb);
     return true;
   }
+  climb.cycle.reset();
   ChartStatistics statistics = before;
   const auto& stages = reached.statistics.stages;
   statistics.stages.push_back(

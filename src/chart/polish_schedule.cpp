@@ -72,7 +72,7 @@ Bounds bounds_of(PolishLength length) {
     case PolishLength::kMiddling:
       return {1e-4, 3e-4, 1, kMiddlingSteps, 3e-4, false, false, false};
     case PolishLength::kLong:
-      return {1e-4, 2e-3, 1, kLongSteps, 1e-3, false, false, true};
+      return {1e-4, 1e-3, 1, kLongSteps, 1e-3, false, false, true};
     case PolishLength::kLongest:
       return {1e-4, 6e-4, 2, kLongSteps, 1e-3, false, false, true};
     default:

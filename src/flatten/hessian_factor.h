@@ -8,7 +8,6 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "energy/energy.h"
-#include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -33,7 +32,8 @@ class HessianFactor {
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
 
  private:
-  MeshMatrix matrix_;
+  std::vector<Index> row_;  ///< per vertex, or kNone
+  Index rows_ = 0;
   std::unique_ptr<SpdSolver> solver_;  ///< null where the matrix is not definite
 };
 
