@@ -70,10 +70,6 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   }
   scale_best(mesh, rest, options, work, uvs);
   start_flat(mesh, rest, options, uvs, work);
-  // A map that shrinks around its held vertex is to end up near the origin, where numbers are
-  // finest: from a large circle it may be thousands of times its size away.
-  const Vec2 held = uvs[mesh.boundary.front()];
-  for (Vec2& uv : uvs) uv -= held;
   NewtonOptions newton = newton_options(options);
   newton.tolerance = tolerance;
   const bool simple = keeps_boundary_simple(options);

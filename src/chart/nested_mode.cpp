@@ -1,4 +1,4 @@
-// The method beltrami in levels: no factorization but that of the coarsest.
+// The method beltrami in levels: no factorization of the finest, but where all else fails.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -145,32 +145,47 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
   return level;
 }
 
-/// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
-/// itself where it has fewer flips. Returns about how many there are.
-std::size_t solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
-                        VCycle& cycle, ChartMap& map) {
+struct Solved {
   std::size_t flips = 0;
+  bool by_steps = true;  ///< else it is the carried map
+};
+
+/// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
+/// itself where it has fewer flips.
+Solved solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
+                   VCycle& cycle, ChartMap& map) {
+  Solved solved;
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     if (!anchored.empty()) cycle.anchor(anchored);
     parallel_copy(inner, level.carried, map.uvs);
     SingleField residual;
     parallel_copy(inner, level.residual, residual);
-    const auto enough = [&](int step) {
-      if (step < kLeastSteps) return false;
-      flips = non_positive_faces(mesh.faces, map.uvs, inner).size();
-      const double few = step > kLeastSteps ? kFairlyFew : kFewFlips;
-      return static_cast<double>(flips) <= few * mesh.face_count();
+    const auto flips_of = [&](const std::vector<Vec2>& uvs) {
+      return non_positive_faces(mesh.faces, uvs, inner).size();
     };
-    cycle.improve(kMostSteps, enough, residual, map.uvs);
-    put_in_place(anchored, level.carried, map.uvs);
-    if (static_cast<double>(flips) <= kFairlyFew * mesh.face_count()) return;
-    const std::size_t of_carried = non_positive_faces(mesh.faces, level.carried, inner).size();
-    if (of_carried >= flips) return;
-    flips = of_carried;
+    const auto at_most = [&](double share) {
+      return static_cast<double>(solved.flips) <= share * mesh.face_count();
+    };
+    cycle.improve(
+        kMostSteps,
+        [&](int step) {
+          if (step < kLeastSteps) return false;
+          solved.flips = flips_of(map.uvs);
+          return at_most(step > kLeastSteps ? kFairlyFew : kFewFlips);
+        },
+        residual, map.uvs);
+    if (!anchored.empty()) {
+      put_in_place(anchored, level.carried, map.uvs);
+      solved.flips = flips_of(map.uvs);
+    }
+    if (at_most(kFairlyFew)) return;
+    const std::size_t of_carried = flips_of(level.carried);
+    if (of_carried >= solved.flips) return;
+    solved = {of_carried, false};
     map.uvs = level.carried;
   });
-  return flips;
+  return solved;
 }
 
 /// The stage "repair". On a mesh that is `hard` what was flipped is relaxed with what is around it:
@@ -228,8 +243,9 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
            mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
   };
   const auto solve = [&] {
-    positive = mend_flips(solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map));
-    if (positive) return true;
+    const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
+    positive = mend_flips(found.flips);
+    if (positive || !found.by_steps) return positive;
     // What cannot be unfolded in the one map may be in the other.
     parallel_copy(work, level.carried, climb.map.uvs);
     positive = mend_flips(non_positive_faces(mesh.faces, level.carried, work).size());
@@ -288,7 +304,8 @@ std::unique_ptr<VCycle> cycle_of(const DiskMesh& mesh, const std::vector<RestTri
   const std::vector<Vec2>& uvs = climb.map.uvs;
   auto cycle = std::make_unique<VCycle>(
       mesh, energy_stiffness(options.energy, mesh.faces, rest, uvs, work), work);
-  if (mesh.face_count() <= kFewFaces || climb.affords_hessian) {
+  const Index most = climb.affords_hessian ? kMostFactored : kFewFaces;
+  if (mesh.face_count() <= most) {
     cycle->take_hessian(options.energy, rest, uvs);
   }
   return cycle;
@@ -302,19 +319,23 @@ void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& 
   climb.cycle = cycle_of(mesh, rest, options, work, climb);
 }
 
-/// Composite majorization from the map reached, or from scratch where that is of no use.
-bool finish_few(const DiskMesh& mesh, bool of_use, const ChartOptions& options, const Work& work,
+/// Composite majorization: from the map reached where that is `injective`, which is kept unless a
+/// better one comes of it, or else from scratch. Returns whether there is an injective map.
+bool finish_few(const DiskMesh& mesh, bool injective, const ChartOptions& options, const Work& work,
                 Climb& climb) {
-  const std::vector<Vec2> start = of_use ? std::move(climb.map.uvs) : std::vector<Vec2>();
-  ChartMap map = cm_mode(mesh, "coarse", start, options, work);
+  ChartMap map =
+      cm_mode(mesh, "coarse", injective ? climb.map.uvs : std::vector<Vec2>(), options, work);
+  const double energy = map.statistics.coarse_energy;
   map.statistics.coarse_faces = 0;  // that is the coarsest level
   map.statistics.coarse_energy = 0;
+  climb.map.statistics.append(map.statistics);
+  if (injective && !(energy < climb.energy)) return true;
+  if (!is_injective(mesh, map.uvs, keeps_boundary_simple(options), work)) return injective;
   climb.hard = !map.converged;
   climb.map.uvs = std::move(map.uvs);
   climb.map.converged = map.converged;
   climb.map.in_contact = map.in_contact;
-  climb.map.statistics.append(map.statistics);
-  return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
+  return true;
 }
 
 /// Goes on with the polish of a level by a Hessian of its own. Finer ones do without that: it takes
@@ -358,30 +379,42 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
                                    is_finest, options, work.part(0, 0.5), climb);
   if (done && (reached.converged || !cheap || work.out_of_time())) return true;
   const Work rest = work.part(0.5, 1);
-  if (few) {
-    climb.cycle.reset();
-    if (!finish_few(mesh, done, options, rest, climb)) return false;
-    begin_cycle(mesh, options, rest, climb);
-    return true;
-  }
-  if (done && !reached.in_contact && climb.affords_hessian) {
+  const bool pressed = reached.in_contact, free = done && !pressed;
+  if (free && !few && climb.affords_hessian) {
     polish_by_hessian(mesh, options, rest, climb);
     return true;
   }
   climb.cycle.reset();
-  ChartStatistics statistics = before;
-  const auto& stages = reached.statistics.stages;
-  statistics.stages.push_back(
-      given_up({stages.begin() + static_cast<std::ptrdiff_t>(before.stages.size()), stages.end()}));
-  climb.map = {};
-  climb.map.uvs = from;
-  climb.map.in_contact = in_contact;
-  climb.map.statistics = std::move(statistics);
-  climb.hard = was_hard;
-  climb.energy = energy;
-  if (!climb_by_factor(mesh, coarse, options, rest, climb)) return false;
+  const bool goes_on = free && few;
+  if (!goes_on) {
+    ChartStatistics statistics = before;
+    const auto& stages = reached.statistics.stages;
+    const auto tried = static_cast<std::ptrdiff_t>(before.stages.size());
+    statistics.stages.push_back(given_up({stages.begin() + tried, stages.end()}));
+    climb.map = {};
+    climb.map.uvs = from;
+    climb.map.in_contact = in_contact;
+    climb.map.statistics = std::move(statistics);
+    climb.hard = was_hard;
+    climb.energy = energy;
+  }
+  const bool injective = few && !pressed ? finish_few(mesh, goes_on, options, rest, climb)
+                                         : climb_by_factor(mesh, coarse, options, rest, climb);
+  if (!injective) return false;
   if (!is_finest) begin_cycle(mesh, options, rest, climb);
   return true;
+}
+
+/// Moves the mean of the vertices to the origin, where numbers are finest: a map that has shrunk
+/// around its held vertex may be thousands of times its size away from there. It stays where that
+/// would cost a face.
+void to_origin(const DiskMesh& mesh, const Work& work, std::vector<Vec2>& uvs) {
+  Vec2 sum(0, 0);
+  for (const Vec2& uv : uvs) sum += uv;
+  const Vec2 mean = sum / static_cast<double>(uvs.size());
+  std::vector<Vec2> moved = uvs;
+  for (Vec2& uv : moved) uv -= mean;
+  if (non_positive_faces(mesh.faces, moved, work).empty()) uvs.swap(moved);
 }
 
 /// From the coarsest level to the finest. Without UVs where a level has no injective map.
@@ -395,6 +428,7 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
   climb.map = beltrami_mode(coarsest, faces, {}, options, begin);
   bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);
   if (injective) {
+    to_origin(coarsest, begin, climb.map.uvs);
     climb.hard = !climb.map.converged;
     begin_cycle(coarsest, options, begin, climb);
   }

@@ -3,11 +3,9 @@
 // one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
-// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all (8 on that level,
-// 20
-//   or held up                  where it has changed  where coarser ones were hard, 16 on these),
-//                                                     while a round gains enough, as a rule a
-//                                                     thousandth of the energy
+// L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, 8 on that level,
+//   or held up                  where it has changed  16 below it, 20 after hard ones, while a
+//                                                     round gains a thousandth of the energy or so
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since
@@ -56,8 +54,8 @@ constexpr double kMostRelaxed = 1e-2;  // of the faces
 /// What a length of the polish means.
 struct Bounds {
   double enough;       ///< predicted relative decrease at which it ends
-  double little_gain;  ///< of a round of steps that ends blocked: it is the last one, where
-  int rounds;          ///< as many have gained no more in their mean
+  double little_gain;  ///< a round of steps that ends blocked is the last one where it and these
+  int rounds;          ///< rounds before it have gained no more than so many times that
   int most_steps;
   double stationary;  ///< predicted relative decrease that is none
   bool newton;        ///< may end with Newton steps

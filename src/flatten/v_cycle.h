@@ -52,8 +52,8 @@ class VCycle final : public StiffnessInverse {
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) override;
 
   /// Adds to `uvs` what conjugate gradients with the V-cycle of the stiffness make of the residual,
-  /// on the finest level, and leaves what is left of it: up to `most` steps, until `enough(uvs)`
-  /// says so after one.
+  /// on the finest level, and leaves what is left of it: up to `most` steps, until `enough`, which
+  /// is told how many were made, says so after one.
   void improve(int most, const std::function<bool(int step)>& enough, SingleField& residual,
                std::vector<Vec2>& uvs);
 

@@ -10,9 +10,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
-#include "chart/modes.h"
 #include "chart/options.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
@@ -73,12 +71,6 @@ TEST(HardDisks, AreInjectiveAsDelivered) {
       }
     }
   }
-}
-
-TEST(HardDisks, StayWhereNumbersAreFinest) {
-  const DiskMesh mesh = disks::disk(disks::tree());
-  const ChartMap map = cm_mode(mesh, "cm", {}, {}, Work(1));
-  EXPECT_EQ(map.uvs[mesh.boundary.front()], Vec2(0, 0)) << "the map shrinks around this vertex";
 }
 
 TEST(HardDisks, GetAMapWhereAlmostAllOfThemIsOnePoint) {
