@@ -1,6 +1,7 @@
 // The method beltrami in levels: no factorization of the finest, but where all else fails.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,8 @@ struct Bearable {
 };
 constexpr Bearable kOfFew{5e-2, 5e-2}, kWhereCheap{1e-3, 1e-4}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
+/// Of a patch, while there is another map to mend: large ones take long, and mostly fail.
+constexpr int kRingsAtFirst = 4;
 /// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
 // Shares of the progress.
@@ -147,7 +150,8 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
 
 struct Solved {
   std::size_t flips = 0;
-  bool by_steps = true;  ///< else it is the carried map
+  bool by_steps = true;                                  ///< else it is the carried map
+  std::optional<std::size_t> of_carried = std::nullopt;  ///< flips of that, where they were counted
 };
 
 /// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
@@ -180,9 +184,10 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
       solved.flips = flips_of(map.uvs);
     }
     if (at_most(kFairlyFew)) return;
-    const std::size_t of_carried = flips_of(level.carried);
-    if (of_carried >= solved.flips) return;
-    solved = {of_carried, false};
+    solved.of_carried = flips_of(level.carried);
+    if (*solved.of_carried >= solved.flips) return;
+    solved.flips = *solved.of_carried;
+    solved.by_steps = false;
     map.uvs = level.carried;
   });
   return solved;
@@ -235,20 +240,25 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool pressed = climb.map.in_contact && simple;
   std::vector<bool> anchored;
   if (pressed) anchored = vertices_in_contact(coarse, climb.map.uvs, mesh.vertex_count());
-  const RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
-                          .global_fix = false};
+  RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
+                    .global_fix = false};
   bool positive = false;
-  const auto mend_flips = [&](std::size_t flips) {
-    return flips <= share_of(mesh, bearable.flips) &&
+  const auto is_bearable = [&](std::size_t flips) {
+    return flips <= share_of(mesh, bearable.flips);
+  };
+  const auto mend_flips = [&](std::size_t flips, bool last) {
+    how.most_rings = last ? RepairOptions().most_rings : kRingsAtFirst;
+    return is_bearable(flips) &&
            mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
   };
   const auto solve = [&] {
     const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
-    positive = mend_flips(found.flips);
-    if (positive || !found.by_steps) return positive;
     // What cannot be unfolded in the one map may be in the other.
+    const bool has_other = found.by_steps && found.of_carried && is_bearable(*found.of_carried);
+    positive = mend_flips(found.flips, !has_other);
+    if (positive || !has_other) return positive;
     parallel_copy(work, level.carried, climb.map.uvs);
-    positive = mend_flips(non_positive_faces(mesh.faces, level.carried, work).size());
+    positive = mend_flips(*found.of_carried, true);
     return positive;
   };
   const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
