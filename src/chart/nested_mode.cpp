@@ -46,7 +46,7 @@ constexpr Index kLeastFaces = 100000;
 /// Times the coarse faces, at least.
 constexpr Index kLeastRatio = 8;
 constexpr Index kCoarsestFaces = 5000;  // of the coarsest level
-/// Up to so many composite majorization takes hardly longer than anything else.
+/// On levels of up to so many composite majorization costs little beside the run.
 constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
 constexpr Index kMostFactored = 150000;
@@ -148,6 +148,7 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
   return level;
 }
 
+/// What the solve of a level left.
 struct Solved {
   std::size_t flips = 0;
   bool by_steps = true;                                  ///< else it is the carried map

@@ -18,7 +18,7 @@ HessianFactor::HessianFactor(Energy energy, const DiskMesh& mesh,
                              const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
                              const Work& work)
     : solver_(make_spd_solver({.precision = Precision::kSingle}, work)) {
-  // Not kept: several times what the factor takes.
+  // Not kept: beside the factor it serves nothing.
   MeshMatrix matrix(mesh.vertex_count(), mesh.faces, only_first_of_boundary(mesh), 2, work);
   row_ = matrix.rows();
   rows_ = matrix.free_count();

@@ -20,7 +20,7 @@ namespace beltrami {
 /// Majorization").
 class HessianFactor {
  public:
-  /// `uvs`: all faces positive.
+  /// `rest`: one per face; `uvs`: one per vertex, all faces positive.
   HessianFactor(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const std::vector<Vec2>& uvs, const Work& work);
 
@@ -32,8 +32,8 @@ class HessianFactor {
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
 
  private:
-  std::vector<Index> row_;  ///< per vertex, or kNone
-  Index rows_ = 0;
+  std::vector<Index> row_;             ///< per vertex, or kNone
+  Index rows_ = 0;                     ///< of two numbers each
   std::unique_ptr<SpdSolver> solver_;  ///< null where the matrix is not definite
 };
 
