@@ -82,7 +82,6 @@ struct Climb {
   ChartMap map;                 ///< of the level reached
   double energy = 0;            ///< mean, of that level
   bool hard = false;            ///< a polish did not end stationary, or a level needed its factor
-  bool hardest = false;         ///< the latter
   bool affords_hessian = true;  ///< of a level of more than kFewFaces
   std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
@@ -269,11 +268,10 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches         ? PolishLength::kWhole
-                              : !is_finest    ? PolishLength::kMiddling
-                              : climb.hardest ? PolishLength::kLongest
-                              : climb.hard    ? PolishLength::kLong
-                                              : PolishLength::kShort;
+  const PolishLength length = touches      ? PolishLength::kWhole
+                              : !is_finest ? PolishLength::kMiddling
+                              : climb.hard ? PolishLength::kLong
+                                           : PolishLength::kShort;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;
   const double below = climb.energy;
@@ -304,7 +302,7 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   climb.map.converged = map.converged;
   climb.map.in_contact = in_contact;
   climb.map.statistics.append(map.statistics);
-  climb.hard = climb.hardest = true;
+  climb.hard = true;
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 

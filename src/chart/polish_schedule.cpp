@@ -1,5 +1,8 @@
 // What is done                  with the factor       how often
 // ----------------------------  --------------------  ------------------------------------------
+// sweeps over the vertices      -                     two at the start, where the map comes rough,
+//                                                     or once much holds it up; from then on
+//                                                     one after each step
 // one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
@@ -26,6 +29,8 @@
 #include "descend/line_search.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
+#include "descend/tutte.h"
+#include "descend/vertex_sweep.h"
 #include "energy/energy.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
@@ -39,6 +44,8 @@ namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16;
+constexpr int kSweeps = 2;
+constexpr double kShortestSwept = 0.1;  // a first step: what holds up shorter ones is cleared
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
 constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
@@ -54,27 +61,25 @@ constexpr double kMostRelaxed = 1e-2;  // of the faces
 /// What a length of the polish means.
 struct Bounds {
   double enough;       ///< predicted relative decrease at which it ends
-  double little_gain;  ///< a round of steps that ends blocked is the last one where it and these
-  int rounds;          ///< rounds before it have gained no more than so many times that
+  double little_gain;  ///< a round that ends blocked is the last one where it has gained no more
   int most_steps;
   double stationary;  ///< predicted relative decrease that is none
+  double at_rest;     ///< the same after a step that gained next to nothing
   bool newton;        ///< may end with Newton steps
   bool in_haste;  ///< one factor will do, where no distortion has come on since the coarser mesh
-  bool regions;   ///< many faces in the way are relaxed in regions
+  bool rough;     ///< comes rough, and is swept at once: else where much holds it up
 };
 
 Bounds bounds_of(PolishLength length) {
   switch (length) {
     case PolishLength::kShort:
-      return {4e-4, 1e-4, 1, 8, 1e-3, false, true, false};
+      return {4e-4, 1e-4, 8, 5e-4, 1e-4, false, true, false};
     case PolishLength::kMiddling:
-      return {1e-4, 3e-4, 1, kMiddlingSteps, 3e-4, false, false, false};
+      return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      return {1e-4, 1e-3, 1, kLongSteps, 1e-3, false, false, true};
-    case PolishLength::kLongest:
-      return {1e-4, 6e-4, 2, kLongSteps, 1e-3, false, false, true};
+      return {1e-4, 1e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
-      return {0, 1e-3, 1, kMostSteps, 1e-4, true, false, true};
+      return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }
 }
 
@@ -96,6 +101,7 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
+  bool swept = false;      ///< and so is what each step makes rough, from then on
   bool clean = true;       ///< no step since the last cleaning; it comes mended
   PolishResult last = {};  ///< of the last steps
   double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
@@ -119,13 +125,33 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   return faces;
 }
 
-/// Of what held the last steps up: in patches, or in regions around the worst of it.
+/// Takes out what is rough in the map.
+void sweep(const Setting& setting, State& state) {
+  const double done = share(state.iterations);
+  for (int i = 0; i < kSweeps; ++i) {
+    sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs,
+                   setting.work.part(done, done));
+  }
+  state.swept = true;
+  state.clean = false;
+  if (!state.last.energies.empty()) {
+    state.last.energies.back() = mean_energy(setting.options.energy, setting.fine.mesh->faces,
+                                             setting.fine.rest, state.uvs, setting.work);
+  }
+}
+
+/// Of what held the last steps up: in patches, or where that is much by sweeps over all, and then
+/// in regions around the worst of it.
 void clear_way(const Setting& setting, State& state) {
   std::vector<SingularStep> blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
   const bool many =
       static_cast<double>(blocking.size()) > std::max(kMany, kManyOf * mesh.face_count());
-  if (!setting.bounds.regions || !many || mesh.face_count() < kLeastFaces) {
+  if (many && !state.swept) {
+    sweep(setting, state);
+    return;
+  }
+  if (!many || mesh.face_count() < kLeastFaces) {
     clean(setting, faces_of(blocking), state);
     return;
   }
@@ -150,9 +176,16 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.energy = setting.options.energy;
   options.tolerance = kTolerance;
   options.max_iterations = steps;
-  options.force_first = force_first;
+  options.shortest_first = !force_first ? kFullStep : state.swept ? kShortestSwept : 0;
   options.enough = setting.bounds.enough;
+  options.stationary = setting.bounds.at_rest;
   options.contact = setting.contact;
+  if (state.swept) {
+    options.smooth = [&](std::vector<Vec2>& uvs) {
+      sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, uvs,
+                     setting.work.part(share(state.iterations), share(state.iterations)));
+    };
+  }
   const int before = state.iterations;
   state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
@@ -204,14 +237,13 @@ bool has_settled(const Setting& setting, const State& state) {
 }
 
 void take_rounds(const Setting& setting, State& state) {
-  const int span = setting.bounds.rounds;
-  std::vector<double> starts(span, std::numeric_limits<double>::infinity());  // of the last rounds
+  double start = std::numeric_limits<double>::infinity();  // of the last round
   // Rounds of cleaning alone, without a step, are bounded too.
   for (int round = 0; round < kMostSteps; ++round) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (setting.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) || state.iterations == 0 ||
+        (is_stationary(setting, state) || (state.iterations == 0 && !state.swept) ||
          (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
@@ -224,9 +256,9 @@ void take_rounds(const Setting& setting, State& state) {
     if (!state.last.blocked) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.
     const double energy = state.last.energies.back();
-    const double gained = starts[round % span] - energy;
-    starts[round % span] = state.last.energies.front();
-    if (gained <= span * setting.bounds.little_gain * setting.comparable(energy)) return;
+    const double gained = start - energy;
+    start = state.last.energies.front();
+    if (gained <= setting.bounds.little_gain * setting.comparable(energy)) return;
   }
 }
 
@@ -274,6 +306,7 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
                           inner,  surface_area(*fine.mesh, inner), bounds_of(length),
                           inverse};
     State state{.uvs = std::move(start)};
+    if (setting.bounds.rough) sweep(setting, state);
     take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);

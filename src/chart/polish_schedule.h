@@ -18,7 +18,6 @@ enum class PolishLength {
   kWhole,     ///< to a stationary point
   kMiddling,  ///< of a map that a finer mesh starts from
   kLong,      ///< of a map of the finest mesh where coarser ones were hard
-  kLongest,   ///< where they were so hard that gains stay small and many
   kShort,  ///< of a map that came from a polished one of a coarser mesh: ends where a step promises
            ///< little
 };

@@ -23,10 +23,9 @@ constexpr std::int64_t kGrain = 4096;
 constexpr std::size_t kHistory = 5;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr int kPatience = 3;            // steps with contact that gain next to nothing
-constexpr int kHoldRounds = 4;          // after which a few faces hold back the whole map
+constexpr int kHoldRounds = 16;         // after which a few faces hold back the whole map
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
-constexpr double kFullStep = 0.5;  // shorter steps say nothing about convergence
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -226,6 +225,26 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
   return std::numeric_limits<double>::infinity();
 }
 
+/// Goes to the trial point, of the energy `after`, and smooths the map there. Returns the energy
+/// then; leaves the step in the direction, its change of the gradient in the gradient, and the
+/// gradient in the next one.
+template <class Density>
+double take_step(Objective<Density>& objective, double after, const PolishOptions& options,
+                 Fields& fields, Field& uvs, const Work& work) {
+  uvs.swap(fields.trial);
+  if (options.smooth) {
+    options.smooth(uvs);
+    after = objective.evaluate(uvs, fields.next_gradient);
+  }
+  parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      fields.direction[i] = uvs[i] - fields.trial[i];
+      fields.gradient[i] = fields.next_gradient[i] - fields.gradient[i];
+    }
+  });
+  return after;
+}
+
 /// Whether the gains tell of an end: the last step was a full one with little gain, or the last
 /// ones had next to none, since what touches shortens nearly all of them.
 struct Settling {
@@ -275,7 +294,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     result.converged = settling.settled && result.predicted >= 0 &&
                        0.5 * result.predicted <= options.stationary * scale;
     if (result.converged) break;
-    if (length < kFullStep && (result.iterations() > 0 || !options.force_first)) {
+    if (length < (result.iterations() > 0 ? kFullStep : options.shortest_first)) {
       result.blocked = true;
       break;
     }
@@ -283,9 +302,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       const double limit = length / kSingularShare;
       length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
     }
-    const double after =
-        slope < 0 ? search_line(objective, uvs, before, slope, options, fields, length, work)
-                  : std::numeric_limits<double>::infinity();
+    double after = slope < 0
+                       ? search_line(objective, uvs, before, slope, options, fields, length, work)
+                       : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
       result.blocked = plain;
@@ -295,16 +314,11 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       continue;
     }
     rigidly = true;
+    after = take_step(objective, after, options, fields, uvs, work);
     result.energies.push_back(after);
-    parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) {
-        direction[i] *= length;
-        gradient[i] = next_gradient[i] - gradient[i];
-      }
-    });
-    uvs.swap(trial);
     // What nearly singular faces do to the gradient says nothing about other steps.
-    if (length >= kFullStep && result.blocking.empty()) history.add(direction, gradient);
+    const bool tells = options.smooth != nullptr || result.blocking.empty();
+    if (length >= kFullStep && tells) history.add(direction, gradient);
     gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
   }

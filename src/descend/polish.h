@@ -13,17 +13,23 @@
 
 namespace beltrami {
 
+/// Shorter steps say nothing about convergence; all but the first one are at least so long.
+inline constexpr double kFullStep = 0.5;
+
 struct PolishOptions {
   Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-5;   ///< relative energy decrease of a step after which it may end, if
   double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
   double enough = 0;  ///< it ends as soon as a step is predicted to decrease it by less than that
   int max_iterations = 20;
-  bool force_first = true;  ///< whether the first step is taken however short it has to be
+  double shortest_first = 0;  ///< the first step is taken unless it has to be shorter than that
   /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before
   /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
   /// cross itself.
   const BoundaryContact* contact = nullptr;
+  /// What every step is followed by, to take out of the map what it made rough; it may not raise
+  /// the energy. Or nothing.
+  std::function<void(std::vector<Vec2>& uvs)> smooth = nullptr;
 };
 
 struct PolishResult {

@@ -9,6 +9,7 @@
 //   model(s1, s2)            value, derivatives and a positive semi-definite model of the Hessian
 //   Proxy                    a type with another model(s1, s2) of the same density, for the start
 //   slopes(map)              value and gradient by fz and fzbar alone
+//   bends(norm, det)         second derivatives by s1^2 + s2^2 and s1 s2, or what is like them
 //   best_scale(sum)          the global scale at which its sum over a map is least; sum(term) adds
 //                            up over the faces the array that term(area, s1, s2) returns for each
 // and, where it grows otherwise than quadratically with lengths and their inverses,
@@ -46,6 +47,12 @@ inline void use_weighted_rotation_model(double w1, double w2, DensityModel& mode
 struct DensitySlopes {
   double value;
   double by_fz, by_fzbar;
+};
+
+/// Second derivatives of a density as a function of norm = s1^2 + s2^2 and det = s1 s2, of which
+/// the one is quadratic in where a corner goes and the other linear.
+struct DensityBends {
+  double norm_norm, norm_det, det_det;
 };
 
 }  // namespace beltrami

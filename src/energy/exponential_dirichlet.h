@@ -62,6 +62,16 @@ struct ExponentialDirichlet {
     return {g.value, g.slope * d.by_fz, g.slope * d.by_fzbar};
   }
 
+  static DensityBends bends(double norm, double det) {
+    const double inverse = 1 / det, inverse_sq = inverse * inverse;
+    const double by_norm = 0.5 * (1 + inverse_sq), by_det = -norm * inverse_sq * inverse;
+    const Growth g = growth(norm * by_norm);
+    const DensityBends d = SymmetricDirichlet::bends(norm, det);
+    return {g.slope * d.norm_norm + g.curvature * by_norm * by_norm,
+            g.slope * d.norm_det + g.curvature * by_norm * by_det,
+            g.slope * d.det_det + g.curvature * by_det * by_det};
+  }
+
   /// The sum is convex in the logarithm of the scale: Newton's method from the best one of
   /// symmetric Dirichlet, between bounds that close in.
   template <class Sum>

@@ -8,6 +8,7 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "energy/density.h"
+#include "energy/symmetric_dirichlet.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -57,6 +58,13 @@ struct SymmetricArap {
     const double d1 = 2 * (s1 - 1), d2 = -2 * (1 / s2 - 1) / (s2 * s2);
     // Smoothed beside the ridge, like the model.
     return {value(s1, s2), (d1 + d2) / a, (d1 - d2) / std::max(b, kRidge * a)};
+  }
+
+  /// Twice those of symmetric Dirichlet, like which it grows where s1 is large and where s2 is
+  /// small: its own are infinite on the ridge.
+  static DensityBends bends(double norm, double det) {
+    const DensityBends b = SymmetricDirichlet::bends(norm, det);
+    return {2 * b.norm_norm, 2 * b.norm_det, 2 * b.det_det};
   }
 
   /// The root of a s^4 - b s^3 + d s - c = 0, by bisection of the derivative's sign in log s.

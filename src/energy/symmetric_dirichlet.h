@@ -54,6 +54,12 @@ struct SymmetricDirichlet {
     return {0.5 * (x + y) * by_norm, by_norm + by_det, by_norm - by_det};
   }
 
+  /// Of norm (1 + det^-2) / 2.
+  static DensityBends bends(double norm, double det) {
+    const double inverse = 1 / det, inverse_cube = inverse * inverse * inverse;
+    return {0, -inverse_cube, 3 * norm * inverse_cube * inverse};
+  }
+
   /// s^4 = sum(A / sigma^2) / sum(A sigma^2) over both singular values.
   template <class Sum>
   static double best_scale(const Sum& sum) {
