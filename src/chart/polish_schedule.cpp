@@ -57,6 +57,8 @@ constexpr double kAsFitted = 2e-3;         // relative decrease up to which a fa
 constexpr double kManyOf = 1e-4, kMany = 10;
 constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
+/// With more the whole map is rough, and is swept.
+constexpr double kRoughOf = 1e-3;
 
 /// What a length of the polish means.
 struct Bounds {
@@ -77,7 +79,7 @@ Bounds bounds_of(PolishLength length) {
     case PolishLength::kMiddling:
       return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      return {1e-4, 1e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
+      return {1e-4, 2e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }
@@ -140,17 +142,17 @@ void sweep(const Setting& setting, State& state) {
   }
 }
 
-/// Of what held the last steps up: in patches, or where that is much by sweeps over all, and then
-/// in regions around the worst of it.
+/// Of what held the last steps up: in patches, or in regions around the worst of it; by sweeps over
+/// all where the map is rough.
 void clear_way(const Setting& setting, State& state) {
   std::vector<SingularStep> blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
-  const bool many =
-      static_cast<double>(blocking.size()) > std::max(kMany, kManyOf * mesh.face_count());
-  if (many && !state.swept) {
+  const auto count = static_cast<double>(blocking.size());
+  if (!state.swept && count > std::max(kMany, kRoughOf * mesh.face_count())) {
     sweep(setting, state);
     return;
   }
+  const bool many = count > std::max(kMany, kManyOf * mesh.face_count());
   if (!many || mesh.face_count() < kLeastFaces) {
     clean(setting, faces_of(blocking), state);
     return;
