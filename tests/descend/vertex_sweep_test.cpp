@@ -26,7 +26,7 @@ struct Rough {
     disks::Random random(5);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       if (mesh.on_boundary[v]) continue;
-      uvs[v] += 0.2 * kSpacing * random.vec2();
+      uvs[v] += 0.2 * spacing * random.vec2();
     }
   }
 
@@ -37,7 +37,7 @@ struct Rough {
   DiskMesh mesh = disks::disk(meshes::grid(kSide, kSide));
   std::vector<RestTriangle> rest = disks::rest_of(mesh);
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
-  const double kSpacing = (uvs[mesh.faces[0][1]] - uvs[mesh.faces[0][0]]).norm();
+  double spacing = (uvs[mesh.faces[0][1]] - uvs[mesh.faces[0][0]]).norm();
 };
 
 TEST(VertexSweep, LowersAllEnergiesAndFlipsNothing) {
@@ -82,7 +82,7 @@ TEST(VertexSweep, LeavesAMinimumAndWhatIsFlippedAsTheyAre) {
   // A vertex beyond its neighbours: no face at it has an energy that could fall.
   const Index inside = (Rough::kSide + 1) * (Rough::kSide / 2) + Rough::kSide / 2;
   ASSERT_FALSE(map.mesh.on_boundary[inside]);
-  map.uvs[inside] += Vec2(3 * map.kSpacing, 0);
+  map.uvs[inside] += Vec2(3 * map.spacing, 0);
   const Vec2 beyond = map.uvs[inside];
   const auto flipped = non_positive_faces(map.mesh.faces, map.uvs, Work(1));
   ASSERT_FALSE(flipped.empty());
