@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "descend/tutte.h"
+#include "energy/density.h"
 #include "energy/energy.h"
 #include "energy/exponential_dirichlet.h"
 #include "energy/symmetric_dirichlet.h"
