@@ -62,6 +62,7 @@ struct ExponentialDirichlet {
     return {g.value, g.slope * d.by_fz, g.slope * d.by_fzbar};
   }
 
+  /// By the chain rule, like those of the model.
   static DensityBends bends(double norm, double det) {
     const double inverse = 1 / det, inverse_sq = inverse * inverse;
     const double by_norm = 0.5 * (1 + inverse_sq), by_det = -norm * inverse_sq * inverse;
