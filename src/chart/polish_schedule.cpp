@@ -44,7 +44,7 @@ namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16;
-constexpr int kSweeps = 2;  // of a map that is rough; one after each step
+constexpr int kSweeps = 2;              // of a map that is rough; one after each step
 constexpr double kShortestSwept = 0.1;  // a first step: what holds up shorter ones is cleared
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
