@@ -79,7 +79,7 @@ Bounds bounds_of(PolishLength length) {
     case PolishLength::kMiddling:
       return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      return {1e-4, 2e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
+      return {1e-4, 2e-3, kLongSteps, 1e-3, 1e-3, false, false, false};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }
@@ -127,13 +127,14 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   return faces;
 }
 
+void smooth(const Setting& setting, int iterations, std::vector<Vec2>& uvs) {
+  sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, uvs,
+                 setting.work.part(share(iterations), share(iterations)));
+}
+
 /// Takes out what is rough in the map.
 void sweep(const Setting& setting, State& state) {
-  const double done = share(state.iterations);
-  for (int i = 0; i < kSweeps; ++i) {
-    sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, state.uvs,
-                   setting.work.part(done, done));
-  }
+  for (int i = 0; i < kSweeps; ++i) smooth(setting, state.iterations, state.uvs);
   state.swept = true;
   state.clean = false;
   if (!state.last.energies.empty()) {
@@ -183,10 +184,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.stationary = setting.bounds.at_rest;
   options.contact = setting.contact;
   if (state.swept) {
-    options.smooth = [&](std::vector<Vec2>& uvs) {
-      sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, uvs,
-                     setting.work.part(share(state.iterations), share(state.iterations)));
-    };
+    options.smooth = [&](std::vector<Vec2>& uvs) { smooth(setting, state.iterations, uvs); };
   }
   const int before = state.iterations;
   state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,

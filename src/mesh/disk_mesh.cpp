@@ -32,6 +32,17 @@ void require_one_component(const Surface& surface, const Work& work) {
               Element::face(outside));
 }
 
+/// Whether boundary edges leave a vertex in several directions, or no face names one: then the count
+/// of build_disk tells nothing of fans.
+bool fans_need_proof(const Surface& surface, const Work& work) {
+  const auto second = parallel_find(work, size_of(surface.twin), kGrain, [&](Index h) {
+    return surface.twin[h] == kNone && surface.outgoing[surface.origin(h)] != h;
+  });
+  const auto unused = parallel_find(work, surface.vertex_count(), kGrain,
+                                    [&](Index v) { return surface.outgoing[v] == kNone; });
+  return second < size_of(surface.twin) || unused < surface.vertex_count();
+}
+
 /// Throws CLOSED, BOUNDARIES or GENUS.
 void trace_boundary(DiskMesh& mesh, const Work& work) {
   const BoundaryLoops loops = boundary_loops(mesh, work);
@@ -108,7 +119,20 @@ DiskMesh prove_disk(Surface surface, const Work& work) {
 }
 
 DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
-  return prove_disk(build_surface(std::move(positions), std::move(faces), work), work);
+  DiskMesh mesh{connect_faces(std::move(positions), std::move(faces), work), {}};
+  // Of a disk it is known that each vertex has one fan: a connected surface with one boundary loop
+  // has an Euler characteristic of at most 1, less one for each fan beyond the first of a vertex.
+  // But a second fan on the boundary leads astray who follows that, and an unused vertex makes up
+  // for one.
+  if (fans_need_proof(mesh, work)) prove_fans(mesh, work);
+  try {
+    require_one_component(mesh, work);
+    trace_boundary(mesh, work);
+  } catch (const Error&) {
+    prove_fans(mesh, work);
+    throw;
+  }
+  return mesh;
 }
 
 double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -21,56 +22,35 @@ std::string quoted(Index index) {
   return std::to_string(index);
 }
 
-/// Fills `outgoing`, given the half-edges without a twin; throws NON_MANIFOLD_VERTEX where the
-/// faces of a vertex form several fans.
+/// Fills `outgoing`, given the half-edges without a twin.
 void link_vertices(Surface& surface, const std::vector<Index>& boundary, const Work& work) {
-  const Index vertex_count = surface.vertex_count();
   parallel_assign(work, surface.outgoing, surface.positions.size(), kNone);
-  // Any one, whichever thread comes last.
+  // The least, whichever thread comes first; as unsigned numbers, none is the greatest.
+  const auto lower = [](Index& least, Index halfedge) {
+    const std::atomic_ref<Index> shared(least);
+    Index before = shared.load(std::memory_order_relaxed);
+    while (static_cast<std::uint32_t>(halfedge) < static_cast<std::uint32_t>(before)) {
+      if (shared.compare_exchange_weak(before, halfedge, std::memory_order_relaxed)) return;
+    }
+  };
   parallel_for(work, surface.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto f = static_cast<Index>(begin); f < end; ++f) {
-      for (int k = 0; k < 3; ++k) {
-        std::atomic_ref<Index>(surface.outgoing[surface.faces[f][k]])
-            .store(3 * f + k, std::memory_order_relaxed);
-      }
+      for (int k = 0; k < 3; ++k) lower(surface.outgoing[surface.faces[f][k]], 3 * f + k);
     }
   });
   for (const Index h : boundary) surface.outgoing[surface.origin(h)] = h;
+}
 
-  struct Fan {
-    Index faces = 0, least = kNone;  // half-edge
-  };
-  const auto fan_of = [&](Index v) {
-    Fan fan;
-    if (surface.outgoing[v] == kNone) return fan;
-    PollSometimes poll;  // a hub may have all faces
-    fan.least = surface.outgoing[v];
-    surface.for_each_outgoing(v, [&](Index h) {
-      poll();
-      fan.least = std::min(fan.least, h);
-      ++fan.faces;
-    });
-    return fan;
-  };
-  std::atomic<Index> in_fans{0};
-  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    Index faces = 0;
-    for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      const Fan fan = fan_of(v);
-      faces += fan.faces;
-      if (!surface.on_boundary[v]) surface.outgoing[v] = fan.least;
-    }
-    in_fans += faces;
+/// The faces of the fan that `outgoing` belongs to.
+Index faces_in_fan(const Surface& surface, Index v) {
+  if (surface.outgoing[v] == kNone) return 0;
+  Index faces = 0;
+  PollSometimes poll;  // a hub may have all faces
+  surface.for_each_outgoing(v, [&](Index) {
+    poll();
+    ++faces;
   });
-  if (in_fans == size_of(surface.twin)) return;
-  std::vector<Index> valence(vertex_count, 0);
-  for (Index h = 0; h < size_of(surface.twin); ++h) ++valence[surface.origin(h)];
-  Index v = 0;
-  while (fan_of(v).faces == valence[v]) ++v;
-  throw Error(Fault::kNonManifoldVertex,
-              "the faces around vertex " + quoted(v) +
-                  " form more than one fan: duplicate the vertex, one copy for each fan",
-              Element::vertex(v));
+  return faces;
 }
 
 /// The half-edges without a twin, increasing.
@@ -207,7 +187,7 @@ Topology topology_of(const Surface& surface, const Work& work) {
   return topology;
 }
 
-Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
+Surface connect_faces(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
   validate_indices(size_of(positions), faces, RepeatedVertices::kRefused, work);
   validate_positions(positions, work);
   Surface surface;
@@ -219,6 +199,31 @@ Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, 
   surface.on_boundary.assign(surface.vertex_count(), false);
   for (const Index h : boundary) surface.on_boundary[surface.origin(h)] = true;
   link_vertices(surface, boundary, work);
+  return surface;
+}
+
+void prove_fans(const Surface& surface, const Work& work) {
+  const Index vertex_count = surface.vertex_count();
+  std::atomic<Index> in_fans{0};
+  parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Index faces = 0;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) faces += faces_in_fan(surface, v);
+    in_fans += faces;
+  });
+  if (in_fans == size_of(surface.twin)) return;
+  std::vector<Index> valence(vertex_count, 0);
+  for (Index h = 0; h < size_of(surface.twin); ++h) ++valence[surface.origin(h)];
+  Index v = 0;
+  while (faces_in_fan(surface, v) == valence[v]) ++v;
+  throw Error(Fault::kNonManifoldVertex,
+              "the faces around vertex " + quoted(v) +
+                  " form more than one fan: duplicate the vertex, one copy for each fan",
+              Element::vertex(v));
+}
+
+Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
+  Surface surface = connect_faces(std::move(positions), std::move(faces), work);
+  prove_fans(surface, work);
   return surface;
 }
 

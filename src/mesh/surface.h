@@ -56,6 +56,13 @@ struct Surface {
 /// ORIENTATION or NON_MANIFOLD_VERTEX with the element, as an index into the arrays given.
 Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work);
 
+/// The same without the proof that the faces of each vertex form one fan.
+Surface connect_faces(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work);
+
+/// The rest of it: throws Error NON_MANIFOLD_VERTEX with the first vertex whose faces form several
+/// fans.
+void prove_fans(const Surface& surface, const Work& work);
+
 /// The boundary loops, each by its half-edges in the order in which they follow each other, the
 /// surface on their left. A loop starts at its least half-edge; loops come in the order of these.
 struct BoundaryLoops {

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/types.h"
@@ -85,6 +87,35 @@ TEST(BuildDisk, RefusesAnInteriorFanBesideABoundaryFan) {
   mesh.positions.push_back({0, 1, 1});
   mesh.faces.push_back({0, 6, 7});
   expect_refused(mesh, Fault::kNonManifoldVertex, Element::vertex(0));
+}
+
+/// The same with the faces of `other` at `kept`.
+TriangleList with_one_for_two(TriangleList mesh, Index kept, Index other) {
+  for (Triangle& face : mesh.faces) std::replace(face.begin(), face.end(), other, kept);
+  return mesh;
+}
+
+/// The same with the last vertex in the place of one that no face names.
+TriangleList without_unused(TriangleList mesh, Index unused) {
+  const Index last = size_of(mesh.positions) - 1;
+  mesh = with_one_for_two(std::move(mesh), unused, last);
+  mesh.positions[unused] = mesh.positions[last];
+  mesh.positions.pop_back();
+  return mesh;
+}
+
+TEST(BuildDisk, RefusesTwoFansOfOneSheetWhereverTheyLie) {
+  const TriangleList grid = meshes::grid(9, 9);  // 10 vertices in a row
+  const Index inside = 22, inside_too = 67, corner = 0, side = 5, other_side = 94;
+  for (const auto& [kept, other] :
+       {std::pair(inside, inside_too), std::pair(corner, inside_too), std::pair(side, inside),
+        std::pair(side, other_side), std::pair(corner, other_side)}) {
+    const TriangleList pinched = with_one_for_two(grid, kept, other);
+    expect_refused(without_unused(pinched, other), Fault::kNonManifoldVertex,
+                   Element::vertex(kept));
+    // Who only counts takes a vertex that no face names for the one that is lost.
+    expect_refused(pinched, Fault::kNonManifoldVertex, Element::vertex(kept));
+  }
 }
 
 TEST(BuildDisk, RefusesFacesThatRunAgainstEachOther) {
