@@ -29,9 +29,9 @@ constexpr double kRoughly = 1e-5;        // residual of a map that is polished a
 constexpr std::size_t kManyFlips = 20;   // beyond which targets are rotated
 constexpr int kRotations = 2;            // ARAP rounds, then
 constexpr double kFlippedShare = 0.001;  // beyond which the harmonic map is looked at too
-/// L-BFGS: a step and a change of the gradient for each of 5 pairs, in single precision, 4 buffers,
-/// and the three arrays of a preconditioning.
-constexpr double kPolishFields = 5 + 4 + 3;
+/// L-BFGS: a step and a change of the gradient for each of 5 pairs, 4 buffers, and the three arrays
+/// of a preconditioning.
+constexpr double kPolishFields = 2 * 5 + 4 + 3;
 // Shares of the progress.
 constexpr double kSolved = 0.42, kMended = 0.47;
 

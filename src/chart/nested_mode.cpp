@@ -69,7 +69,7 @@ constexpr double kHopelessly = 1.2;
 constexpr double kSimplified = 0.25, kStarted = 0.4;
 
 /// L-BFGS, as metric_mode has it, with the map and the one that it started from.
-constexpr double kPolishFields = 5 + 4 + 2;
+constexpr double kPolishFields = 2 * 5 + 4 + 2;
 /// Neighbours of a vertex.
 constexpr double kNeighbours = 6;
 /// Bytes of a vertex of a coarser level with all that is kept of it.

@@ -18,9 +18,6 @@ namespace beltrami {
 namespace {
 
 using Field = std::vector<Vec2>;  // one entry per vertex
-/// The same of what is kept from step to step: five pairs of these are most of what a descent
-/// needs, and what they tell of the curvature is no better than this.
-using SingleField = std::vector<Eigen::Vector2f>;
 
 constexpr std::int64_t kGrain = 4096;
 constexpr std::size_t kHistory = 5;
@@ -30,28 +27,23 @@ constexpr int kHoldRounds = 16;         // after which a few faces hold back the
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 
-template <class A, class B>
-double dot(const A& a, const B& b, const Work& work) {
-  return parallel_sum(work, size_of(a), kGrain, [&](std::int64_t begin, std::int64_t end) {
+/// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
+template <class Body>
+double sum_over(const Work& work, const Field& field, const Body& body) {
+  return parallel_sum(work, size_of(field), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
-    for (std::int64_t i = begin; i < end; ++i) {
-      sum += Vec2(a[i].template cast<double>()).dot(b[i].template cast<double>());
-    }
+    for (std::int64_t i = begin; i < end; ++i) sum += body(static_cast<std::size_t>(i));
     return sum;
   });
 }
 
-void add_multiple(double factor, const SingleField& a, Field& sum, const Work& work) {
-  parallel_for(work, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) sum[i] += factor * a[i].cast<double>();
-  });
+double dot(const Field& a, const Field& b, const Work& work) {
+  return sum_over(work, a, [&](std::size_t i) { return a[i].dot(b[i]); });
 }
 
-/// to = from, rounded.
-void round_to(const Field& from, SingleField& to, const Work& work) {
-  parallel_assign(work, to, from.size());
-  parallel_for(work, size_of(from), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) to[i] = from[i].cast<float>();
+void add_multiple(double factor, const Field& a, Field& sum, const Work& work) {
+  parallel_for(work, size_of(sum), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) sum[i] += factor * a[i];
   });
 }
 
@@ -129,19 +121,19 @@ class History {
  public:
   explicit History(const Work& work) : work_(work) {}
 
-  void add(const Field& step, const Field& change) {
-    if (!(dot(step, change, work_) > 0)) return;  // would make the model indefinite
+  /// Takes `step` and `change` over; what is left in them is of no use.
+  void add(Field& step, Field& change) {
+    const double curvature = dot(step, change, work_);
+    if (!(curvature > 0)) return;  // would make the model indefinite
     if (pairs_.size() < kHistory) {
       pairs_.emplace_back();
     } else {
       std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
     }
     Pair& pair = pairs_.back();
-    round_to(step, pair.step, work_);
-    round_to(change, pair.change, work_);
-    const double curvature = dot(pair.step, pair.change, work_);
+    pair.step.swap(step);
+    pair.change.swap(change);
     pair.inverse_curvature = 1 / curvature;
-    if (!(curvature > 0) || !std::isfinite(curvature)) pairs_.pop_back();  // by rounding
   }
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
@@ -168,7 +160,7 @@ class History {
 
  private:
   struct Pair {
-    SingleField step, change;
+    Field step, change;
     double inverse_curvature = 0;
   };
   std::vector<Pair> pairs_;
