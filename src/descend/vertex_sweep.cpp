@@ -1,6 +1,7 @@
 #include "descend/vertex_sweep.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,8 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kBlock = 1024;
+constexpr std::int64_t kGrain = 128;  // of what reaches out of its block
 constexpr std::size_t kMostFacesAtVertex = 1000;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr double kArmijo = 1e-4;
@@ -154,6 +156,31 @@ class VertexSweep {
   std::vector<FaceAtVertex> faces_;
 };
 
+/// Parts vertices into sets in which no two are neighbours: each goes into the first such set.
+std::vector<std::vector<Index>> independent_sets(const DiskMesh& mesh,
+                                                 const std::vector<std::vector<Index>>& vertices) {
+  constexpr int kSets = 32;  // of which one mostly lacks all neighbours
+  std::vector<std::uint8_t> set_of(mesh.vertex_count(), kSets);
+  std::vector<std::vector<Index>> sets(kSets);
+  PollSometimes poll;
+  for (const std::vector<Index>& some : vertices) {
+    for (const Index v : some) {
+      poll();
+      std::uint64_t taken = 0;
+      mesh.for_each_outgoing(v, [&](Index h) {
+        poll();
+        taken |= std::uint64_t{1} << set_of[mesh.target(h)];
+      });
+      const int first = std::countr_one(taken);
+      if (first >= kSets) continue;
+      set_of[v] = static_cast<std::uint8_t>(first);
+      sets[first].push_back(v);
+    }
+  }
+  std::erase_if(sets, [](const std::vector<Index>& set) { return set.empty(); });
+  return sets;
+}
+
 template <class Density>
 void sweep(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
            const Work& work) {
@@ -167,13 +194,11 @@ void sweep(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vec
       if (!sweep.move(v, from, to)) left.push_back(v);
     }
   });
-  VertexSweep<Density> sweep(mesh, rest, uvs);
-  PollSometimes poll;
-  for (const std::vector<Index>& left : reaching_out) {
-    for (const Index v : left) {
-      poll();
-      sweep.move(v, 0, count);
-    }
+  for (const std::vector<Index>& set : independent_sets(mesh, reaching_out)) {
+    parallel_for(work, size_of(set), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      VertexSweep<Density> sweep(mesh, rest, uvs);
+      for (std::int64_t i = begin; i < end; ++i) sweep.move(set[i], 0, count);
+    });
   }
 }
 

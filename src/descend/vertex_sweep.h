@@ -20,8 +20,9 @@ namespace beltrami {
 /// positive and of more than a thousand faces stay where they are. `rest`: one entry per face,
 /// `uvs`: one per vertex. Throws nothing of its own.
 ///
-/// Vertices go in blocks of neighbours in memory (mesh/locality.h), side by side, and those with
-/// neighbours in other blocks after them: the same bits at any number of threads.
+/// Vertices go in blocks of neighbours in memory (mesh/locality.h), side by side; after them those
+/// with neighbours in other blocks, in sets in which no two are neighbours, each side by side: the
+/// same bits at any number of threads.
 void sweep_vertices(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     std::vector<Vec2>& uvs, const Work& work);
 

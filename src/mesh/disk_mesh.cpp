@@ -32,8 +32,8 @@ void require_one_component(const Surface& surface, const Work& work) {
               Element::face(outside));
 }
 
-/// Whether boundary edges leave a vertex in several directions, or no face names one: then the count
-/// of build_disk tells nothing of fans.
+/// Whether boundary edges leave a vertex in several directions, or no face names one: then the
+/// count of build_disk tells nothing of fans.
 bool fans_need_proof(const Surface& surface, const Work& work) {
   const auto second = parallel_find(work, size_of(surface.twin), kGrain, [&](Index h) {
     return surface.twin[h] == kNone && surface.outgoing[surface.origin(h)] != h;
