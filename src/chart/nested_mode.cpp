@@ -50,8 +50,6 @@ constexpr Index kCoarsestFaces = 5000;  // of the coarsest level
 constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
 constexpr Index kMostFactored = 150000;
-/// Steps of a polish that cross a flat valley.
-constexpr int kManySteps = 9;
 constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolated map
 constexpr int kMostSteps = 6;       // while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
@@ -84,7 +82,6 @@ struct Climb {
   ChartMap map;                 ///< of the level reached
   double energy = 0;            ///< mean, of that level
   bool hard = false;            ///< a polish did not end stationary, or a level needed its factor
-  bool slow = false;            ///< the last polish took many steps
   bool affords_hessian = true;  ///< of a level of more than kFewFaces
   std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
@@ -230,7 +227,6 @@ void polish_level(const Level& level, bool simple, PolishLength length, bool pre
   climb.map.in_contact = climb.map.in_contact || polished.in_contact;
   climb.map.uvs = std::move(polished.uvs);
   climb.map.converged = polished.converged;
-  climb.slow = polished.statistics.stages.back().iterations >= kManySteps;
   climb.map.statistics.append(polished.statistics);
 }
 
@@ -275,7 +271,6 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const PolishLength length = touches      ? PolishLength::kWhole
                               : !is_finest ? PolishLength::kMiddling
                               : climb.hard ? PolishLength::kLong
-                              : climb.slow ? PolishLength::kCareful
                                            : PolishLength::kShort;
   polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
   const bool converged = climb.map.converged;

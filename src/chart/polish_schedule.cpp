@@ -7,9 +7,8 @@
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
 // L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, 8 on that level,
-//   or held up                  where it has changed  6 after slow ones, 20 after hard ones, 16
-//                                                     below it, while a round gains a thousandth
-//                                                     of the energy or so
+//   or held up                  where it has changed  16 below it, 20 after hard ones, while a
+//                                                     round gains a thousandth of the energy or so
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since
@@ -44,7 +43,7 @@ namespace beltrami {
 namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
-constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16, kCarefulSteps = 8;
+constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16;
 constexpr int kSweeps = 2;              // of a map that is rough; one after each step
 constexpr double kShortestSwept = 0.1;  // a first step: what holds up shorter ones is cleared
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
@@ -77,12 +76,10 @@ Bounds bounds_of(PolishLength length) {
   switch (length) {
     case PolishLength::kShort:
       return {4e-4, 1e-4, 8, 5e-4, 1e-4, false, true, false};
-    case PolishLength::kCareful:
-      return {2e-4, 1e-4, kCarefulSteps, 1e-3, 1e-4, false, false, false};
     case PolishLength::kMiddling:
       return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      return {1e-4, 1e-3, kLongSteps, 1e-3, 1e-3, false, false, false};
+      return {1e-4, 2e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }

@@ -18,7 +18,6 @@ enum class PolishLength {
   kWhole,     ///< to a stationary point
   kMiddling,  ///< of a map that a finer mesh starts from
   kLong,      ///< of a map of the finest mesh where coarser ones were hard
-  kCareful,   ///< the same where the polish of a coarser one took many steps
   kShort,  ///< of a map that came from a polished one of a coarser mesh: ends where a step promises
            ///< little
 };

@@ -1,7 +1,6 @@
 #include "descend/vertex_sweep.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +13,8 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kBlock = 1024;
-constexpr std::int64_t kGrain = 128;  // of what reaches out of its block
+constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kGrain = 32;  // of what reaches out of its block
 constexpr std::size_t kMostFacesAtVertex = 1000;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr double kArmijo = 1e-4;
@@ -156,28 +155,26 @@ class VertexSweep {
   std::vector<FaceAtVertex> faces_;
 };
 
-/// Parts vertices into sets in which no two are neighbours: each goes into the first such set.
+/// Parts vertices into sets in which no two are neighbours, each as soon as those neighbours are
+/// done that come before it: set by set they end where one after the other they would.
 std::vector<std::vector<Index>> independent_sets(const DiskMesh& mesh,
                                                  const std::vector<std::vector<Index>>& vertices) {
-  constexpr int kSets = 32;  // of which one mostly lacks all neighbours
-  std::vector<std::uint8_t> set_of(mesh.vertex_count(), kSets);
-  std::vector<std::vector<Index>> sets(kSets);
+  std::vector<Index> set_after(mesh.vertex_count(), 0);  // of those that have one
+  std::vector<std::vector<Index>> sets;
   PollSometimes poll;
   for (const std::vector<Index>& some : vertices) {
     for (const Index v : some) {
       poll();
-      std::uint64_t taken = 0;
+      Index set = 0;
       mesh.for_each_outgoing(v, [&](Index h) {
         poll();
-        taken |= std::uint64_t{1} << set_of[mesh.target(h)];
+        set = std::max(set, set_after[mesh.target(h)]);
       });
-      const int first = std::countr_one(taken);
-      if (first >= kSets) continue;
-      set_of[v] = static_cast<std::uint8_t>(first);
-      sets[first].push_back(v);
+      set_after[v] = set + 1;
+      if (set == size_of(sets)) sets.emplace_back();
+      sets[set].push_back(v);
     }
   }
-  std::erase_if(sets, [](const std::vector<Index>& set) { return set.empty(); });
   return sets;
 }
 

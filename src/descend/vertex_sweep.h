@@ -21,8 +21,8 @@ namespace beltrami {
 /// `uvs`: one per vertex. Throws nothing of its own.
 ///
 /// Vertices go in blocks of neighbours in memory (mesh/locality.h), side by side; after them those
-/// with neighbours in other blocks, in sets in which no two are neighbours, each side by side: the
-/// same bits at any number of threads.
+/// with neighbours in other blocks, in sets in which no two are neighbours: the same bits at any
+/// number of threads.
 void sweep_vertices(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     std::vector<Vec2>& uvs, const Work& work);
 
