@@ -127,6 +127,7 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   return faces;
 }
 
+/// One sweep, after so many steps of the polish.
 void smooth(const Setting& setting, int iterations, std::vector<Vec2>& uvs) {
   sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, uvs,
                  setting.work.part(share(iterations), share(iterations)));

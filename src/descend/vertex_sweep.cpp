@@ -155,11 +155,12 @@ class VertexSweep {
   std::vector<FaceAtVertex> faces_;
 };
 
-/// Parts vertices into sets in which no two are neighbours, each as soon as those neighbours are
-/// done that come before it: set by set they end where one after the other they would.
+/// Parts vertices into sets in which no two are neighbours. A vertex is in the first set after
+/// those of its neighbours that come before it, so that moving set by set ends where moving one
+/// vertex after the other does, to the bit.
 std::vector<std::vector<Index>> independent_sets(const DiskMesh& mesh,
                                                  const std::vector<std::vector<Index>>& vertices) {
-  std::vector<Index> set_after(mesh.vertex_count(), 0);  // of those that have one
+  std::vector<Index> set_after(mesh.vertex_count(), 0);  // the next one to that of the vertex, or 0
   std::vector<std::vector<Index>> sets;
   PollSometimes poll;
   for (const std::vector<Index>& some : vertices) {

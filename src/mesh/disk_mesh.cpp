@@ -32,8 +32,8 @@ void require_one_component(const Surface& surface, const Work& work) {
               Element::face(outside));
 }
 
-/// Whether boundary edges leave a vertex in several directions, or no face names one: then the
-/// count of build_disk tells nothing of fans.
+/// Whether boundary edges leave a vertex in several directions, or no face names a vertex: then
+/// Euler's characteristic does not tell how many fans there are.
 bool fans_need_proof(const Surface& surface, const Work& work) {
   const auto second = parallel_find(work, size_of(surface.twin), kGrain, [&](Index h) {
     return surface.twin[h] == kNone && surface.outgoing[surface.origin(h)] != h;
@@ -70,6 +70,11 @@ void trace_boundary(DiskMesh& mesh, const Work& work) {
     throw Error(Fault::kGenus, "the surface has " + std::to_string((1 - euler) / 2) +
                                    " handle(s), genus above 0: cut them open first");
   }
+}
+
+void require_disk(DiskMesh& mesh, const Work& work) {
+  require_one_component(mesh, work);
+  trace_boundary(mesh, work);
 }
 
 double total_area(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
@@ -113,21 +118,19 @@ std::vector<Index> drop_unreferenced(Index vertex_count, std::vector<Triangle>& 
 
 DiskMesh prove_disk(Surface surface, const Work& work) {
   DiskMesh mesh{std::move(surface), {}};
-  require_one_component(mesh, work);
-  trace_boundary(mesh, work);
+  require_disk(mesh, work);
   return mesh;
 }
 
 DiskMesh build_disk(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work) {
   DiskMesh mesh{connect_faces(std::move(positions), std::move(faces), work), {}};
-  // Of a disk it is known that each vertex has one fan: a connected surface with one boundary loop
-  // has an Euler characteristic of at most 1, less one for each fan beyond the first of a vertex.
-  // But a second fan on the boundary leads astray who follows that, and an unused vertex makes up
-  // for one.
+  // A disk's vertices have one fan each, without a look at them: a connected surface with one
+  // boundary loop has an Euler characteristic of at most 1, and each further fan of a vertex lowers
+  // it by one. Not so where an unused vertex makes up for a fan; and where two fans of a vertex
+  // reach the boundary, following that might never end.
   if (fans_need_proof(mesh, work)) prove_fans(mesh, work);
   try {
-    require_one_component(mesh, work);
-    trace_boundary(mesh, work);
+    require_disk(mesh, work);
   } catch (const Error&) {
     prove_fans(mesh, work);
     throw;

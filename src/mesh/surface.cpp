@@ -25,7 +25,7 @@ std::string quoted(Index index) {
 /// Fills `outgoing`, given the half-edges without a twin.
 void link_vertices(Surface& surface, const std::vector<Index>& boundary, const Work& work) {
   parallel_assign(work, surface.outgoing, surface.positions.size(), kNone);
-  // The least, whichever thread comes first; as unsigned numbers, none is the greatest.
+  // The least, whichever thread comes first; as an unsigned number, kNone is the greatest.
   const auto lower = [](Index& least, Index halfedge) {
     const std::atomic_ref<Index> shared(least);
     Index before = shared.load(std::memory_order_relaxed);
@@ -41,7 +41,7 @@ void link_vertices(Surface& surface, const std::vector<Index>& boundary, const W
   for (const Index h : boundary) surface.outgoing[surface.origin(h)] = h;
 }
 
-/// The faces of the fan that `outgoing` belongs to.
+/// How many faces the fan of a vertex has that its `outgoing` belongs to.
 Index faces_in_fan(const Surface& surface, Index v) {
   if (surface.outgoing[v] == kNone) return 0;
   Index faces = 0;

@@ -56,10 +56,12 @@ struct Surface {
 /// ORIENTATION or NON_MANIFOLD_VERTEX with the element, as an index into the arrays given.
 Surface build_surface(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work);
 
-/// The same without the proof that the faces of each vertex form one fan.
+/// The same without the proof that the faces of each vertex form one fan: throws the same Errors
+/// but NON_MANIFOLD_VERTEX. Where boundary edges leave a vertex in several directions, `outgoing`
+/// is one of them.
 Surface connect_faces(std::vector<Vec3> positions, std::vector<Triangle> faces, const Work& work);
 
-/// The rest of it: throws Error NON_MANIFOLD_VERTEX with the first vertex whose faces form several
+/// That proof: throws Error NON_MANIFOLD_VERTEX with the first vertex whose faces form several
 /// fans.
 void prove_fans(const Surface& surface, const Work& work);
 

@@ -89,13 +89,13 @@ TEST(BuildDisk, RefusesAnInteriorFanBesideABoundaryFan) {
   expect_refused(mesh, Fault::kNonManifoldVertex, Element::vertex(0));
 }
 
-/// The same with the faces of `other` at `kept`.
+/// The mesh with the faces of `other` at `kept`, so that no face names `other`.
 TriangleList with_one_for_two(TriangleList mesh, Index kept, Index other) {
   for (Triangle& face : mesh.faces) std::replace(face.begin(), face.end(), other, kept);
   return mesh;
 }
 
-/// The same with the last vertex in the place of one that no face names.
+/// The mesh with its last vertex in the place of one that no face names.
 TriangleList without_unused(TriangleList mesh, Index unused) {
   const Index last = size_of(mesh.positions) - 1;
   mesh = with_one_for_two(std::move(mesh), unused, last);
@@ -113,7 +113,7 @@ TEST(BuildDisk, RefusesTwoFansOfOneSheetWhereverTheyLie) {
     const TriangleList pinched = with_one_for_two(grid, kept, other);
     expect_refused(without_unused(pinched, other), Fault::kNonManifoldVertex,
                    Element::vertex(kept));
-    // Who only counts takes a vertex that no face names for the one that is lost.
+    // The vertex that no face names makes up for the lost one in Euler's characteristic.
     expect_refused(pinched, Fault::kNonManifoldVertex, Element::vertex(kept));
   }
 }
