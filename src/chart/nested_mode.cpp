@@ -193,18 +193,17 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
   return solved;
 }
 
-/// The stage "repair". On a mesh that is `hard` what was flipped is relaxed with what is around it:
-/// there the solve is far from its minimum. Returns whether all faces are positive.
-bool mend_level(const Level& level, const RepairOptions& how, bool hard,
-                const ChartOptions& options, const Work& work, ChartMap& map) {
+/// The stage "repair". What was flipped is relaxed with what is around it: it is positive now, but
+/// little more. Returns whether all faces are positive.
+bool mend_level(const Level& level, const RepairOptions& how, const ChartOptions& options,
+                const Work& work, ChartMap& map) {
   const DiskMesh& mesh = *level.problem.mesh;
-  std::vector<Index> flipped;
-  if (hard) flipped = non_positive_faces(mesh.faces, map.uvs, work);
+  const std::vector<Index> flipped = non_positive_faces(mesh.faces, map.uvs, work);
   if (!mend(level.problem, how, options, work, map)) return false;
   if (flipped.empty()) return true;
   run_stage("repair", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    map.statistics.cleaned_patches +=
-        relax_regions(options.energy, mesh, level.problem.rest, map.uvs, flipped, inner);
+    map.statistics.cleaned_patches += relax_regions(options.energy, mesh, level.problem.rest,
+                                                    map.uvs, flipped, kRegionRings, inner);
   });
   return true;
 }
@@ -248,8 +247,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const auto mend_flips = [&](std::size_t flips, bool last) {
     how.most_rings = last ? RepairOptions().most_rings : kRingsAtFirst;
-    return is_bearable(flips) &&
-           mend_level(level, how, climb.hard, options, work.part(0.5, 0.6), climb.map);
+    return is_bearable(flips) && mend_level(level, how, options, work.part(0.5, 0.6), climb.map);
   };
   const auto solve = [&] {
     const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
@@ -347,31 +345,9 @@ bool finish_few(const DiskMesh& mesh, bool injective, const ChartOptions& option
   return true;
 }
 
-/// Goes on with the polish of a level by a Hessian of its own. Finer ones do without that: it takes
-/// memory, and where the cycle has led here it leads on.
-void polish_by_hessian(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
-                       Climb& climb) {
-  FineProblem problem{.mesh = &mesh, .rest = rest_triangles(mesh.positions, mesh.faces, work)};
-  problem.statistics.coarse_energy = climb.energy;
-  std::unique_ptr<VCycle> own;
-  run_stage("flatten", work, climb.map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    own = cycle_of(mesh, problem.rest, options, inner, climb);
-  });
-  ChartMap polished =
-      polish_map(problem, nullptr, PolishLength::kMiddling, options, work, *own, climb.map.uvs);
-  if (keeps_boundary_simple(options) && !find_crossings(mesh.boundary, polished.uvs).empty()) {
-    climb.map.statistics.stages.push_back(given_up(polished.statistics.stages));
-    return;
-  }
-  climb.map.uvs = std::move(polished.uvs);
-  climb.map.converged = polished.converged;
-  climb.map.statistics.append(polished.statistics);
-  climb.energy = mean_energy(options.energy, mesh.faces, problem.rest, climb.map.uvs, work);
-}
-
 /// From the map of a coarse level to that of the next finer one; returns whether it is injective.
-/// A level that is hard for the V-cycle gets a Hessian of its own for its polish, or is solved by a
-/// factor of its own, with which a new cycle begins.
+/// A level that is hard for the V-cycle is solved by a factor of its own, with which a new cycle
+/// begins.
 bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
               const ChartOptions& options, const Work& work, Climb& climb) {
   const ChartMap& reached = climb.map;
@@ -386,15 +362,12 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
                                    : cheap ? kWhereCheap
                                            : kOnAnyLevel,
                                    is_finest, options, work.part(0, 0.5), climb);
-  if (done && (reached.converged || !cheap || work.out_of_time())) return true;
+  const bool pressed = reached.in_contact;
+  const bool must_rest = pressed ? cheap : few;  // elsewhere finer levels go on with it
+  if (done && (reached.converged || !must_rest || work.out_of_time())) return true;
   const Work rest = work.part(0.5, 1);
-  const bool pressed = reached.in_contact, free = done && !pressed;
-  if (free && !few && climb.affords_hessian) {
-    polish_by_hessian(mesh, options, rest, climb);
-    return true;
-  }
   climb.cycle.reset();
-  const bool goes_on = free && few;
+  const bool goes_on = done && !pressed;
   if (!goes_on) {
     ChartStatistics statistics = before;
     const auto& stages = reached.statistics.stages;

@@ -1,24 +1,32 @@
 // What is done                  with the factor       how often
 // ----------------------------  --------------------  ------------------------------------------
-// sweeps over the vertices      -                     two at the start, where the map comes rough,
-//                                                     or once much holds it up; from then on
-//                                                     one after each step
+// relaxing of spikes            -                     at the start, where the map comes rough, or
+//                                                     once much holds it up
 // one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
+// one step, and regions around  fitted to the map     from then on in rounds, on large meshes,
+// while
+//   what it brings near to        where it has changed  there is much of that
+//   being singular
 // L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, 8 on that level,
 //   or held up                  where it has changed  16 below it, 20 after hard ones, while a
-//                                                     round gains a thousandth of the energy or so
+//                                                     round gains some ten thousandths of the
+//                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since
 //
 // Held up: nearly singular faces would shorten the steps. Patches around these are optimised then,
 // or whole regions where they are many, each of which a patch would leave to its neighbours.
-// When the time is up, what is left of the rounds and the Newton steps is left out.
+// Steps of the whole and regions in turns are a nonlinear Schwarz method with a coarse correction
+// (Cai & Keyes 2002, "Nonlinearly preconditioned inexact Newton algorithms"): the V-cycle moves
+// what is far apart, the regions what is nonlinear, and that is where faces are about to be
+// singular. When the time is up, what is left of the rounds and the Newton steps is left out.
 #include "chart/polish_schedule.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -30,35 +38,39 @@
 #include "descend/newton.h"
 #include "descend/polish.h"
 #include "descend/tutte.h"
-#include "descend/vertex_sweep.h"
 #include "energy/energy.h"
+#include "energy/symmetric_dirichlet.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
 #include "repair/outliers.h"
 #include "repair/regions.h"
+#include "repair/spikes.h"
 
 namespace beltrami {
 namespace {
 
 constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
 constexpr int kMostSteps = 30, kLongSteps = 20, kMiddlingSteps = 16;
-constexpr int kSweeps = 2;              // of a map that is rough; one after each step
-constexpr double kShortestSwept = 0.1;  // a first step: what holds up shorter ones is cleared
+constexpr double kSpike = 30;       // times the distortion on a coarser mesh
+constexpr double kShortest = 0.01;  // a step that regions follow
+constexpr double kNear = 6;         // times that step: what it would make singular is relaxed
+constexpr int kRings = 8;           // around it
 constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
 constexpr int kNewtonSteps = 10;
 constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
 constexpr double kNewtonTolerance = 1e-3;  // relative decrease
 constexpr double kAsFitted = 2e-3;         // relative decrease up to which a factor is as good
 
-/// With more faces in the way, in a mesh that is large or not, patches hold each other up, and
-/// regions around the worst of them are relaxed instead.
+/// With more faces in the way, in a mesh that is large or not, the map is rough: patches would hold
+/// each other up, and regions around the worst of them are relaxed instead.
 constexpr double kManyOf = 1e-4, kMany = 10;
 constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
-/// With more the whole map is rough, and is swept.
-constexpr double kRoughOf = 1e-3;
+/// With more of a rough map near to being singular regions follow each step.
+constexpr double kNearOf = 3e-4;
+constexpr Index kSoonDone = 400'000;  // faces: a round takes a tenth of a second, and may gain less
 
 /// What a length of the polish means.
 struct Bounds {
@@ -69,17 +81,18 @@ struct Bounds {
   double at_rest;     ///< the same after a step that gained next to nothing
   bool newton;        ///< may end with Newton steps
   bool in_haste;  ///< one factor will do, where no distortion has come on since the coarser mesh
-  bool rough;     ///< comes rough, and is swept at once: else where much holds it up
+  bool rough;     ///< the map comes rough: else where much holds it up
 };
 
-Bounds bounds_of(PolishLength length) {
+Bounds bounds_of(PolishLength length, Index faces) {
   switch (length) {
     case PolishLength::kShort:
       return {4e-4, 1e-4, 8, 5e-4, 1e-4, false, true, false};
     case PolishLength::kMiddling:
       return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      return {1e-4, 2e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
+      if (faces <= kSoonDone) return {1e-4, 2e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
+      return {1e-4, 5e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }
@@ -103,9 +116,12 @@ struct State {
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
-  bool swept = false;      ///< and so is what each step makes rough, from then on
-  bool clean = true;       ///< no step since the last cleaning; it comes mended
-  PolishResult last = {};  ///< of the last steps
+  bool rough = false;       ///< or was at first
+  bool near = true;         ///< and steps bring much near to being singular
+  bool alternated = false;  ///< the last round was one step, and regions
+  bool clean = true;        ///< no step since the last cleaning; it comes mended
+  PolishResult last = {};   ///< of the last steps
+  double energy = 0;        ///< after these; and after regions that follow a step
   double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
   bool converged = false;
 };
@@ -127,72 +143,95 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   return faces;
 }
 
-/// One sweep, after so many steps of the polish.
-void smooth(const Setting& setting, int iterations, std::vector<Vec2>& uvs) {
-  sweep_vertices(setting.options.energy, *setting.fine.mesh, setting.fine.rest, uvs,
-                 setting.work.part(share(iterations), share(iterations)));
+bool is_large(const DiskMesh& mesh) {
+  return mesh.face_count() >= kLeastFaces;
 }
 
-/// Takes out what is rough in the map.
-void sweep(const Setting& setting, State& state) {
-  for (int i = 0; i < kSweeps; ++i) smooth(setting, state.iterations, state.uvs);
-  state.swept = true;
+/// Whether these are more faces than a share of all, and than a few.
+bool are_many(const std::vector<SingularStep>& faces, double share_of, const DiskMesh& mesh) {
+  return static_cast<double>(faces.size()) > std::max(kMany, share_of * mesh.face_count());
+}
+
+/// Relaxes what is worst in a map that is rough. Returns whether there was any.
+bool relax_worst(const Setting& setting, State& state) {
+  const Energy energy = setting.options.energy;
+  const double coarse = to_dirichlet(energy, setting.fine.statistics.coarse_energy);
+  const double limit = kSpike * std::max(SymmetricDirichlet::kMinimum, coarse);
+  const double done = share(state.iterations);
+  state.rough = true;
+  if (relax_spikes(energy, limit, *setting.fine.mesh, setting.fine.rest, state.uvs,
+                   setting.work.part(done, done)) == 0) {
+    return false;
+  }
   state.clean = false;
-  if (!state.last.energies.empty()) {
-    state.last.energies.back() = mean_energy(setting.options.energy, setting.fine.mesh->faces,
-                                             setting.fine.rest, state.uvs, setting.work);
-  }
+  return true;
 }
 
-/// Of what held the last steps up: in patches, or in regions around the worst of it; by sweeps over
-/// all where the map is rough.
-void clear_way(const Setting& setting, State& state) {
-  std::vector<SingularStep> blocking = state.last.blocking;
+/// Relaxes regions around those of the faces that are singular first.
+void relax(const Setting& setting, std::vector<SingularStep> faces, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
-  const auto count = static_cast<double>(blocking.size());
-  if (!state.swept && count > std::max(kMany, kRoughOf * mesh.face_count())) {
-    sweep(setting, state);
-    return;
-  }
-  const bool many = count > std::max(kMany, kManyOf * mesh.face_count());
-  if (!many || mesh.face_count() < kLeastFaces) {
-    clean(setting, faces_of(blocking), state);
-    return;
-  }
-  std::sort(blocking.begin(), blocking.end(), [](const SingularStep& a, const SingularStep& b) {
+  const auto is_first = [](const SingularStep& a, const SingularStep& b) {
     return a.length != b.length ? a.length < b.length : a.face < b.face;
-  });
+  };
   const auto most = static_cast<std::size_t>(kMostRelaxed * mesh.face_count());
-  if (blocking.size() > most) blocking.resize(most);
+  if (faces.size() > most) {
+    std::nth_element(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(most), faces.end(),
+                     is_first);
+    faces.resize(most);
+  }
+  std::sort(faces.begin(), faces.end(), is_first);
   const double done = share(state.iterations);
   state.cleaned_patches += relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs,
-                                         faces_of(blocking), setting.work.part(done, done));
+                                         faces_of(faces), kRings, setting.work.part(done, done));
 }
 
-/// Up to so many steps with the factor as it is, and the cleaning of what holds them up.
+/// Of what held the last steps up: in patches, or in regions around the worst of it.
+void clear_way(const Setting& setting, State& state) {
+  const std::vector<SingularStep>& blocking = state.last.blocking;
+  const DiskMesh& mesh = *setting.fine.mesh;
+  if (!state.rough && are_many(blocking, kManyOf, mesh) && relax_worst(setting, state)) return;
+  if (is_large(mesh) && are_many(blocking, kManyOf, mesh)) {
+    relax(setting, blocking, state);
+  } else {
+    clean(setting, faces_of(blocking), state);
+  }
+}
+
+/// Up to so many steps with the factor as it is, and the cleaning of what holds them up; or one
+/// step and regions.
 void take_steps(const Setting& setting, int steps, bool force_first, State& state) {
   // The objective is a mean, the stiffness that of a sum.
   const Precondition precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
     setting.inverse.precondition(in, out);
     for (Vec2& w : out) w *= setting.area;
   };
+  const DiskMesh& mesh = *setting.fine.mesh;
+  // Regions know nothing of contact.
+  const bool watches = state.rough && is_large(mesh) && !setting.contact;
+  state.alternated = watches && state.near;
   PolishOptions options;
   options.energy = setting.options.energy;
   options.tolerance = kTolerance;
-  options.max_iterations = steps;
-  options.shortest_first = !force_first ? kFullStep : state.swept ? kShortestSwept : 0;
+  options.max_iterations = state.alternated ? 1 : steps;
+  options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
   options.enough = setting.bounds.enough;
   options.stationary = setting.bounds.at_rest;
   options.contact = setting.contact;
-  if (state.swept) {
-    options.smooth = [&](std::vector<Vec2>& uvs) { smooth(setting, state.iterations, uvs); };
-  }
+  options.near = watches ? kNear : 0;
   const int before = state.iterations;
-  state.last = polish(setting.fine.mesh->faces, setting.fine.rest, precondition, state.uvs, options,
+  state.last = polish(mesh.faces, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
+  state.energy = state.last.energies.back();
   state.iterations += state.last.iterations();
   if (state.last.iterations() > 0) state.clean = false;
-  if (state.last.blocked) clear_way(setting, state);
+  if (watches) state.near = are_many(state.last.near, kNearOf, mesh);
+  if (state.alternated && !state.last.converged) {
+    relax(setting, std::move(state.last.near), state);
+    state.energy =
+        mean_energy(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, setting.work);
+  } else if (state.last.blocked) {
+    clear_way(setting, state);
+  }
 }
 
 /// Fits the factor to the map.
@@ -211,15 +250,15 @@ void fit_factor(const Setting& setting, const State& state) {
 
 /// Whether the last step looked at promises next to nothing.
 bool is_stationary(const Setting& setting, const State& state) {
-  const double energy = setting.comparable(state.last.energies.back());
+  const double energy = setting.comparable(state.energy);
   const double predicted = state.last.predicted;  // below 0 where it would lead uphill
   return predicted >= 0 && 0.5 * predicted <= setting.bounds.stationary * energy;
 }
 
 /// The same of what the last steps gained: a few faces promise more than that.
 bool gained_little(const Setting& setting, const State& state) {
-  const double energy = state.last.energies.back(), gain = state.last.energies.front() - energy;
-  return gain <= setting.bounds.stationary * setting.comparable(energy);
+  const double gain = state.last.energies.front() - state.energy;
+  return gain <= setting.bounds.stationary * setting.comparable(state.energy);
 }
 
 /// Whether the map is no more distorted than that of the coarser mesh.
@@ -227,7 +266,7 @@ bool is_kept(const Setting& setting, const State& state) {
   const auto distortion = [&](double energy) {
     return to_dirichlet(setting.options.energy, energy);
   };
-  return distortion(state.last.energies.back()) <=
+  return distortion(state.energy) <=
          kNothingLost * distortion(setting.fine.statistics.coarse_energy);
 }
 
@@ -244,22 +283,25 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (setting.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) || (state.iterations == 0 && !state.swept) ||
+        (is_stationary(setting, state) || (state.iterations == 0 && !state.rough) ||
          (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
     // Springs of the contact change with the gaps, whatever the energy.
-    if (setting.contact || state.last.energies.back() < (1 - kAsFitted) * state.fitted_at) {
+    if (setting.contact || state.energy < (1 - kAsFitted) * state.fitted_at) {
       fit_factor(setting, state);
-      state.fitted_at = state.last.energies.back();
+      state.fitted_at = state.energy;
     }
     take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
-    if (!state.last.blocked) return;
+    if ((!state.last.blocked && !state.alternated) || setting.work.out_of_time()) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.
-    const double energy = state.last.energies.back();
-    const double gained = start - energy;
-    start = state.last.energies.front();
-    if (gained <= setting.bounds.little_gain * setting.comparable(energy)) return;
+    const double first = state.last.energies.front();
+    const double gained = (state.alternated ? first : start) - state.energy;
+    start = first;
+    if (gained <= setting.bounds.little_gain * setting.comparable(state.energy)) {
+      state.last.converged = state.alternated && state.last.iterations() > 0;
+      return;
+    }
   }
 }
 
@@ -282,7 +324,7 @@ void take_newton_steps(const Setting& setting, State& state) {
 
 /// Where the steps ended far from stationary, and time and memory are left.
 void end_with_newton(const Setting& setting, State& state) {
-  const double energy = setting.comparable(state.last.energies.back());
+  const double energy = setting.comparable(state.energy);
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
   state.converged = is_stationary(setting, state) || has_settled(setting, state);
@@ -303,11 +345,12 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
       fitted.emplace(*contact).fit(start,
                                    to_dirichlet(options.energy, fine.statistics.coarse_energy));
     }
-    const Setting setting{fine,   fitted ? &*fitted : nullptr,     options,
-                          inner,  surface_area(*fine.mesh, inner), bounds_of(length),
-                          inverse};
+    const Setting setting{
+        fine,   fitted ? &*fitted : nullptr,     options,
+        inner,  surface_area(*fine.mesh, inner), bounds_of(length, fine.mesh->face_count()),
+        inverse};
     State state{.uvs = std::move(start)};
-    if (setting.bounds.rough) sweep(setting, state);
+    if (setting.bounds.rough) relax_worst(setting, state);
     take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);

@@ -181,13 +181,18 @@ void move_rigidly(const Triangle& face, const SingularStep& singular, Field& dir
 
 /// Lets the faces that a full step would bring too near to being singular move along more rigidly,
 /// and then those of their neighbours that get there by it. Returns how far the whole map may go
-/// along what is left, and the faces found at first. Without `rigidly` the direction stays as it
-/// is.
-double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly,
-                 Field& direction, std::vector<SingularStep>& blocking, const Work& work) {
+/// along what is left, and with the result the faces found at first. Without `rigidly` the
+/// direction stays as it is.
+double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly, double near,
+                 Field& direction, PolishResult& result, const Work& work) {
   constexpr double kLimit = 1 / kSingularShare;
-  std::vector<SingularStep> singular = singular_steps(faces, uvs, direction, kLimit, nullptr, work);
-  blocking = singular;
+  std::vector<SingularStep> singular =
+      singular_steps(faces, uvs, direction, std::max(kLimit, near), nullptr, work);
+  if (near > 0) {
+    result.near = singular;
+    std::erase_if(singular, [](const SingularStep& s) { return !(s.length < kLimit); });
+  }
+  result.blocking = singular;
   std::vector<std::uint8_t> changed;
   for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
     changed.resize(uvs.size());
@@ -223,26 +228,6 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
     if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
   }
   return std::numeric_limits<double>::infinity();
-}
-
-/// Goes to the trial point, of the energy `after`, and smooths the map there. Returns the energy
-/// then; leaves the step in the direction, its change of the gradient in the gradient, and the
-/// gradient in the next one.
-template <class Density>
-double take_step(Objective<Density>& objective, double after, const PolishOptions& options,
-                 Fields& fields, Field& uvs, const Work& work) {
-  uvs.swap(fields.trial);
-  if (options.smooth) {
-    options.smooth(uvs);
-    after = objective.evaluate(uvs, fields.next_gradient);
-  }
-  parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      fields.direction[i] = uvs[i] - fields.trial[i];
-      fields.gradient[i] = fields.next_gradient[i] - fields.gradient[i];
-    }
-  });
-  return after;
 }
 
 /// Whether the gains tell of an end: the last step was a full one with little gain, or the last
@@ -288,7 +273,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;
       if (result.converged) break;
     }
-    double length = hold_back(faces, uvs, rigidly, direction, result.blocking, work);
+    double length = hold_back(faces, uvs, rigidly, options.near, direction, result, work);
     const double slope = dot(gradient, direction, work);
     result.predicted = -slope;
     result.converged = settling.settled && result.predicted >= 0 &&
@@ -314,11 +299,18 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       continue;
     }
     rigidly = true;
-    after = take_step(objective, after, options, fields, uvs, work);
+    uvs.swap(trial);
     result.energies.push_back(after);
     // What nearly singular faces do to the gradient says nothing about other steps.
-    const bool tells = options.smooth != nullptr || result.blocking.empty();
-    if (length >= kFullStep && tells) history.add(direction, gradient);
+    if (length >= kFullStep && result.blocking.empty()) {
+      parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) {
+          direction[i] *= length;
+          gradient[i] = next_gradient[i] - gradient[i];
+        }
+      });
+      history.add(direction, gradient);
+    }
     gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
   }

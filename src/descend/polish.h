@@ -27,9 +27,7 @@ struct PolishOptions {
   /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
   /// cross itself.
   const BoundaryContact* contact = nullptr;
-  /// What every step is followed by, to take out of the map what it made rough; it may not raise
-  /// the energy. Or nothing.
-  std::function<void(std::vector<Vec2>& uvs)> smooth = nullptr;
+  double near = 0;  ///< told are the faces that so many times the last step would make singular
 };
 
 struct PolishResult {
@@ -39,6 +37,7 @@ struct PolishResult {
                                  ///< after three that gained as little as the next one would
   bool blocked = false;          ///< the next step would have had to be shorter than that
   std::vector<SingularStep> blocking;  ///< because of these, near to which it would come
+  std::vector<SingularStep> near;      ///< those asked for, and these
   double predicted = 0;                ///< -gradient . direction of the last step looked at
   int iterations() const { return static_cast<int>(energies.size()) - 1; }
 };

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include "base/interrupt.h"
-#include "base/parallel.h"
 #include "energy/density.h"
 
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
-constexpr std::int64_t kGrain = 32;  // of what reaches out of its block
 constexpr std::size_t kMostFacesAtVertex = 1000;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr double kArmijo = 1e-4;
@@ -82,23 +78,18 @@ class VertexSweep {
   VertexSweep(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs)
       : mesh_(mesh), rest_(rest), uvs_(uvs) {}
 
-  /// Moves a vertex, unless the faces at it reach beyond the vertices [begin, end): false then, and
-  /// nothing was looked at there.
-  bool move(Index v, Index begin, Index end) {
-    if (mesh_.on_boundary[v]) return true;
+  /// Moves a vertex that is inside and no hub.
+  void move(Index v) {
+    if (mesh_.on_boundary[v]) return;
     corners_.clear();
     const Index first = mesh_.outgoing[v];
     Index h = first;
     do {
-      for (const Index u : mesh_.faces[h / 3]) {
-        if (u < begin || u >= end) return false;
-      }
       corners_.push_back(h);
-      if (corners_.size() > kMostFacesAtVertex) return true;
+      if (corners_.size() > kMostFacesAtVertex) return;
       h = mesh_.rotate(h);
     } while (h != first);
     move_inside(v);
-    return true;
   }
 
  private:
@@ -155,56 +146,18 @@ class VertexSweep {
   std::vector<FaceAtVertex> faces_;
 };
 
-/// Parts vertices into sets in which no two are neighbours. A vertex is in the first set after
-/// those of its neighbours that come before it, so that moving set by set ends where moving one
-/// vertex after the other does, to the bit.
-std::vector<std::vector<Index>> independent_sets(const DiskMesh& mesh,
-                                                 const std::vector<std::vector<Index>>& vertices) {
-  std::vector<Index> set_after(mesh.vertex_count(), 0);  // the next one to that of the vertex, or 0
-  std::vector<std::vector<Index>> sets;
-  PollSometimes poll;
-  for (const std::vector<Index>& some : vertices) {
-    for (const Index v : some) {
-      poll();
-      Index set = 0;
-      mesh.for_each_outgoing(v, [&](Index h) {
-        poll();
-        set = std::max(set, set_after[mesh.target(h)]);
-      });
-      set_after[v] = set + 1;
-      if (set == size_of(sets)) sets.emplace_back();
-      sets[set].push_back(v);
-    }
-  }
-  return sets;
-}
-
-template <class Density>
-void sweep(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-           const Work& work) {
-  const Index count = mesh.vertex_count();
-  std::vector<std::vector<Index>> reaching_out(static_cast<std::size_t>(count / kBlock) + 1);
-  parallel_for(work, count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    VertexSweep<Density> sweep(mesh, rest, uvs);
-    const auto from = static_cast<Index>(begin), to = static_cast<Index>(end);
-    std::vector<Index>& left = reaching_out[begin / kBlock];
-    for (Index v = from; v < to; ++v) {
-      if (!sweep.move(v, from, to)) left.push_back(v);
-    }
-  });
-  for (const std::vector<Index>& set : independent_sets(mesh, reaching_out)) {
-    parallel_for(work, size_of(set), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      VertexSweep<Density> sweep(mesh, rest, uvs);
-      for (std::int64_t i = begin; i < end; ++i) sweep.move(set[i], 0, count);
-    });
-  }
-}
-
 }  // namespace
 
 void sweep_vertices(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                    std::vector<Vec2>& uvs, const Work& work) {
-  with_density(energy, [&]<class Density>(Density) { sweep<Density>(mesh, rest, uvs, work); });
+                    std::vector<Vec2>& uvs, const std::vector<Index>& vertices) {
+  with_density(energy, [&]<class Density>(Density) {
+    VertexSweep<Density> sweep(mesh, rest, uvs);
+    PollSometimes poll;
+    for (const Index v : vertices) {
+      poll();
+      sweep.move(v);
+    }
+  });
 }
 
 }  // namespace beltrami

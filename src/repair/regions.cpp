@@ -154,8 +154,8 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
 
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                           const std::vector<Index>& faces, const Work& work) {
-  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, kRegionRings);
+                           const std::vector<Index>& faces, int rings, const Work& work) {
+  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, rings);
   NewtonOptions options;
   options.energy = energy;
   options.tolerance = kTolerance;

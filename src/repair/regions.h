@@ -14,7 +14,7 @@
 
 namespace beltrami {
 
-/// Rings around the faces that regions reach over.
+/// Rings around the faces that regions of a repair reach over.
 inline constexpr int kRegionRings = 4;
 
 /// The vertices of the faces and those up to `rings` rings around move, or fewer rings where that
@@ -25,12 +25,12 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
                                int rings);
 
-/// Minimises the energy in the regions within 4 rings of the faces, in place, to a relative
+/// Minimises the energy in the regions within some rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken
 /// back if it adds boundary crossings. Ends where the time is up. Returns the number of regions
 /// that changed. Precondition: the faces of the mesh are positive; they stay so.
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                           const std::vector<Index>& faces, const Work& work);
+                           const std::vector<Index>& faces, int rings, const Work& work);
 
 }  // namespace beltrami

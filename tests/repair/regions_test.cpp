@@ -131,7 +131,7 @@ TEST(RelaxRegions, FindTheMinimumNearbyAndTouchNothingElse) {
       faces.push_back(f);
     }
   }
-  EXPECT_EQ(relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, Work(1)), 1);
+  EXPECT_EQ(relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, 4, Work(1)), 1);
   EXPECT_GT(before - 2, 0.01);
   EXPECT_LT(energy_of(mesh, uvs) - 2, 0.01 * (before - 2));
   EXPECT_TRUE(injective(mesh, uvs));
@@ -148,8 +148,8 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
   for (int i = 0; i < 12; ++i) faces.push_back(random.below(mesh.face_count()));
   const auto rest = disks::rest_of(mesh);
   const double before = energy_of(mesh, one);
-  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, Work(1)), 1);
-  relax_regions(kEnergy, mesh, rest, two, faces, Work(2));
+  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, 4, Work(1)), 1);
+  relax_regions(kEnergy, mesh, rest, two, faces, 4, Work(2));
   EXPECT_EQ(one, two);
   EXPECT_LT(energy_of(mesh, one), before);
   EXPECT_TRUE(injective(mesh, one));
