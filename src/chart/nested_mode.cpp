@@ -59,7 +59,7 @@ constexpr double kFairlyFew = 1e-4;
 struct Bearable {
   double flips, patches;
 };
-constexpr Bearable kOfFew{5e-2, 5e-2}, kWhereCheap{1e-3, 1e-4}, kOnAnyLevel{1e-2, 1e-2};
+constexpr Bearable kOfFew{5e-2, 5e-2}, kWhereCheap{4e-3, 4e-3}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
 /// Of a patch, while there is another map to mend: large ones take long, and mostly fail.
 constexpr int kRingsAtFirst = 4;

@@ -89,7 +89,7 @@ Bounds bounds_of(PolishLength length, Index faces) {
     case PolishLength::kShort:
       return {4e-4, 1e-4, 8, 5e-4, 1e-4, false, true, false};
     case PolishLength::kMiddling:
-      return {1e-4, 3e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
+      return {1e-4, 1e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
       if (faces <= kSoonDone) return {1e-4, 2e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
       return {1e-4, 5e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
@@ -105,7 +105,6 @@ struct Setting {
   const ChartOptions& options;
   const Work& work;
   double area;  ///< of the surface
-  Bounds bounds;
   StiffnessInverse& inverse;
 
   double comparable(double energy) const { return comparable_energy(options.energy, energy); }
@@ -113,6 +112,7 @@ struct Setting {
 
 /// How far it got.
 struct State {
+  Bounds bounds;
   std::vector<Vec2> uvs;
   int iterations = 0;
   std::int64_t cleaned_patches = 0;
@@ -141,10 +141,6 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   std::vector<Index> faces;
   for (const SingularStep& s : steps) faces.push_back(s.face);
   return faces;
-}
-
-bool is_large(const DiskMesh& mesh) {
-  return mesh.face_count() >= kLeastFaces;
 }
 
 /// Whether these are more faces than a share of all, and than a few.
@@ -189,8 +185,11 @@ void relax(const Setting& setting, std::vector<SingularStep> faces, State& state
 void clear_way(const Setting& setting, State& state) {
   const std::vector<SingularStep>& blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
-  if (!state.rough && are_many(blocking, kManyOf, mesh) && relax_worst(setting, state)) return;
-  if (is_large(mesh) && are_many(blocking, kManyOf, mesh)) {
+  if (!state.rough && are_many(blocking, kManyOf, mesh)) {
+    if (state.bounds.in_haste) state.bounds = bounds_of(PolishLength::kLong, mesh.face_count());
+    if (relax_worst(setting, state)) return;
+  }
+  if (mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
     relax(setting, blocking, state);
   } else {
     clean(setting, faces_of(blocking), state);
@@ -207,15 +206,15 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   };
   const DiskMesh& mesh = *setting.fine.mesh;
   // Regions know nothing of contact.
-  const bool watches = state.rough && is_large(mesh) && !setting.contact;
+  const bool watches = state.rough && !setting.contact;
   state.alternated = watches && state.near;
   PolishOptions options;
   options.energy = setting.options.energy;
   options.tolerance = kTolerance;
   options.max_iterations = state.alternated ? 1 : steps;
   options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
-  options.enough = setting.bounds.enough;
-  options.stationary = setting.bounds.at_rest;
+  options.enough = state.bounds.enough;
+  options.stationary = state.bounds.at_rest;
   options.contact = setting.contact;
   options.near = watches ? kNear : 0;
   const int before = state.iterations;
@@ -252,13 +251,13 @@ void fit_factor(const Setting& setting, const State& state) {
 bool is_stationary(const Setting& setting, const State& state) {
   const double energy = setting.comparable(state.energy);
   const double predicted = state.last.predicted;  // below 0 where it would lead uphill
-  return predicted >= 0 && 0.5 * predicted <= setting.bounds.stationary * energy;
+  return predicted >= 0 && 0.5 * predicted <= state.bounds.stationary * energy;
 }
 
 /// The same of what the last steps gained: a few faces promise more than that.
 bool gained_little(const Setting& setting, const State& state) {
   const double gain = state.last.energies.front() - state.energy;
-  return gain <= setting.bounds.stationary * setting.comparable(state.energy);
+  return gain <= state.bounds.stationary * setting.comparable(state.energy);
 }
 
 /// Whether the map is no more distorted than that of the coarser mesh.
@@ -273,16 +272,16 @@ bool is_kept(const Setting& setting, const State& state) {
 /// Whether steps came to rest, or none was taken, where no distortion has come on, though a few
 /// faces promise more.
 bool has_settled(const Setting& setting, const State& state) {
-  return setting.bounds.in_haste && is_kept(setting, state) && gained_little(setting, state);
+  return state.bounds.in_haste && is_kept(setting, state) && gained_little(setting, state);
 }
 
 void take_rounds(const Setting& setting, State& state) {
   double start = std::numeric_limits<double>::infinity();  // of the last round
   // Rounds of cleaning alone, without a step, are bounded too.
   for (int round = 0; round < kMostSteps; ++round) {
-    if (state.last.converged || state.iterations >= setting.bounds.most_steps) return;
+    if (state.last.converged || state.iterations >= state.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
-    if (setting.bounds.in_haste && is_kept(setting, state) &&
+    if (state.bounds.in_haste && is_kept(setting, state) &&
         (is_stationary(setting, state) || (state.iterations == 0 && !state.rough) ||
          (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
@@ -292,13 +291,13 @@ void take_rounds(const Setting& setting, State& state) {
       fit_factor(setting, state);
       state.fitted_at = state.energy;
     }
-    take_steps(setting, setting.bounds.most_steps - state.iterations, true, state);
+    take_steps(setting, state.bounds.most_steps - state.iterations, true, state);
     if ((!state.last.blocked && !state.alternated) || setting.work.out_of_time()) return;
     // Cleaning counts too: what a round gains includes what it did after the one before.
     const double first = state.last.energies.front();
     const double gained = (state.alternated ? first : start) - state.energy;
     start = first;
-    if (gained <= setting.bounds.little_gain * setting.comparable(state.energy)) {
+    if (gained <= state.bounds.little_gain * setting.comparable(state.energy)) {
       state.last.converged = state.alternated && state.last.iterations() > 0;
       return;
     }
@@ -328,7 +327,7 @@ void end_with_newton(const Setting& setting, State& state) {
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
   state.converged = is_stationary(setting, state) || has_settled(setting, state);
-  if (!setting.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
+  if (!state.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);
 }
@@ -345,13 +344,11 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
       fitted.emplace(*contact).fit(start,
                                    to_dirichlet(options.energy, fine.statistics.coarse_energy));
     }
-    const Setting setting{
-        fine,   fitted ? &*fitted : nullptr,     options,
-        inner,  surface_area(*fine.mesh, inner), bounds_of(length, fine.mesh->face_count()),
-        inverse};
-    State state{.uvs = std::move(start)};
-    if (setting.bounds.rough) relax_worst(setting, state);
-    take_steps(setting, setting.bounds.in_haste ? setting.bounds.most_steps / 2 : 1, false, state);
+    const Setting setting{fine,  fitted ? &*fitted : nullptr,     options,
+                          inner, surface_area(*fine.mesh, inner), inverse};
+    State state{.bounds = bounds_of(length, fine.mesh->face_count()), .uvs = std::move(start)};
+    if (state.bounds.rough) relax_worst(setting, state);
+    take_steps(setting, state.bounds.in_haste ? state.bounds.most_steps / 2 : 1, false, state);
     take_rounds(setting, state);
     end_with_newton(setting, state);
     if (!state.clean) clean(setting, {}, state);

@@ -121,8 +121,16 @@ class History {
  public:
   explicit History(const Work& work) : work_(work) {}
 
-  /// Takes `step` and `change` over; what is left in them is of no use.
-  void add(Field& step, Field& change) {
+  /// Takes over the step of some length along the direction, and what it changed the gradient by;
+  /// what is left in the first two fields is of no use.
+  void add(double length, Field& direction, Field& gradient, const Field& next_gradient) {
+    parallel_for(work_, size_of(direction), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        direction[i] *= length;
+        gradient[i] = next_gradient[i] - gradient[i];
+      }
+    });
+    Field &step = direction, &change = gradient;
     const double curvature = dot(step, change, work_);
     if (!(curvature > 0)) return;  // would make the model indefinite
     if (pairs_.size() < kHistory) {
@@ -303,13 +311,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     result.energies.push_back(after);
     // What nearly singular faces do to the gradient says nothing about other steps.
     if (length >= kFullStep && result.blocking.empty()) {
-      parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) {
-          direction[i] *= length;
-          gradient[i] = next_gradient[i] - gradient[i];
-        }
-      });
-      history.add(direction, gradient);
+      history.add(length, direction, gradient, next_gradient);
     }
     gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
