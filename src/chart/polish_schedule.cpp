@@ -68,9 +68,11 @@ constexpr double kAsFitted = 2e-3;         // relative decrease up to which a fa
 constexpr double kManyOf = 1e-4, kMany = 10;
 constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
+constexpr double kWorthIt = 1e-3;      // predicted relative decrease without which it is not rough
 /// With more of a rough map near to being singular regions follow each step.
 constexpr double kNearOf = 3e-4;
 constexpr Index kSoonDone = 400'000;  // faces: a round takes a tenth of a second, and may gain less
+constexpr std::size_t kLargeHistory = 0;  // of larger meshes, for memory: few steps are taken there
 
 /// What a length of the polish means.
 struct Bounds {
@@ -185,8 +187,10 @@ void relax(const Setting& setting, std::vector<SingularStep> faces, State& state
 void clear_way(const Setting& setting, State& state) {
   const std::vector<SingularStep>& blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
-  if (!state.rough && are_many(blocking, kManyOf, mesh)) {
+  const bool worth_it = 0.5 * state.last.predicted > kWorthIt * setting.comparable(state.energy);
+  if (!state.rough && worth_it && are_many(blocking, kManyOf, mesh)) {
     if (state.bounds.in_haste) state.bounds = bounds_of(PolishLength::kLong, mesh.face_count());
+    state.near = true;
     if (relax_worst(setting, state)) return;
   }
   if (mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
@@ -206,24 +210,24 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   };
   const DiskMesh& mesh = *setting.fine.mesh;
   // Regions know nothing of contact.
-  const bool watches = state.rough && !setting.contact;
-  state.alternated = watches && state.near;
+  state.alternated = state.rough && state.near && !setting.contact;
   PolishOptions options;
   options.energy = setting.options.energy;
   options.tolerance = kTolerance;
   options.max_iterations = state.alternated ? 1 : steps;
   options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
+  if (mesh.face_count() > kSoonDone) options.history = kLargeHistory;
   options.enough = state.bounds.enough;
   options.stationary = state.bounds.at_rest;
   options.contact = setting.contact;
-  options.near = watches ? kNear : 0;
+  options.near = state.alternated ? kNear : 0;
   const int before = state.iterations;
   state.last = polish(mesh.faces, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
   state.energy = state.last.energies.back();
   state.iterations += state.last.iterations();
   if (state.last.iterations() > 0) state.clean = false;
-  if (watches) state.near = are_many(state.last.near, kNearOf, mesh);
+  state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kNearOf, mesh);
   if (state.alternated && !state.last.converged) {
     relax(setting, std::move(state.last.near), state);
     state.energy =

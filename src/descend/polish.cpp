@@ -1,7 +1,6 @@
 #include "descend/polish.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,7 +19,6 @@ namespace {
 using Field = std::vector<Vec2>;  // one entry per vertex
 
 constexpr std::int64_t kGrain = 4096;
-constexpr std::size_t kHistory = 5;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr int kPatience = 3;            // steps with contact that gain next to nothing
 constexpr int kHoldRounds = 16;         // after which a few faces hold back the whole map
@@ -119,11 +117,12 @@ class Objective {
 /// The last steps with the changes of the gradient over them, and the two-loop recursion.
 class History {
  public:
-  explicit History(const Work& work) : work_(work) {}
+  History(std::size_t most, const Work& work) : most_(most), work_(work) {}
 
   /// Takes over the step of some length along the direction, and what it changed the gradient by;
   /// what is left in the first two fields is of no use.
   void add(double length, Field& direction, Field& gradient, const Field& next_gradient) {
+    if (most_ == 0) return;
     parallel_for(work_, size_of(direction), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
         direction[i] *= length;
@@ -133,7 +132,7 @@ class History {
     Field &step = direction, &change = gradient;
     const double curvature = dot(step, change, work_);
     if (!(curvature > 0)) return;  // would make the model indefinite
-    if (pairs_.size() < kHistory) {
+    if (pairs_.size() < most_) {
       pairs_.emplace_back();
     } else {
       std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
@@ -153,7 +152,7 @@ class History {
     parallel_for(work_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
     });
-    std::array<double, kHistory> alpha{};
+    std::vector<double> alpha(pairs_.size());
     for (std::size_t i = pairs_.size(); i-- > 0;) {
       alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, work_);
       add_multiple(-alpha[i], pairs_[i].change, q, work_);
@@ -172,6 +171,7 @@ class History {
     double inverse_curvature = 0;
   };
   std::vector<Pair> pairs_;
+  const std::size_t most_;
   const Work work_;
 };
 
@@ -194,21 +194,22 @@ void move_rigidly(const Triangle& face, const SingularStep& singular, Field& dir
 double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly, double near,
                  Field& direction, PolishResult& result, const Work& work) {
   constexpr double kLimit = 1 / kSingularShare;
-  std::vector<SingularStep> singular =
-      singular_steps(faces, uvs, direction, std::max(kLimit, near), nullptr, work);
+  result.blocking = singular_steps(faces, uvs, direction, std::max(kLimit, near), nullptr, work);
   if (near > 0) {
-    result.near = singular;
-    std::erase_if(singular, [](const SingularStep& s) { return !(s.length < kLimit); });
+    result.near = result.blocking;
+    std::erase_if(result.blocking, [](const SingularStep& s) { return !(s.length < kLimit); });
   }
-  result.blocking = singular;
+  std::vector<SingularStep> left;
+  const std::vector<SingularStep>* singular = &result.blocking;
   std::vector<std::uint8_t> changed;
-  for (int round = 0; rigidly && round < kHoldRounds && !singular.empty(); ++round) {
+  for (int round = 0; rigidly && round < kHoldRounds && !singular->empty(); ++round) {
     changed.resize(uvs.size());
-    for (const SingularStep& s : singular) move_rigidly(faces[s.face], s, direction, changed);
-    singular = singular_steps(faces, uvs, direction, kLimit, &changed, work);
+    for (const SingularStep& s : *singular) move_rigidly(faces[s.face], s, direction, changed);
+    left = singular_steps(faces, uvs, direction, kLimit, &changed, work);
+    singular = &left;
   }
   double length = 1;
-  for (const SingularStep& s : singular) length = std::min(length, kSingularShare * s.length);
+  for (const SingularStep& s : *singular) length = std::min(length, kSingularShare * s.length);
   return length;
 }
 
@@ -269,7 +270,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   }
   result.energies.push_back(start);
   if (!std::isfinite(start)) return result;
-  History history(work);
+  History history(options.history, work);
   bool rigidly = true;  // whether faces may be held back alone
   Settling settling;
   while (result.iterations() < options.max_iterations && !work.out_of_time()) {
