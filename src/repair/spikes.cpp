@@ -10,7 +10,6 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "descend/vertex_sweep.h"
-#include "energy/density.h"
 #include "mesh/face_block.h"
 #include "repair/regions.h"
 

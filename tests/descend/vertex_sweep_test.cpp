@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/work.h"
 #include "descend/tutte.h"
 #include "energy/density.h"
 #include "energy/energy.h"
