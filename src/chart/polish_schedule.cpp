@@ -5,9 +5,8 @@
 // one step of L-BFGS            of the flattening     once, and only if it is not held up; on the
 //                                                     finest of several levels up to 4 steps, with
 //                                                     which it mostly ends
-// one step, and regions around  fitted to the map     from then on in rounds, on large meshes,
-// while
-//   what it brings near to        where it has changed  there is much of that
+// one step, and regions around  fitted to the map     rounds from then on, while there is much
+//   what it brings near to        where it has changed  of that; with contact the next row instead
 //   being singular
 // L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, 8 on that level,
 //   or held up                  where it has changed  16 below it, 20 after hard ones, while a

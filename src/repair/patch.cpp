@@ -7,14 +7,10 @@
 
 #include "base/interrupt.h"
 #include "repair/hub_turns.h"
+#include "repair/sort_unique.h"
 
 namespace beltrami {
 namespace {
-
-void sort_unique(std::vector<Index>& items) {
-  sort_interruptibly(items.begin(), items.end(), std::less<>());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
 
 /// What `of` gives to the items, each once.
 template <class Visit>

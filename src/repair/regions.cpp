@@ -11,6 +11,7 @@
 #include "mesh/surface.h"
 #include "repair/hub_turns.h"
 #include "repair/patch_work.h"
+#include "repair/sort_unique.h"
 
 namespace beltrami {
 namespace {
@@ -94,12 +95,6 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
     }
   }
   return found;
-}
-
-template <class Item>
-void sort_unique(std::vector<Item>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 /// The faces at these vertices, which are those of a region. `local` is for its own use.

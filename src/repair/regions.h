@@ -25,7 +25,7 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
                                int rings);
 
-/// Minimises the energy in the regions within some rings of the faces, in place, to a relative
+/// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken
 /// back if it adds boundary crossings. Ends where the time is up. Returns the number of regions
 /// that changed. Precondition: the faces of the mesh are positive; they stay so.

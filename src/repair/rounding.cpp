@@ -20,6 +20,7 @@
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
+#include "repair/sort_unique.h"
 #include "repair/untangle.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"
@@ -179,11 +180,6 @@ std::optional<DiskMesh> surround(const DiskMesh& mesh, const std::vector<Vec2>& 
     return std::nullopt;
   }
   return build_disk(std::vector<Vec3>(vertices, Vec3::Zero()), std::move(faces), work);
-}
-
-void sort_unique(std::vector<Index>& items) {
-  sort_interruptibly(items.begin(), items.end(), std::less<>());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 /// The ring's faces at the edges that cross.

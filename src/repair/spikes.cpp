@@ -12,6 +12,7 @@
 #include "descend/vertex_sweep.h"
 #include "mesh/face_block.h"
 #include "repair/regions.h"
+#include "repair/sort_unique.h"
 
 namespace beltrami {
 namespace {
@@ -27,7 +28,7 @@ template <class Density>
 std::vector<Index> faces_above(double limit, const DiskMesh& mesh,
                                const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
                                const Work& work) {
-  using Rank = std::pair<double, Index>;  // less the energy
+  using Rank = std::pair<double, Index>;  // the negative energy, so that the worst is first
   std::vector<std::vector<Rank>> found(mesh.faces.size() / kGrain + 1);
   parallel_for(work, mesh.face_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     FaceBlock block;
@@ -57,11 +58,6 @@ std::vector<Index> faces_above(double limit, const DiskMesh& mesh,
   for (const Rank& rank : ranked) faces.push_back(rank.second);
   std::sort(faces.begin(), faces.end());
   return faces;
-}
-
-void sort_unique(std::vector<Index>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 /// The vertices of the faces and those up to some rings around, increasing.

@@ -17,7 +17,8 @@ namespace beltrami {
 /// (relax_regions). Where these are more than a hundredth of all faces, around the worst of them.
 /// `limit`: a symmetric Dirichlet energy; of other energies what compares to it. Returns the number
 /// of faces of the first round, 0 where none is above the limit. Ends where the time is up.
-/// Precondition: the faces of the mesh are positive; they stay so.
+/// Precondition: the faces of the mesh are positive; they stay so. `rest`: one entry per face,
+/// `uvs`: one per vertex. Throws nothing of its own.
 std::size_t relax_spikes(Energy energy, double limit, const DiskMesh& mesh,
                          const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                          const Work& work);

@@ -77,8 +77,9 @@ TEST(VertexSweep, MovesOnlyTheVerticesGiven) {
   const std::vector<Vec2> start = map.uvs;
   const Index inside = (Rough::kSide + 1) * (Rough::kSide / 2) + Rough::kSide / 2;
   sweep_vertices(Energy::kSymmetricDirichlet, map.mesh, map.rest, map.uvs, {inside, 0});
-  for (Index v = 0; v < map.mesh.vertex_count(); ++v)
+  for (Index v = 0; v < map.mesh.vertex_count(); ++v) {
     EXPECT_EQ(map.uvs[v] != start[v], v == inside);
+  }
 }
 
 TEST(VertexSweep, LeavesAMinimumAndWhatIsFlippedAsTheyAre) {

@@ -26,7 +26,6 @@ struct Spiky {
       const Index v = row * (kSide + 1) + 20;
       const Vec2 across = uvs[v + 1] - uvs[v];
       uvs[v] += (1 - near) * across;
-      moved.push_back(v);
     }
   }
 
@@ -37,7 +36,6 @@ struct Spiky {
   DiskMesh mesh = disks::disk(meshes::grid(kSide, kSide));
   std::vector<RestTriangle> rest = disks::rest_of(mesh);
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
-  std::vector<Index> moved;
 };
 
 // The Newton systems of regions are lost to rounding at energies of 1e26, those of a vertex are
