@@ -68,8 +68,9 @@ constexpr double kHopelessly = 1.2;
 // Shares of the progress.
 constexpr double kSimplified = 0.25, kStarted = 0.4;
 
-/// L-BFGS, as metric_mode has it, with the map and the one that it started from.
-constexpr double kPolishFields = 2 * 5 + 4 + 2;
+/// L-BFGS, as metric_mode has it, with the map and the one that it started from; on a large mesh
+/// without the steps, one gradient and the copy of it, but with what regions take.
+constexpr double kPolishFields = 2 * 5 + 4 + 2, kLargeFields = 8;
 /// Neighbours of a vertex.
 constexpr double kNeighbours = 6;
 /// Bytes of a vertex of a coarser level with all that is kept of it.
@@ -434,9 +435,10 @@ double nested_bytes(const MeshCounts& n, int threads) {
   const double row = sizeof(Footpoint) + 3 * sizeof(Index) + sizeof(float) +
                      kNeighbours * (sizeof(Index) + sizeof(float));
   const double single = 3 * sizeof(Eigen::Vector2f);
-  const double climb = n.faces * sizeof(RestTriangle) +
-                       n.vertices * (kPolishFields * sizeof(Vec2) + row + single + sizeof(Index)) +
-                       kLevels * n.vertices * kLevel;
+  const double fields =
+      std::max(kPolishFields * part_of(n, kLargeMesh).vertices, kLargeFields * n.vertices);
+  const double climb = n.faces * sizeof(RestTriangle) + fields * sizeof(Vec2) +
+                       n.vertices * (row + single + sizeof(Index)) + kLevels * n.vertices * kLevel;
   // The coarsest level, or a hard one with its factor; so it never takes less than a disk that has
   // no levels yet.
   const MeshCounts coarsest = part_of(n, kMostFactored);

@@ -70,8 +70,6 @@ constexpr double kMostRelaxed = 1e-2;  // of the faces
 constexpr double kWorthIt = 1e-3;      // predicted relative decrease without which it is not rough
 /// With more of a rough map near to being singular regions follow each step.
 constexpr double kNearOf = 3e-4;
-constexpr Index kSoonDone = 400'000;  // faces: a round takes a tenth of a second, and may gain less
-constexpr std::size_t kLargeHistory = 0;  // of larger meshes, for memory: few steps are taken there
 
 /// What a length of the polish means.
 struct Bounds {
@@ -92,7 +90,7 @@ Bounds bounds_of(PolishLength length, Index faces) {
     case PolishLength::kMiddling:
       return {1e-4, 1e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
-      if (faces <= kSoonDone) return {1e-4, 2e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
+      if (faces <= kLargeMesh) return {1e-4, 2e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
       return {1e-4, 5e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
@@ -215,7 +213,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.tolerance = kTolerance;
   options.max_iterations = state.alternated ? 1 : steps;
   options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
-  if (mesh.face_count() > kSoonDone) options.history = kLargeHistory;
+  if (mesh.face_count() > kLargeMesh) options.history = 0;
   options.enough = state.bounds.enough;
   options.stationary = state.bounds.at_rest;
   options.contact = setting.contact;
@@ -244,10 +242,9 @@ void fit_factor(const Setting& setting, const State& state) {
     for (double& spring : springs) spring *= setting.contact->strength();
   }
   const DiskMesh& mesh = *setting.fine.mesh;
-  std::vector<EdgeWeights> stiffness = energy_stiffness(setting.options.energy, mesh.faces,
-                                                        setting.fine.rest, state.uvs, setting.work);
-  setting.inverse.refit(stiffness, springs);
-  parallel_free(setting.work, stiffness);  // so that the allocator does not keep it
+  setting.inverse.refit(
+      stiffness_of_faces(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs),
+      springs);
 }
 
 /// Whether the last step looked at promises next to nothing.

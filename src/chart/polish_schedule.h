@@ -22,6 +22,10 @@ enum class PolishLength {
            ///< little
 };
 
+/// With more faces a step takes a tenth of a second: a round may gain less, and steps are not
+/// remembered, for memory.
+inline constexpr Index kLargeMesh = 400'000;
+
 /// Descends from `start`, whose faces are all positive, on the schedule at the top of
 /// polish_schedule.cpp. With `contact`, which is copied, the boundary stays simple; null: it may
 /// cross itself. `inverse` is that of the solve, and is fitted anew on the way. Converged: ended

@@ -145,13 +145,17 @@ class History {
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
 
-  /// Writes the direction of descent; `q` is for its own use.
+  /// Writes the direction of descent; `q` is for its own use, where there are steps.
   void find_direction(const Field& gradient, const Precondition& precondition, Field& q,
                       Field& direction) const {
+    if (pairs_.empty()) {
+      poll_interrupt();
+      precondition(gradient, direction);
+      set_negative(direction, direction);
+      return;
+    }
     parallel_assign(work_, q, gradient.size());
-    parallel_for(work_, size_of(q), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) q[i] = -gradient[i];
-    });
+    set_negative(gradient, q);
     std::vector<double> alpha(pairs_.size());
     for (std::size_t i = pairs_.size(); i-- > 0;) {
       alpha[i] = pairs_[i].inverse_curvature * dot(pairs_[i].step, q, work_);
@@ -166,6 +170,12 @@ class History {
   }
 
  private:
+  void set_negative(const Field& of, Field& negative) const {
+    parallel_for(work_, size_of(of), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) negative[i] = -of[i];
+    });
+  }
+
   struct Pair {
     Field step, change;
     double inverse_curvature = 0;
@@ -215,16 +225,18 @@ double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigi
 
 /// The buffers of a descent.
 struct Fields {
-  Field gradient, next_gradient, direction;
-  Field trial;  ///< and what else is needed between two trials
+  Field gradient, direction;
+  Field next_gradient;  ///< only where steps are remembered
+  Field trial;          ///< and what else is needed between two trials
 };
 
 /// Writes into `trial` the point along the direction, from `length` on downwards, where the energy
-/// is low enough for its slope and the boundary simple, and shortens `length` accordingly. Infinite
-/// if there is none.
+/// is low enough for its slope and the boundary simple, its gradient into `gradient`, and shortens
+/// `length` accordingly. Infinite if there is none.
 template <class Density>
 double search_line(Objective<Density>& objective, const Field& uvs, double before, double slope,
-                   const PolishOptions& options, Fields& fields, double& length, const Work& work) {
+                   const PolishOptions& options, Fields& fields, Field& gradient, double& length,
+                   const Work& work) {
   for (int halving = 0; halving < kMaxHalvings; ++halving, length *= 0.5) {
     fields.trial.resize(uvs.size());
     parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -232,7 +244,7 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
         fields.trial[i] = uvs[i] + length * fields.direction[i];
       }
     });
-    const double after = objective.evaluate(fields.trial, fields.next_gradient);
+    const double after = objective.evaluate(fields.trial, gradient);
     const bool low = after < before && after <= before + kArmijo * length * slope;
     if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
   }
@@ -261,8 +273,9 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
   Objective<Density> objective(size_of(uvs), faces, rest, work);
   PolishResult result;
   // Not structured bindings, which clang does not let lambdas capture.
-  Field &gradient = fields.gradient, &next_gradient = fields.next_gradient;
-  Field &direction = fields.direction, &trial = fields.trial;
+  const bool remembers = options.history > 0;
+  Field &gradient = fields.gradient, &direction = fields.direction, &trial = fields.trial;
+  Field& next_gradient = remembers ? fields.next_gradient : gradient;
   double start = objective.evaluate(uvs, gradient);
   if (options.contact && std::isfinite(start)) {
     objective.set_contact(options.contact);
@@ -297,7 +310,8 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
     }
     double after = slope < 0
-                       ? search_line(objective, uvs, before, slope, options, fields, length, work)
+                       ? search_line(objective, uvs, before, slope, options, fields, next_gradient,
+                                     length, work)
                        : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
@@ -305,6 +319,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       if (plain) break;
       history.clear();
       rigidly = false;
+      if (!remembers) objective.evaluate(uvs, gradient);  // that of the last trial is there
       continue;
     }
     rigidly = true;
@@ -314,7 +329,11 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
     if (length >= kFullStep && result.blocking.empty()) {
       history.add(length, direction, gradient, next_gradient);
     }
-    gradient.swap(next_gradient);
+    if (remembers) {
+      gradient.swap(next_gradient);
+    } else {
+      parallel_free(work, direction);  // so that it is not there beside what finds the next one
+    }
     settling.see(before - after, length, scale, options);
   }
   return result;

@@ -23,7 +23,8 @@ struct PolishOptions {
   double stationary = 1e-4;  ///< the next one is predicted to decrease it by less than that
   double enough = 0;  ///< it ends as soon as a step is predicted to decrease it by less than that
   int max_iterations = 20;
-  std::size_t history = 5;    ///< steps remembered, of which each takes 32 bytes of a vertex
+  /// Steps remembered, of which each takes 32 bytes of a vertex, and the first 16 more.
+  std::size_t history = 5;
   double shortest_first = 0;  ///< the first step is taken unless it has to be shorter than that
   /// Keeps the boundary from touching itself: its barrier joins the energy, and steps end before
   /// the first touch. Fitted to the map; the boundary must be simple at the start. Null: it may
@@ -48,11 +49,11 @@ struct PolishResult {
 /// definite.
 using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector<Vec2>& out)>;
 
-/// Minimises the mean energy by L-BFGS (Nocedal 1980) with `precondition` for the
-/// initial inverse Hessian. No face ever flips: faces that a step would bring too near to that move
-/// more rigidly with their neighbours, and where this does not help the whole step is shortened. It
-/// ends where the time is up, and where steps become short: clean_outliers mends the faces that
-/// block them. Precondition: all faces of `uvs` are positively oriented.
+/// Minimises the mean energy by L-BFGS (Nocedal 1980) with `precondition` for the initial inverse
+/// Hessian. No face ever flips: faces that a step would bring too near to that move more rigidly
+/// with their neighbours, and where this does not help the whole step is shortened. It ends where
+/// the time is up, and where steps become short: clean_outliers mends the faces that block them.
+/// Precondition: all faces of `uvs` are positively oriented.
 PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
                     const PolishOptions& options, const Work& work);

@@ -25,18 +25,31 @@ EdgeWeights stiffness_at(const RestTriangle& rest, double a, double b, Complex d
                       0.5 * std::sqrt(along * across));
 }
 
-/// Calls stiffness(density, face) for every face.
-template <class Stiffness>
-std::vector<EdgeWeights> stiffness_of_faces(const Work& work, Energy energy, std::size_t count,
-                                            const Stiffness& stiffness) {
+std::vector<EdgeWeights> all_of(const StiffnessOfFaces& stiffness, std::size_t count,
+                                const Work& work) {
   std::vector<EdgeWeights> weights;
   parallel_assign(work, weights, count);
-  with_density(energy, [&]<class Density>(Density density) {
-    parallel_for(work, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t f = begin; f < end; ++f) weights[f] = stiffness(density, f);
-    });
+  parallel_for(work, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    stiffness(begin, end, weights.data() + begin);
   });
   return weights;
+}
+
+template <class Density>
+EdgeWeights stiffness_at(const RestTriangle& rest, const FaceMetric& metric) {
+  const double k = modulus(metric.mu);
+  const Complex direction = k > 0 ? metric.mu / k : Complex(1);
+  const double a = portable::exp(0.5 * metric.log_area) / std::sqrt(1 - k * k);
+  return stiffness_at<Density>(rest, a, k * a, direction);
+}
+
+template <class Density>
+EdgeWeights stiffness_at(const RestTriangle& rest, const LinearMap& map) {
+  const double a = modulus(map.fz), b = modulus(map.fzbar);
+  // Flipped: the density is infinite there, its finite part (squared singular values) is not.
+  if (!(a > b)) return edge_weights(modified_cotangents(rest, 0), 1);
+  const Complex direction = b > 0 ? quotient(map.fzbar, map.fz) * (a / b) : Complex(1);
+  return stiffness_at<Density>(rest, a, b, direction);
 }
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
@@ -80,27 +93,34 @@ Complex fitted_rotation(const EdgeWeights& weights, const std::array<Complex, 3>
 
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<RestTriangle>& rest,
                                           const std::vector<FaceMetric>& metric, const Work& work) {
-  return stiffness_of_faces(work, energy, rest.size(), [&]<class Density>(Density, std::int64_t f) {
-    const double k = modulus(metric[f].mu);
-    const Complex direction = k > 0 ? metric[f].mu / k : Complex(1);
-    const double a = portable::exp(0.5 * metric[f].log_area) / std::sqrt(1 - k * k);
-    return stiffness_at<Density>(rest[f], a, k * a, direction);
+  return with_density(energy, [&]<class Density>(Density) {
+    const auto some = [&](std::int64_t first, std::int64_t end, EdgeWeights* weights) {
+      for (std::int64_t f = first; f < end; ++f) {
+        weights[f - first] = stiffness_at<Density>(rest[f], metric[f]);
+      }
+    };
+    return all_of(some, rest.size(), work);
   });
 }
 
 std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Triangle>& faces,
                                           const std::vector<RestTriangle>& rest,
                                           const std::vector<Vec2>& uvs, const Work& work) {
-  return stiffness_of_faces(
-      work, energy, rest.size(), [&]<class Density>(Density, std::int64_t f) -> EdgeWeights {
+  return all_of(stiffness_of_faces(energy, faces, rest, uvs), faces.size(), work);
+}
+
+StiffnessOfFaces stiffness_of_faces(Energy energy, const std::vector<Triangle>& faces,
+                                    const std::vector<RestTriangle>& rest,
+                                    const std::vector<Vec2>& uvs) {
+  return with_density(energy, [&]<class Density>(Density) -> StiffnessOfFaces {
+    return [&](std::int64_t first, std::int64_t end, EdgeWeights* weights) {
+      for (std::int64_t f = first; f < end; ++f) {
         const Triangle& t = faces[f];
         const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-        const double a = modulus(map.fz), b = modulus(map.fzbar);
-        // Flipped: the density is infinite there, its finite part (squared singular values) is not.
-        if (!(a > b)) return edge_weights(modified_cotangents(rest[f], 0), 1);
-        const Complex direction = b > 0 ? quotient(map.fzbar, map.fz) * (a / b) : Complex(1);
-        return stiffness_at<Density>(rest[f], a, b, direction);
-      });
+        weights[f - first] = stiffness_at<Density>(rest[f], map);
+      }
+    };
+  });
 }
 
 std::vector<double> stiff_springs(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
@@ -125,6 +145,10 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWei
   assemble(stiffness, springs);
   if (matrix_.free_count() > 0)
     solver_ = factorize_laplacian(matrix_, mesh.positions, options, work);
+}
+
+void MetricLaplacian::refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) {
+  refit(all_of(stiffness, faces_.size(), work_), springs);
 }
 
 void MetricLaplacian::refit(const std::vector<EdgeWeights>& stiffness,

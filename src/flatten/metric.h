@@ -30,6 +30,11 @@ std::vector<EdgeWeights> energy_stiffness(Energy energy, const std::vector<Trian
                                           const std::vector<RestTriangle>& rest,
                                           const std::vector<Vec2>& uvs, const Work& work);
 
+/// That of some faces at a time. Keeps references to what it gets.
+StiffnessOfFaces stiffness_of_faces(Energy energy, const std::vector<Triangle>& faces,
+                                    const std::vector<RestTriangle>& rest,
+                                    const std::vector<Vec2>& uvs);
+
 /// Springs that draw vertices to places of their own.
 struct Anchors {
   std::vector<double> springs;  ///< per vertex: stiffness, 0 where there is none; empty: all are
@@ -55,8 +60,8 @@ class MetricLaplacian final : public StiffnessInverse {
                   const std::vector<double>& springs, const Work& work);
 
   /// Factorizes anew. Throws Error SOLVER.
-  void refit(const std::vector<EdgeWeights>& stiffness,
-             const std::vector<double>& springs) override;
+  void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) override;
+  void refit(const std::vector<EdgeWeights>& stiffness, const std::vector<double>& springs);
 
   /// Solves L x = rhs; both one row per vertex, x zero at the held vertices.
   DenseMatrix solve(const DenseMatrix& rhs) const;

@@ -1,6 +1,8 @@
 // What preconditions the descent of a map: about the inverse of a stiffness.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/types.h"
@@ -8,14 +10,17 @@
 
 namespace beltrami {
 
+/// Writes the stiffness of the faces from `first` on, `end - first` of them. Of a large mesh the
+/// stiffness of all faces at once is more than what is kept of it in single precision.
+using StiffnessOfFaces =
+    std::function<void(std::int64_t first, std::int64_t end, EdgeWeights* weights)>;
+
 /// About the inverse of a Laplacian with springs at its vertices: linear, symmetric, definite.
 class StiffnessInverse {
  public:
   virtual ~StiffnessInverse() = default;
-  /// Takes another stiffness, one entry per face, and springs, per vertex or none. Throws Error
-  /// SOLVER.
-  virtual void refit(const std::vector<EdgeWeights>& stiffness,
-                     const std::vector<double>& springs) = 0;
+  /// Takes another stiffness, and springs, per vertex or none. Throws Error SOLVER.
+  virtual void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) = 0;
   /// Sets `x` to it times `rhs`; one entry per vertex.
   virtual void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) = 0;
 };

@@ -1,6 +1,7 @@
 #include "flatten/v_cycle.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kBlock = 64;  // faces whose stiffness is rounded at a time
 /// Parts of the fine vertices whose shares of a coarse field are summed apart, then together.
 constexpr std::int64_t kParts = 8;
 
@@ -122,13 +124,18 @@ void VCycle::set_springs_below(std::size_t level, const std::vector<float>& spri
   hessian_.reset();  // it knows nothing of springs
 }
 
-void VCycle::refit(const std::vector<EdgeWeights>& stiffness, const std::vector<double>& springs) {
+void VCycle::refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) {
   if (levels_.empty()) return;
   std::vector<SingleWeights> weights;
-  parallel_assign(work_, weights, stiffness.size());
+  parallel_assign(work_, weights, levels_.back()->mesh.faces.size());
   parallel_for(work_, size_of(weights), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      for (int k = 0; k < 3; ++k) weights[f][k] = static_cast<float>(stiffness[f][k]);
+    std::array<EdgeWeights, kBlock> block;
+    for (std::int64_t first = begin; first < end; first += kBlock) {
+      const std::int64_t last = std::min(end, first + kBlock);
+      stiffness(first, last, block.data());
+      for (std::int64_t f = first; f < last; ++f) {
+        for (int k = 0; k < 3; ++k) weights[f][k] = static_cast<float>(block[f - first][k]);
+      }
     }
   });
   set(weights, springs);

@@ -46,8 +46,7 @@ class VCycle final : public StiffnessInverse {
   /// per vertex.
   void anchor(const std::vector<bool>& vertices);
   /// Of the finest level, unless that is the coarsest, which keeps what it has.
-  void refit(const std::vector<EdgeWeights>& stiffness,
-             const std::vector<double>& springs) override;
+  void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) override;
 
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) override;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "base/interrupt.h"
@@ -147,6 +148,15 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
   return regions;
 }
 
+std::vector<std::size_t> largest_first(const std::vector<Patch>& regions) {
+  std::vector<std::size_t> order(regions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return regions[a].faces.size() > regions[b].faces.size();
+  });
+  return order;
+}
+
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                            const std::vector<Index>& faces, int rings, const Work& work) {
@@ -158,10 +168,11 @@ std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
   const Work alone = work.aside();
   std::vector<std::uint8_t> positive(regions.size(), 0);
-  parallel_for(work, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
-    Patch& region = regions[i];
+  const std::vector<std::size_t> order = largest_first(regions);
+  parallel_for(work, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
+    Patch& region = regions[order[i]];
     minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
-    positive[i] = non_positive_faces(region.faces, region.uvs, alone).empty();
+    positive[order[i]] = non_positive_faces(region.faces, region.uvs, alone).empty();
   });
   PatchWork taken(mesh, uvs);
   std::int64_t changed = 0;

@@ -2,6 +2,7 @@
 // each hold what the next one has to move.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,9 @@ inline constexpr int kRegionRings = 4;
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
                                int rings);
+
+/// The regions in the order in which several threads are done with them soonest.
+std::vector<std::size_t> largest_first(const std::vector<Patch>& regions);
 
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken

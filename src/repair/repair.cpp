@@ -118,9 +118,10 @@ class Repair {
     std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings);
     std::vector<std::uint8_t> positive(regions.size(), 0);
     const Work alone = work_.aside();
-    parallel_for(work_, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
-      Patch& region = regions[i];
-      positive[i] = untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
+    const std::vector<std::size_t> order = largest_first(regions);
+    parallel_for(work_, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
+      Patch& region = regions[order[i]];
+      positive[order[i]] = untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
     });
     for (std::size_t i = 0; i < regions.size(); ++i) {
       if (positive[i] == 0 || !patches.take(regions[i])) continue;
