@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -350,9 +351,12 @@ TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
   for (const auto& list : {meshes::bumps(10, 10), meshes::cap(8, 24, 1.8), meshes::strip(10),
                            disks::slivers(6, 6), disks::spike(8)}) {
     const DiskMesh mesh = disks::disk(list);
-    for (const Energy energy : {Energy::kSymmetricDirichlet, Energy::kExponentialDirichlet}) {
+    for (const auto& [energy, history] :
+         {std::pair(Energy::kSymmetricDirichlet, 5u), std::pair(Energy::kExponentialDirichlet, 5u),
+          std::pair(Energy::kSymmetricDirichlet, 0u), std::pair(Energy::kExponentialDirichlet, 0u)}) {
       PolishOptions options;
       options.energy = energy;
+      options.history = history;
       const Polished polished = polish_from(mesh, tutte_embedding(mesh, Work(1)), options);
       const auto& energies = polished.result.energies;
       ASSERT_GT(energies.size(), 1u);
@@ -384,6 +388,17 @@ TEST(Polish, KeepsToItsLimitOfSteps) {
   PolishOptions options;
   options.max_iterations = 3;
   EXPECT_LE(polish_from(mesh, tutte_embedding(mesh, Work(1)), options).result.iterations(), 3);
+}
+
+TEST(Polish, TakesTheSameFirstStepWithAndWithoutRememberingSteps) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(10, 10));
+  const std::vector<Vec2> start = tutte_embedding(mesh, Work(1));
+  PolishOptions options;
+  options.max_iterations = 1;
+  const std::vector<Vec2> remembered = polish_from(mesh, start, options).uvs;
+  options.history = 0;
+  EXPECT_EQ(polish_from(mesh, start, options).uvs, remembered);
+  EXPECT_NE(remembered, start);
 }
 
 TEST(Polish, HasTheSameBitsOnTwoThreads) {
