@@ -190,7 +190,9 @@ void clear_way(const Setting& setting, State& state) {
     state.near = true;
     if (relax_worst(setting, state)) return;
   }
-  if (mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
+  // In haste the polish ends with what is not worth it.
+  const bool in_regions = worth_it || !state.bounds.in_haste;
+  if (in_regions && mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
     relax(setting, blocking, state);
   } else {
     clean(setting, faces_of(blocking), state);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -98,36 +99,49 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
   return found;
 }
 
-/// The faces at these vertices, which are those of a region. `local` is for its own use.
+/// The faces at these vertices, which are those of a region and increase.
 Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                const std::vector<Vec2>& uvs, const std::vector<Index>& vertices,
-               const Membership& membership, Index region, std::vector<Index>& local) {
+               const Membership& membership, Index region) {
   Patch patch;
+  std::vector<Index> rim;  // vertices of the faces that stay
   PollSometimes poll;
   for (const Index v : vertices) {
     poll();
-    mesh.for_each_outgoing(v, [&](Index h) { patch.mesh_faces.push_back(h / 3); });
+    patch.moves_boundary = patch.moves_boundary || mesh.on_boundary[v];
+    mesh.for_each_outgoing(v, [&](Index h) {
+      const Triangle& corners = mesh.faces[h / 3];
+      const auto moves = [&](Index u) { return membership.moves(u, region); };
+      // Each face comes with the first of its corners that moves.
+      if (std::any_of(corners.begin(), corners.end(), [&](Index u) { return u < v && moves(u); })) {
+        return;
+      }
+      patch.mesh_faces.push_back(h / 3);
+      for (const Index u : corners) {
+        if (!moves(u)) rim.push_back(u);
+      }
+    });
   }
-  sort_unique(patch.mesh_faces);
-  for (const Index f : patch.mesh_faces) {
-    const Triangle& corners = mesh.faces[f];
-    patch.mesh_vertices.insert(patch.mesh_vertices.end(), corners.begin(), corners.end());
-  }
-  sort_unique(patch.mesh_vertices);
+  std::sort(patch.mesh_faces.begin(), patch.mesh_faces.end());
+  sort_unique(rim);
+  std::merge(vertices.begin(), vertices.end(), rim.begin(), rim.end(),
+             std::back_inserter(patch.mesh_vertices));
   for (const Index v : patch.mesh_vertices) {
-    const bool moves = membership.moves(v, region);
-    local[v] = size_of(patch.uvs);
     patch.uvs.push_back(uvs[v]);
-    patch.fixed.push_back(!moves);
-    patch.moves_boundary = patch.moves_boundary || (moves && mesh.on_boundary[v]);
+    patch.fixed.push_back(!membership.moves(v, region));
   }
+  const auto local = [&](Index v) {
+    const auto& all = patch.mesh_vertices;
+    return static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
+  };
   for (const Index f : patch.mesh_faces) {
+    poll();
     const Triangle& t = mesh.faces[f];
-    patch.faces.push_back({local[t[0]], local[t[1]], local[t[2]]});
+    patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
     if (!rest.empty()) patch.rest.push_back(rest[f]);
   }
   // A region that is the whole mesh would drift.
-  if (vertices.size() == patch.fixed.size()) patch.fixed[0] = true;
+  if (rim.empty()) patch.fixed[0] = true;
   return patch;
 }
 
@@ -135,16 +149,17 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               int rings) {
+                               int rings, const Work& work) {
   Membership membership(mesh);
-  std::vector<Patch> regions;
-  std::vector<Index> local(mesh.positions.size());
+  std::vector<std::vector<Index>> vertices;  // of each region
   for (const Index v : around(mesh, faces, rings, membership)) {
-    const auto region = size_of(regions);
-    const std::vector<Index> vertices = membership.connected_to(v, region);
-    if (vertices.empty()) continue;
-    regions.push_back(patch_of(mesh, rest, uvs, vertices, membership, region, local));
+    std::vector<Index> connected = membership.connected_to(v, size_of(vertices));
+    if (!connected.empty()) vertices.push_back(std::move(connected));
   }
+  std::vector<Patch> regions(vertices.size());
+  parallel_for(work, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
+    regions[i] = patch_of(mesh, rest, uvs, vertices[i], membership, static_cast<Index>(i));
+  });
   return regions;
 }
 
@@ -160,7 +175,7 @@ std::vector<std::size_t> largest_first(const std::vector<Patch>& regions) {
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                            const std::vector<Index>& faces, int rings, const Work& work) {
-  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, rings);
+  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, rings, work);
   NewtonOptions options;
   options.energy = energy;
   options.tolerance = kTolerance;

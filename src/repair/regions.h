@@ -24,7 +24,7 @@ inline constexpr int kRegionRings = 4;
 /// empty, and that of the patches then is. Takes time for the mesh.
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               int rings);
+                               int rings, const Work& work);
 
 /// The regions in the order in which several threads are done with them soonest.
 std::vector<std::size_t> largest_first(const std::vector<Patch>& regions);

@@ -115,7 +115,7 @@ class Repair {
 
   /// Of many faces most patches have others on their edges, which hold them.
   void untangle_regions(const std::vector<Index>& bad, PatchWork& patches) {
-    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings);
+    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings, work_);
     std::vector<std::uint8_t> positive(regions.size(), 0);
     const Work alone = work_.aside();
     const std::vector<std::size_t> order = largest_first(regions);
