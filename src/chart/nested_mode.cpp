@@ -54,6 +54,7 @@ constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolat
 constexpr int kMostSteps = 6;       // while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
 constexpr double kFairlyFew = 1e-4;
+constexpr double kRising = 1.25;  // times those of the step before: steps lead away
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
 /// hard for the V-cycle. Where there are few faces, where a factor is cheap, and on any level.
 struct Bearable {
@@ -176,8 +177,10 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
         kMostSteps,
         [&](int step) {
           if (step < kLeastSteps) return false;
-          solved.flips = flips_of(map.uvs);
-          return at_most(step > kLeastSteps ? kFairlyFew : kFewFlips);
+          const std::size_t before = std::exchange(solved.flips, flips_of(map.uvs));
+          const bool first = step == kLeastSteps;
+          return at_most(first ? kFewFlips : kFairlyFew) ||
+                 (!first && solved.flips > kFewPatches && solved.flips > kRising * before);
         },
         residual, map.uvs);
     if (!anchored.empty()) {

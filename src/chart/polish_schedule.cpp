@@ -221,7 +221,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.contact = setting.contact;
   options.near = state.alternated ? kNear : 0;
   const int before = state.iterations;
-  state.last = polish(mesh.faces, setting.fine.rest, precondition, state.uvs, options,
+  state.last = polish(mesh, setting.fine.rest, precondition, state.uvs, options,
                       setting.work.part(share(before), share(before + steps)));
   state.energy = state.last.energies.back();
   state.iterations += state.last.iterations();

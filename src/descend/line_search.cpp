@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "mesh/face_chunks.h"
 
@@ -37,6 +39,17 @@ AreaPolynomial area_along(const Triangle& t, const std::vector<Vec2>& uvs,
   return {std::max(cross(e1, e2), 0.0), cross(e1, p2) + cross(p1, e2), cross(p1, p2)};
 }
 
+/// Where the face becomes singular, if that is before `limit`.
+std::optional<double> singular_before(double limit, const Triangle& face,
+                                      const std::vector<Vec2>& uvs,
+                                      const std::vector<Vec2>& direction) {
+  const auto [c0, c1, c2] = area_along(face, uvs, direction);
+  // Most faces are far from it, and need no root.
+  if (c0 > limit * (std::max(0.0, -c1) + limit * std::max(0.0, -c2))) return {};
+  const double root = smallest_positive_root(c0, c1, c2);
+  return root < limit ? std::optional(root) : std::nullopt;
+}
+
 }  // namespace
 
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
@@ -56,23 +69,32 @@ double first_singular_step(const std::vector<Triangle>& faces, const std::vector
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         const std::vector<std::uint8_t>* among, const Work& work) {
+                                         const Work& work) {
   const std::int64_t grain = FaceChunks::grain_of(size_of(faces));
   std::vector<std::vector<SingularStep>> found(faces.size() / grain + 1);
   parallel_for(work, size_of(faces), grain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t f = begin; f < end; ++f) {
-      const Triangle& t = faces[f];
-      if (among && !((*among)[t[0]] | (*among)[t[1]] | (*among)[t[2]])) continue;
-      const auto [c0, c1, c2] = area_along(t, uvs, direction);
-      // Most faces are far from it, and need no root.
-      if (c0 > limit * (std::max(0.0, -c1) + limit * std::max(0.0, -c2))) continue;
-      const double root = smallest_positive_root(c0, c1, c2);
-      if (root < limit) found[begin / grain].push_back({static_cast<Index>(f), root});
+      const auto length = singular_before(limit, faces[f], uvs, direction);
+      if (length) found[begin / grain].push_back({static_cast<Index>(f), *length});
     }
   });
   std::vector<SingularStep> all;
   for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
+}
+
+std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
+                                            const std::vector<Triangle>& faces,
+                                            const std::vector<Vec2>& uvs,
+                                            const std::vector<Vec2>& direction, double limit) {
+  std::vector<SingularStep> found;
+  PollSometimes poll;
+  for (const Index f : some) {
+    poll();
+    const auto length = singular_before(limit, faces[f], uvs, direction);
+    if (length) found.push_back({f, *length});
+  }
+  return found;
 }
 
 }  // namespace beltrami

@@ -1,7 +1,6 @@
 // How far a map can go along a direction before a face becomes singular.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "base/types.h"
@@ -21,11 +20,17 @@ struct SingularStep {
   double length;
 };
 
-/// The faces that become singular before `limit`, and where, in the order of the faces: of all, or
-/// of those with a vertex `among` these (not 0). The same precondition.
+/// The faces that become singular before `limit`, and where, in the order of the faces. The same
+/// precondition.
 std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
-                                         const std::vector<std::uint8_t>* among, const Work& work);
+                                         const Work& work);
+
+/// The same among some of the faces, in their order.
+std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
+                                            const std::vector<Triangle>& faces,
+                                            const std::vector<Vec2>& uvs,
+                                            const std::vector<Vec2>& direction, double limit);
 
 }  // namespace beltrami

@@ -8,8 +8,10 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/face_block.h"
 #include "mesh/vertex_sums.h"
 
@@ -185,37 +187,62 @@ class History {
   const Work work_;
 };
 
-/// Moves the face's vertices along more rigidly, so that it does not become singular where it now
-/// does. Vertices that do not move, because they are held, still do not.
-void move_rigidly(const Triangle& face, const SingularStep& singular, Field& direction,
-                  std::vector<std::uint8_t>& changed) {
-  const Vec2 mean = (direction[face[0]] + direction[face[1]] + direction[face[2]]) / 3;
-  for (const Index v : face) {
-    if (direction[v] == Vec2::Zero()) continue;
-    direction[v] = mean + kSingularShare * singular.length * (direction[v] - mean);
-    changed[v] = 1;
+/// What moves along more rigidly than the direction had it.
+class Rigid {
+ public:
+  explicit Rigid(const DiskMesh& mesh) : mesh_(mesh) {}
+
+  /// Moves the vertices of the faces so, one face after the other, that none becomes singular where
+  /// it now does. Vertices that do not move, because they are held, still do not.
+  void move(const std::vector<SingularStep>& steps, Field& direction) {
+    changed_.resize(direction.size());
+    std::vector<Index> more;  // faces at vertices that had not been changed
+    PollSometimes poll;
+    for (const SingularStep& s : steps) {
+      const Triangle& face = mesh_.faces[s.face];
+      const Vec2 mean = (direction[face[0]] + direction[face[1]] + direction[face[2]]) / 3;
+      for (const Index v : face) {
+        if (direction[v] == Vec2::Zero()) continue;
+        direction[v] = mean + kSingularShare * s.length * (direction[v] - mean);
+        if (std::exchange(changed_[v], 1) != 0) continue;
+        mesh_.for_each_outgoing(v, [&](Index h) {
+          poll();
+          more.push_back(h / 3);
+        });
+      }
+    }
+    if (more.empty()) return;
+    faces_.insert(faces_.end(), more.begin(), more.end());
+    sort_unique(faces_);
   }
-}
+
+  /// All faces with a vertex that has been changed, increasing.
+  const std::vector<Index>& faces() const { return faces_; }
+
+ private:
+  const DiskMesh& mesh_;
+  std::vector<std::uint8_t> changed_;
+  std::vector<Index> faces_;
+};
 
 /// Lets the faces that a full step would bring too near to being singular move along more rigidly,
 /// and then those of their neighbours that get there by it. Returns how far the whole map may go
 /// along what is left, and with the result the faces found at first. Without `rigidly` the
 /// direction stays as it is.
-double hold_back(const std::vector<Triangle>& faces, const Field& uvs, bool rigidly, double near,
+double hold_back(const DiskMesh& mesh, const Field& uvs, bool rigidly, double near,
                  Field& direction, PolishResult& result, const Work& work) {
   constexpr double kLimit = 1 / kSingularShare;
-  result.blocking = singular_steps(faces, uvs, direction, std::max(kLimit, near), nullptr, work);
+  result.blocking = singular_steps(mesh.faces, uvs, direction, std::max(kLimit, near), work);
   if (near > 0) {
     result.near = result.blocking;
     std::erase_if(result.blocking, [](const SingularStep& s) { return !(s.length < kLimit); });
   }
   std::vector<SingularStep> left;
   const std::vector<SingularStep>* singular = &result.blocking;
-  std::vector<std::uint8_t> changed;
+  Rigid rigid(mesh);
   for (int round = 0; rigidly && round < kHoldRounds && !singular->empty(); ++round) {
-    changed.resize(uvs.size());
-    for (const SingularStep& s : *singular) move_rigidly(faces[s.face], s, direction, changed);
-    left = singular_steps(faces, uvs, direction, kLimit, &changed, work);
+    rigid.move(*singular, direction);
+    left = singular_steps_of(rigid.faces(), mesh.faces, uvs, direction, kLimit);
     singular = &left;
   }
   double length = 1;
@@ -267,10 +294,10 @@ struct Settling {
 };
 
 template <class Density>
-PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
                      Fields& fields, const Work& work) {
-  Objective<Density> objective(size_of(uvs), faces, rest, work);
+  Objective<Density> objective(size_of(uvs), mesh.faces, rest, work);
   PolishResult result;
   // Not structured bindings, which clang does not let lambdas capture.
   const bool remembers = options.history > 0;
@@ -295,7 +322,7 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
       result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;
       if (result.converged) break;
     }
-    double length = hold_back(faces, uvs, rigidly, options.near, direction, result, work);
+    double length = hold_back(mesh, uvs, rigidly, options.near, direction, result, work);
     const double slope = dot(gradient, direction, work);
     result.predicted = -slope;
     result.converged = settling.settled && result.predicted >= 0 &&
@@ -341,12 +368,12 @@ PolishResult descend(const std::vector<Triangle>& faces, const std::vector<RestT
 
 }  // namespace
 
-PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+PolishResult polish(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
                     const PolishOptions& options, const Work& work) {
   Fields fields;
   PolishResult result = with_density(options.energy, [&]<class Density>(Density) {
-    return descend<Density>(faces, rest, precondition, uvs, options, fields, work);
+    return descend<Density>(mesh, rest, precondition, uvs, options, fields, work);
   });
   // What the allocator kept of them would be there beside what the caller needs next.
   for (Field* field : {&fields.gradient, &fields.next_gradient, &fields.direction, &fields.trial}) {

@@ -10,6 +10,7 @@
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "energy/energy.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
@@ -54,7 +55,7 @@ using Precondition = std::function<void(const std::vector<Vec2>& in, std::vector
 /// with their neighbours, and where this does not help the whole step is shortened. It ends where
 /// the time is up, and where steps become short: clean_outliers mends the faces that block them.
 /// Precondition: all faces of `uvs` are positively oriented.
-PolishResult polish(const std::vector<Triangle>& faces, const std::vector<RestTriangle>& rest,
+PolishResult polish(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                     const Precondition& precondition, std::vector<Vec2>& uvs,
                     const PolishOptions& options, const Work& work);
 

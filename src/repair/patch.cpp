@@ -7,7 +7,7 @@
 
 #include "base/interrupt.h"
 #include "repair/hub_turns.h"
-#include "repair/sort_unique.h"
+#include "base/sort_unique.h"
 
 namespace beltrami {
 namespace {

@@ -13,7 +13,7 @@
 #include "mesh/surface.h"
 #include "repair/hub_turns.h"
 #include "repair/patch_work.h"
-#include "repair/sort_unique.h"
+#include "base/sort_unique.h"
 
 namespace beltrami {
 namespace {

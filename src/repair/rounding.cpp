@@ -20,7 +20,7 @@
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
-#include "repair/sort_unique.h"
+#include "base/sort_unique.h"
 #include "repair/untangle.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"

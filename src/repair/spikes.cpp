@@ -12,7 +12,7 @@
 #include "descend/vertex_sweep.h"
 #include "mesh/face_block.h"
 #include "repair/regions.h"
-#include "repair/sort_unique.h"
+#include "base/sort_unique.h"
 
 namespace beltrami {
 namespace {

@@ -297,7 +297,7 @@ Polished polish_from(const DiskMesh& mesh, const std::vector<Vec2>& start,
   const double area = surface_area(mesh, Work(1));
   Polished polished{{}, start};
   polished.result = polish(
-      mesh.faces, rest,
+      mesh, rest,
       [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
         laplacian.solve(in, out);
         for (Vec2& w : out) w *= area;

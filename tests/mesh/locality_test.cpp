@@ -122,8 +122,8 @@ TEST(SingularSteps, AreThoseThatTheFirstOneComesFrom) {
   for (Vec2& d : direction) d = 0.4 * random.vec2();
   const double first = first_singular_step(mesh.faces, uvs, direction, Work(1));
   ASSERT_TRUE(std::isfinite(first));
-  EXPECT_TRUE(singular_steps(mesh.faces, uvs, direction, first, nullptr, Work(1)).empty());
-  const auto steps = singular_steps(mesh.faces, uvs, direction, 3 * first, nullptr, Work(2));
+  EXPECT_TRUE(singular_steps(mesh.faces, uvs, direction, first, Work(1)).empty());
+  const auto steps = singular_steps(mesh.faces, uvs, direction, 3 * first, Work(2));
   ASSERT_FALSE(steps.empty());
   double least = steps.front().length;
   for (const SingularStep& s : steps) {
@@ -134,15 +134,16 @@ TEST(SingularSteps, AreThoseThatTheFirstOneComesFrom) {
   EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end(),
                              [](const auto& a, const auto& b) { return a.face < b.face; }));
 
-  // Among some vertices: the steps of the faces that have one of them, and no others.
-  std::vector<std::uint8_t> among(uvs.size());
-  for (auto& chosen : among) chosen = random.below(3) == 0;
+  // Of some faces: theirs, and no others.
+  std::vector<Index> some;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (random.below(3) == 0) some.push_back(f);
+  }
   auto expected = steps;
   std::erase_if(expected, [&](const SingularStep& s) {
-    const Triangle& t = mesh.faces[s.face];
-    return !among[t[0]] && !among[t[1]] && !among[t[2]];
+    return !std::binary_search(some.begin(), some.end(), s.face);
   });
-  const auto found = singular_steps(mesh.faces, uvs, direction, 3 * first, &among, Work(2));
+  const auto found = singular_steps_of(some, mesh.faces, uvs, direction, 3 * first);
   ASSERT_LT(found.size(), steps.size());
   EXPECT_TRUE(std::equal(
       found.begin(), found.end(), expected.begin(), expected.end(),

@@ -121,7 +121,7 @@ double final_energy(const DiskMesh& fine, const CoarseDisk& coarse) {
   const auto precondition = [&](const std::vector<Vec2>& in, std::vector<Vec2>& out) {
     laplacian.precondition(in, out);
   };
-  return polish(fine.faces, rest, precondition, uvs, {}, Work(1)).energies.back();
+  return polish(fine, rest, precondition, uvs, {}, Work(1)).energies.back();
 }
 
 TEST(Simplifiers, BothLeadToTheSameEnergy) {
