@@ -152,6 +152,7 @@ class History {
                       Field& direction) const {
     if (pairs_.empty()) {
       poll_interrupt();
+      if (most_ == 0) parallel_free(work_, direction);  // the last one, beside what finds the next
       precondition(gradient, direction);
       set_negative(direction, direction);
       return;
@@ -336,10 +337,9 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
       const double limit = length / kSingularShare;
       length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
     }
-    double after = slope < 0
-                       ? search_line(objective, uvs, before, slope, options, fields, next_gradient,
-                                     length, work)
-                       : std::numeric_limits<double>::infinity();
+    double after = slope < 0 ? search_line(objective, uvs, before, slope, options, fields,
+                                           next_gradient, length, work)
+                             : std::numeric_limits<double>::infinity();
     if (!(after < before)) {
       const bool plain = history.empty() && (!rigidly || result.blocking.empty());
       result.blocked = plain;
@@ -356,11 +356,7 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
     if (length >= kFullStep && result.blocking.empty()) {
       history.add(length, direction, gradient, next_gradient);
     }
-    if (remembers) {
-      gradient.swap(next_gradient);
-    } else {
-      parallel_free(work, direction);  // so that it is not there beside what finds the next one
-    }
+    if (remembers) gradient.swap(next_gradient);
     settling.see(before - after, length, scale, options);
   }
   return result;

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/interrupt.h"
-#include "repair/hub_turns.h"
 #include "base/sort_unique.h"
+#include "repair/hub_turns.h"
 
 namespace beltrami {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
 #include "mesh/surface.h"
 #include "repair/hub_turns.h"
 #include "repair/patch_work.h"
-#include "base/sort_unique.h"
 
 namespace beltrami {
 namespace {

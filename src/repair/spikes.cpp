@@ -9,10 +9,10 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "descend/vertex_sweep.h"
 #include "mesh/face_block.h"
 #include "repair/regions.h"
-#include "base/sort_unique.h"
 
 namespace beltrami {
 namespace {

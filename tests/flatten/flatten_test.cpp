@@ -353,7 +353,8 @@ TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
     const DiskMesh mesh = disks::disk(list);
     for (const auto& [energy, history] :
          {std::pair(Energy::kSymmetricDirichlet, 5u), std::pair(Energy::kExponentialDirichlet, 5u),
-          std::pair(Energy::kSymmetricDirichlet, 0u), std::pair(Energy::kExponentialDirichlet, 0u)}) {
+          std::pair(Energy::kSymmetricDirichlet, 0u),
+          std::pair(Energy::kExponentialDirichlet, 0u)}) {
       PolishOptions options;
       options.energy = energy;
       options.history = history;

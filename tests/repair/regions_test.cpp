@@ -60,7 +60,8 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
   const DiskMesh mesh = disks::disk(meshes::grid(n, n));
   const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   const std::vector<Index> faces = {0, 3, 2 * n * n - 1, n * n};
-  const std::vector<Patch> regions = cut_regions(mesh, disks::rest_of(mesh), uvs, faces, 2, Work(1));
+  const std::vector<Patch> regions =
+      cut_regions(mesh, disks::rest_of(mesh), uvs, faces, 2, Work(1));
   EXPECT_EQ(regions.size(), 3u);  // the first two are one
   std::set<Index> moving, present;
   for (const Patch& region : regions) {
@@ -86,7 +87,8 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
 
 TEST(CutRegions, OfTheWholeMeshHoldOneVertex) {
   const DiskMesh mesh = disks::disk(meshes::grid(2, 2));
-  const std::vector<Patch> regions = cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, 3, Work(1));
+  const std::vector<Patch> regions =
+      cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, 3, Work(1));
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_EQ(std::count(regions[0].fixed.begin(), regions[0].fixed.end(), true), 1);
 }
