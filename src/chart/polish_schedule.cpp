@@ -30,7 +30,6 @@
 #include <optional>
 #include <utility>
 
-#include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
 #include "descend/line_search.h"
@@ -39,7 +38,6 @@
 #include "descend/tutte.h"
 #include "energy/energy.h"
 #include "energy/symmetric_dirichlet.h"
-#include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
