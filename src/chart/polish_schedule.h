@@ -23,7 +23,8 @@ enum class PolishLength {
 };
 
 /// With more faces a step takes a tenth of a second: a round may gain less, and steps are not
-/// remembered, for memory.
+/// remembered, for memory, unless the map is to be polished to the end without contact, which is
+/// not so where there are levels.
 inline constexpr Index kLargeMesh = 400'000;
 
 /// Descends from `start`, whose faces are all positive, on the schedule at the top of
