@@ -54,7 +54,9 @@ constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolat
 constexpr int kMostSteps = 6;       // while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
 constexpr double kFairlyFew = 1e-4;
-constexpr double kRising = 1.25;  // times those of the step before: steps lead away
+/// Times those of the step before, of more than kFewPatches: steps lead away, as a rule from a
+/// carried map that is better than all of them.
+constexpr double kRising = 1.25;
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
 /// hard for the V-cycle. Where there are few faces, where a factor is cheap, and on any level.
 struct Bearable {

@@ -213,8 +213,8 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.tolerance = kTolerance;
   options.max_iterations = state.alternated ? 1 : steps;
   options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
-  const bool has_levels = !state.bounds.newton || setting.contact;
-  if (has_levels && mesh.face_count() > kLargeMesh) options.history = 0;
+  const bool is_whole = state.bounds.newton && !setting.contact;
+  if (!is_whole && mesh.face_count() > kLargeMesh) options.history = 0;
   options.enough = state.bounds.enough;
   options.stationary = state.bounds.at_rest;
   options.contact = setting.contact;

@@ -23,8 +23,8 @@ enum class PolishLength {
 };
 
 /// With more faces a step takes a tenth of a second: a round may gain less, and steps are not
-/// remembered, for memory, unless the map is to be polished to the end without contact, which is
-/// not so where there are levels.
+/// remembered, for memory; but where a map is polished to the end without contact, which is done
+/// beside a factor of the whole mesh.
 inline constexpr Index kLargeMesh = 400'000;
 
 /// Descends from `start`, whose faces are all positive, on the schedule at the top of

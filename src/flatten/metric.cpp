@@ -148,7 +148,9 @@ MetricLaplacian::MetricLaplacian(const DiskMesh& mesh, const std::vector<EdgeWei
 }
 
 void MetricLaplacian::refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) {
-  refit(all_of(stiffness, faces_.size(), work_), springs);
+  std::vector<EdgeWeights> weights = all_of(stiffness, faces_.size(), work_);
+  refit(weights, springs);
+  parallel_free(work_, weights);  // so that the allocator does not keep it
 }
 
 void MetricLaplacian::refit(const std::vector<EdgeWeights>& stiffness,

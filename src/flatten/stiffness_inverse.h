@@ -10,8 +10,9 @@
 
 namespace beltrami {
 
-/// Writes the stiffness of the faces from `first` on, `end - first` of them. Of a large mesh the
-/// stiffness of all faces at once is more than what is kept of it in single precision.
+/// Writes the stiffness of the faces from `first` on, `end - first` of them; any ranges, from
+/// several threads at once. Of a large mesh the stiffness of all faces at once is more than what is
+/// kept of it in single precision.
 using StiffnessOfFaces =
     std::function<void(std::int64_t first, std::int64_t end, EdgeWeights* weights)>;
 
@@ -19,7 +20,8 @@ using StiffnessOfFaces =
 class StiffnessInverse {
  public:
   virtual ~StiffnessInverse() = default;
-  /// Takes another stiffness, and springs, per vertex or none. Throws Error SOLVER.
+  /// Takes another stiffness, which is not asked later, and springs, per vertex or none. Throws
+  /// Error SOLVER.
   virtual void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) = 0;
   /// Sets `x` to it times `rhs`; one entry per vertex.
   virtual void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) = 0;

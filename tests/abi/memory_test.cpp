@@ -37,7 +37,7 @@ TEST(Memory, IsNotAskedForDuringARun) {
 TEST(Memory, GrowsWithTheMeshInEveryMode) {
   const Context context = create();
   std::vector<std::uint64_t> least, before;
-  for (const Index side : {8, 80, 160, 240, 400}) {
+  for (const Index side : {8, 80, 160, 240, 400, 440, 460, 640}) {
     ASSERT_EQ(set_mesh(context, meshes::bumps(side, side)), BELTRAMI_OK);
     std::vector<std::uint64_t> now;
     const auto ask_all = [&](std::int32_t key) {

@@ -345,6 +345,12 @@ TEST(MetricLaplacian, RefittedSolvesForTheOtherStiffness) {
   const MetricLaplacian fresh(mesh, other, held, {Precision::kSingle}, {}, Work(1));
   const DenseMatrix rhs = DenseMatrix::Random(mesh.vertex_count(), 2);
   EXPECT_EQ(refitted.solve(rhs), fresh.solve(rhs));
+  refitted.refit(plain, {});
+  const auto in_parts = [&](std::int64_t first, std::int64_t end, EdgeWeights* weights) {
+    std::copy(other.begin() + first, other.begin() + end, weights);
+  };
+  refitted.refit(in_parts, {});
+  EXPECT_EQ(refitted.solve(rhs), fresh.solve(rhs));
 }
 
 TEST(Polish, NeverRaisesTheEnergyAndNeverFlips) {
