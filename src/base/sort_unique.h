@@ -2,14 +2,17 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <vector>
+
+#include "base/interrupt.h"
 
 namespace beltrami {
 
-/// Puts the items into increasing order and leaves one of those that are equal.
+/// Puts the items into increasing order and leaves one of those that are equal. Polls.
 template <class Item>
 void sort_unique(std::vector<Item>& items) {
-  std::sort(items.begin(), items.end());
+  sort_interruptibly(items.begin(), items.end(), std::less<>());
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 

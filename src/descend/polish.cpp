@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
 #include "mesh/disk_mesh.h"
@@ -214,8 +214,7 @@ class Rigid {
       }
     }
     if (more.empty()) return;
-    sort_interruptibly(more.begin(), more.end(), std::less<>());
-    more.erase(std::unique(more.begin(), more.end()), more.end());
+    sort_unique(more);
     std::vector<Index> all;
     std::set_union(faces_.begin(), faces_.end(), more.begin(), more.end(), std::back_inserter(all));
     faces_.swap(all);

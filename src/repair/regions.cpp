@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -122,7 +123,7 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
       }
     });
   }
-  std::sort(patch.mesh_faces.begin(), patch.mesh_faces.end());
+  sort_interruptibly(patch.mesh_faces.begin(), patch.mesh_faces.end(), std::less<>());
   sort_unique(rim);
   std::merge(vertices.begin(), vertices.end(), rim.begin(), rim.end(),
              std::back_inserter(patch.mesh_vertices));
@@ -163,13 +164,18 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
   return regions;
 }
 
-std::vector<std::size_t> largest_first(const std::vector<Patch>& regions) {
+std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
+                                        const std::function<bool(Patch&)>& treat,
+                                        const Work& work) {
   std::vector<std::size_t> order(regions.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return regions[a].faces.size() > regions[b].faces.size();
   });
-  return order;
+  std::vector<std::uint8_t> done(regions.size(), 0);
+  parallel_for(work, size_of(order), 1,
+               [&](std::int64_t i, std::int64_t) { done[order[i]] = treat(regions[order[i]]); });
+  return done;
 }
 
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
@@ -182,13 +188,11 @@ std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
   options.max_iterations = kNewtonSteps;
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
   const Work alone = work.aside();
-  std::vector<std::uint8_t> positive(regions.size(), 0);
-  const std::vector<std::size_t> order = largest_first(regions);
-  parallel_for(work, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
-    Patch& region = regions[order[i]];
+  const auto minimise = [&](Patch& region) {
     minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
-    positive[order[i]] = non_positive_faces(region.faces, region.uvs, alone).empty();
-  });
+    return non_positive_faces(region.faces, region.uvs, alone).empty();
+  };
+  const std::vector<std::uint8_t> positive = treat_regions(regions, minimise, work);
   PatchWork taken(mesh, uvs);
   std::int64_t changed = 0;
   for (std::size_t i = 0; i < regions.size(); ++i) {

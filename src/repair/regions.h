@@ -2,8 +2,8 @@
 // each hold what the next one has to move.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/types.h"
@@ -26,8 +26,10 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
                                int rings, const Work& work);
 
-/// The regions in the order in which several threads are done with them soonest.
-std::vector<std::size_t> largest_first(const std::vector<Patch>& regions);
+/// Calls treat(region) for each, in parallel and the largest first, so that it does not come last.
+/// Returns for each whether that said true.
+std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
+                                        const std::function<bool(Patch&)>& treat, const Work& work);
 
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken

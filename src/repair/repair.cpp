@@ -116,13 +116,11 @@ class Repair {
   /// Of many faces most patches have others on their edges, which hold them.
   void untangle_regions(const std::vector<Index>& bad, PatchWork& patches) {
     std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings, work_);
-    std::vector<std::uint8_t> positive(regions.size(), 0);
     const Work alone = work_.aside();
-    const std::vector<std::size_t> order = largest_first(regions);
-    parallel_for(work_, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
-      Patch& region = regions[order[i]];
-      positive[order[i]] = untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
-    });
+    const auto unfold = [&](Patch& region) {
+      return untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
+    };
+    const std::vector<std::uint8_t> positive = treat_regions(regions, unfold, work_);
     for (std::size_t i = 0; i < regions.size(); ++i) {
       if (positive[i] == 0 || !patches.take(regions[i])) continue;
       ++result_.patch_fixes;
