@@ -51,20 +51,24 @@ constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
 constexpr Index kMostFactored = 150000;
 constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolated map
-constexpr int kMostSteps = 6;       // while more than
+constexpr int kManySteps = 6;       // while more than
 constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
 constexpr double kFairlyFew = 1e-4;
+constexpr int kMostSteps = 14;    // while with each
+constexpr double kFalling = 0.9;  // times as many flips are left, or less
 /// Times those of the step before, of more than kFewPatches: steps lead away, as a rule from a
 /// carried map that is better than all of them.
 constexpr double kRising = 1.25;
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
-/// hard for the V-cycle. Where there are few faces, where a factor is cheap, and on any level.
+/// hard for the V-cycle. Where a factor is cheap, and on any level.
 struct Bearable {
   double flips, patches;
 };
-constexpr Bearable kOfFew{5e-2, 5e-2}, kWhereCheap{4e-3, 4e-3}, kOnAnyLevel{1e-2, 1e-2};
+constexpr Bearable kWhereCheap{5e-2, 5e-2}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
-/// Of a patch, while there is another map to mend: large ones take long, and mostly fail.
+/// Times as many flips in another map, up to which that is as good.
+constexpr double kAsGood = 2;
+/// Of a patch, while there is such a map to mend: large ones take long, and mostly fail.
 constexpr int kRingsAtFirst = 4;
 /// Times the energy of the level below, beyond which a map that is not stationary is useless.
 constexpr double kHopelessly = 1.2;
@@ -83,10 +87,10 @@ constexpr double kLevels = 1.0 / 7;
 
 /// A map on the way up, with what it took.
 struct Climb {
-  ChartMap map;                 ///< of the level reached
-  double energy = 0;            ///< mean, of that level
-  bool hard = false;            ///< a polish did not end stationary, or a level needed its factor
-  bool affords_hessian = true;  ///< of a level of more than kFewFaces
+  ChartMap map;                ///< of the level reached
+  double energy = 0;           ///< mean, of that level
+  bool hard = false;           ///< a polish did not end stationary, or a level needed its factor
+  Index most_for_hessian = 0;  ///< faces of a level
   std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
 
@@ -181,8 +185,11 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
           if (step < kLeastSteps) return false;
           const std::size_t before = std::exchange(solved.flips, flips_of(map.uvs));
           const bool first = step == kLeastSteps;
-          return at_most(first ? kFewFlips : kFairlyFew) ||
-                 (!first && solved.flips > kFewPatches && solved.flips > kRising * before);
+          if (first) return at_most(kFewFlips);
+          if (at_most(kFairlyFew)) return true;
+          const auto are_over = [&](double times) { return solved.flips > times * before; };
+          return step < kManySteps ? solved.flips > kFewPatches && are_over(kRising)
+                                   : are_over(kFalling);
         },
         residual, map.uvs);
     if (!anchored.empty()) {
@@ -216,7 +223,8 @@ bool mend_level(const Level& level, const RepairOptions& how, const ChartOptions
 
 /// Polishes where it is worth it; with contact where the boundary would cross itself.
 void polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
-                  const ChartOptions& options, const Work& work, VCycle& cycle, Climb& climb) {
+                  const ChartOptions& options, const Work& work, Climb& climb) {
+  VCycle& cycle = *climb.cycle;
   const bool may_return = simple && !pressed;
   std::vector<Vec2> start;
   if (may_return) parallel_copy(work, climb.map.uvs, start);
@@ -247,7 +255,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   if (pressed) anchored = vertices_in_contact(coarse, climb.map.uvs, mesh.vertex_count());
   RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
                     .global_fix = false};
-  bool positive = false;
+  bool positive = false, rough = false;
   const auto is_bearable = [&](std::size_t flips) {
     return flips <= share_of(mesh, bearable.flips);
   };
@@ -257,9 +265,11 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const auto solve = [&] {
     const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
+    rough = found.flips > share_of(mesh, kFairlyFew);
     // What cannot be unfolded in the one map may be in the other.
     const bool has_other = found.by_steps && found.of_carried && is_bearable(*found.of_carried);
-    positive = mend_flips(found.flips, !has_other);
+    const bool as_good = has_other && *found.of_carried <= kAsGood * found.flips;
+    positive = mend_flips(found.flips, !as_good);
     if (positive || !has_other) return positive;
     parallel_copy(work, level.carried, climb.map.uvs);
     positive = mend_flips(*found.of_carried, true);
@@ -272,11 +282,11 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches      ? PolishLength::kWhole
-                              : !is_finest ? PolishLength::kMiddling
-                              : climb.hard ? PolishLength::kLong
-                                           : PolishLength::kShort;
-  polish_level(level, simple, length, touches, options, work.part(0.6, 1), cycle, climb);
+  const PolishLength length = touches               ? PolishLength::kWhole
+                              : !is_finest          ? PolishLength::kMiddling
+                              : climb.hard || rough ? PolishLength::kLong
+                                                    : PolishLength::kShort;
+  polish_level(level, simple, length, touches, options, work.part(0.6, 1), climb);
   const bool converged = climb.map.converged;
   const double below = climb.energy;
   if (!converged || !is_finest) {
@@ -310,26 +320,16 @@ bool climb_by_factor(const DiskMesh& mesh, const CoarseDisk& coarse, const Chart
   return is_injective(mesh, climb.map.uvs, keeps_boundary_simple(options), work);
 }
 
-/// A cycle of a level alone, with a stiffness and a Hessian at the map reached.
-std::unique_ptr<VCycle> cycle_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                                 const ChartOptions& options, const Work& work,
-                                 const Climb& climb) {
-  const std::vector<Vec2>& uvs = climb.map.uvs;
-  auto cycle = std::make_unique<VCycle>(
-      mesh, energy_stiffness(options.energy, mesh.faces, rest, uvs, work), work);
-  const Index most = climb.affords_hessian ? kMostFactored : kFewFaces;
-  if (mesh.face_count() <= most) {
-    cycle->take_hessian(options.energy, rest, uvs);
-  }
-  return cycle;
-}
-
-/// From now on with a cycle that begins with the level reached.
+/// From now on with a cycle that begins with the level reached, with a stiffness and a Hessian at
+/// the map of it.
 void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& work,
                  Climb& climb) {
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
   climb.energy = mean_energy(options.energy, mesh.faces, rest, climb.map.uvs, work);
-  climb.cycle = cycle_of(mesh, rest, options, work, climb);
+  climb.cycle = std::make_unique<VCycle>(
+      mesh, energy_stiffness(options.energy, mesh.faces, rest, climb.map.uvs, work),
+      climb.most_for_hessian, work);
+  climb.cycle->take_hessian(options.energy, rest, climb.map.uvs);
 }
 
 /// Composite majorization: from the map reached where that is `injective`, which is kept unless a
@@ -363,11 +363,8 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
   const double energy = climb.energy;
   const bool few = mesh.face_count() <= kFewFaces && !is_finest;
   const bool cheap = mesh.face_count() <= kMostFactored && !is_finest;
-  const bool done = climb_by_cycle(mesh, coarse,
-                                   few     ? kOfFew
-                                   : cheap ? kWhereCheap
-                                           : kOnAnyLevel,
-                                   is_finest, options, work.part(0, 0.5), climb);
+  const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kOnAnyLevel, is_finest,
+                                   options, work.part(0, 0.5), climb);
   const bool pressed = reached.in_contact;
   const bool must_rest = pressed ? cheap : few;  // elsewhere finer levels go on with it
   if (done && (reached.converged || !must_rest || work.out_of_time())) return true;
@@ -411,7 +408,8 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
   const DiskMesh& coarsest = levels.back().mesh;
   const Work begin = work.part(0, kStarted), rest = work.part(kStarted, 1);
   Climb climb;
-  climb.affords_hessian = affords(mesh, options, Extra::kLevelHessian, work);
+  const bool affords_it = affords(mesh, options, Extra::kLevelHessian, work);
+  climb.most_for_hessian = std::min(affords_it ? kMostFactored : kFewFaces, mesh.face_count() - 1);
   const Index faces = coarse_faces(coarsest.face_count(), options.coarse_faces);
   climb.map = beltrami_mode(coarsest, faces, {}, options, begin);
   bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);

@@ -66,8 +66,14 @@ constexpr double kManyOf = 1e-4, kMany = 10;
 constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
 constexpr double kWorthIt = 1e-3;      // predicted relative decrease without which it is not rough
+constexpr double kCannotBeLeft = 1.5e-3;  // the same, if few faces held a map up at once
 /// With more of a rough map near to being singular regions follow each step.
 constexpr double kNearOf = 3e-4;
+/// After so many of these, if the last one gained so much, the Hessian is worth its cost where it
+/// is to be had.
+constexpr int kFirstSteps = 3;
+constexpr double kFarFromRest = 5e-4;
+constexpr double kStale = 2e-3;  // relative decrease from which on another one is
 
 /// What a length of the polish means.
 struct Bounds {
@@ -89,7 +95,7 @@ Bounds bounds_of(PolishLength length, Index faces) {
       return {1e-4, 1e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
       if (faces <= kLargeMesh) return {1e-4, 2e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
-      return {1e-4, 5e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
+      return {1e-4, 8e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }
@@ -119,7 +125,8 @@ struct State {
   bool clean = true;        ///< no step since the last cleaning; it comes mended
   PolishResult last = {};   ///< of the last steps
   double energy = 0;        ///< after these; and after regions that follow a step
-  double fitted_at = std::numeric_limits<double>::infinity();  ///< the energy there
+  double fitted_at = std::numeric_limits<double>::infinity();   ///< the energy there
+  double hessian_at = std::numeric_limits<double>::infinity();  ///< of the inverse, if it has one
   bool converged = false;
 };
 
@@ -178,11 +185,16 @@ void relax(const Setting& setting, std::vector<SingularStep> faces, State& state
                                          faces_of(faces), kRings, setting.work.part(done, done));
 }
 
+/// Whether the last step looked at promises more than a share of the energy.
+bool promises(double share_of, const Setting& setting, const State& state) {
+  return 0.5 * state.last.predicted > share_of * setting.comparable(state.energy);
+}
+
 /// Of what held the last steps up: in patches, or in regions around the worst of it.
 void clear_way(const Setting& setting, State& state) {
   const std::vector<SingularStep>& blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
-  const bool worth_it = 0.5 * state.last.predicted > kWorthIt * setting.comparable(state.energy);
+  const bool worth_it = promises(kWorthIt, setting, state);
   if (!state.rough && worth_it && are_many(blocking, kManyOf, mesh)) {
     if (state.bounds.in_haste) state.bounds = bounds_of(PolishLength::kLong, mesh.face_count());
     state.near = true;
@@ -283,7 +295,8 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.last.converged || state.iterations >= state.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (state.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) || (state.iterations == 0 && !state.rough) ||
+        (is_stationary(setting, state) ||
+         (state.iterations == 0 && !state.rough && !promises(kCannotBeLeft, setting, state)) ||
          (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
@@ -298,6 +311,12 @@ void take_rounds(const Setting& setting, State& state) {
     const double first = state.last.energies.front();
     const double gained = (state.alternated ? first : start) - state.energy;
     start = first;
+    if (state.alternated && state.iterations >= kFirstSteps &&
+        state.energy < (1 - kStale) * state.hessian_at &&
+        gained > kFarFromRest * setting.comparable(state.energy)) {
+      setting.inverse.take_hessian(setting.options.energy, setting.fine.rest, state.uvs);
+      state.hessian_at = state.energy;
+    }
     if (gained <= state.bounds.little_gain * setting.comparable(state.energy)) {
       state.last.converged = state.alternated && state.last.iterations() > 0;
       return;

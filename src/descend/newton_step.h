@@ -199,22 +199,21 @@ double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
 template <class Density>
 template <class Model>
 void NewtonStepper<Density>::assemble_model(const Model& model, const std::vector<Vec2>& uvs) {
-  const auto model_of = [&](Index f) {
-    if (f >= size_of(faces_)) {
-      const Contact& contact = contacts_[f - size_of(faces_)];
+  const std::int64_t face_count = size_of(faces_);
+  const auto weight = [&](std::int64_t f) { return weights_[f]; };
+  const auto give = [&](std::int64_t first, std::int64_t end, FaceModels& models) {
+    if (first < face_count) {
+      give_face_models(faces_, rest_, uvs, first, std::min(end, face_count), model, weight, models);
+    }
+    for (std::int64_t f = std::max(first, face_count); f < end; ++f) {
+      const Contact& contact = contacts_[f - face_count];
       FaceModel pair = contact_model(contact, uvs, stuck_.contains({contact.vertex, contact.from}));
       pair.gradient *= strength();
       pair.hessian *= strength();
-      return pair;
+      models.set(static_cast<int>(f - first), pair);
     }
-    const Triangle& t = faces_[f];
-    FaceModel face =
-        face_model(rest_[f], linear_map(rest_[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]), model);
-    face.gradient *= weights_[f];
-    face.hessian *= weights_[f];
-    return face;
   };
-  assemble(with_contacts_.empty() ? faces_ : with_contacts_, model_of, hessian_, gradient_, work_);
+  assemble(with_contacts_.empty() ? faces_ : with_contacts_, give, hessian_, gradient_, work_);
   add_loose(uvs);
 }
 

@@ -14,31 +14,31 @@ constexpr double kShift = 1e-6;
 
 }  // namespace
 
-HessianFactor::HessianFactor(Energy energy, const DiskMesh& mesh,
-                             const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
-                             const Work& work)
-    : solver_(make_spd_solver({.precision = Precision::kSingle}, work)) {
+HessianFactor::HessianFactor(const DiskMesh& mesh, const Work& work)
+    : mesh_(mesh), work_(work), solver_(make_spd_solver({.precision = Precision::kSingle}, work)) {}
+
+bool HessianFactor::fit(Energy energy, const std::vector<RestTriangle>& rest,
+                        const std::vector<Vec2>& uvs) {
   // Not kept: beside the factor it serves nothing.
-  MeshMatrix matrix(mesh.vertex_count(), mesh.faces, only_first_of_boundary(mesh), 2, work);
-  row_ = matrix.rows();
-  rows_ = matrix.free_count();
+  MeshMatrix matrix(mesh_.vertex_count(), mesh_.faces, only_first_of_boundary(mesh_), 2, work_);
   Eigen::VectorXd gradient;
   with_density(energy, [&]<class Density>(Density) {
-    const auto model_of = [&](Index f) {
-      const Triangle& t = mesh.faces[f];
-      const LinearMap map = linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]);
-      FaceModel face = face_model(rest[f], map, Density{});
-      face.hessian *= rest[f].area();
-      return face;
+    const auto area = [&](std::int64_t f) { return rest[f].area(); };
+    const auto give = [&](std::int64_t first, std::int64_t end, FaceModels& models) {
+      give_face_models(mesh_.faces, rest, uvs, first, end, Density{}, area, models);
     };
-    assemble(mesh.faces, model_of, matrix, gradient, work);
+    assemble(mesh_.faces, give, matrix, gradient, work_);
   });
   SparseMatrix& lower = matrix.matrix();
   for (Eigen::Index c = 0; c < lower.cols(); ++c) {
     lower.valuePtr()[lower.outerIndexPtr()[c]] *= 1 + kShift;
   }
-  solver_->analyze(lower, matrix.places(uvs));
-  if (factorize_shifted(*solver_, lower) < 0) solver_.reset();
+  if (row_.empty()) {
+    row_ = matrix.rows();
+    rows_ = matrix.free_count();
+    solver_->analyze(lower, matrix.places(uvs));
+  }
+  return factorize_shifted(*solver_, lower) >= 0;
 }
 
 void HessianFactor::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {

@@ -20,21 +20,23 @@ namespace beltrami {
 /// Majorization").
 class HessianFactor {
  public:
-  /// `rest`: one per face; `uvs`: one per vertex, all faces positive.
-  HessianFactor(Energy energy, const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                const std::vector<Vec2>& uvs, const Work& work);
+  /// Keeps a reference to the mesh.
+  HessianFactor(const DiskMesh& mesh, const Work& work);
 
-  /// Whether there is one: in floating point the matrix may not be definite.
-  bool found() const { return solver_ != nullptr; }
+  /// Takes the Hessian at this map; `rest`: one per face; `uvs`: one per vertex, all faces
+  /// positive. Returns whether there is a factor: in floating point the matrix may not be definite.
+  bool fit(Energy energy, const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
 
   /// Sets `x` to about its inverse times `rhs`; one entry per vertex. Linear, symmetric, definite.
-  /// Precondition: found().
+  /// Precondition: the last fit() found one.
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
 
  private:
-  std::vector<Index> row_;             ///< per vertex, or kNone
-  Index rows_ = 0;                     ///< of two numbers each
-  std::unique_ptr<SpdSolver> solver_;  ///< null where the matrix is not definite
+  const DiskMesh& mesh_;
+  const Work work_;
+  std::vector<Index> row_;  ///< per vertex, or kNone; empty before the first fit
+  Index rows_ = 0;          ///< of two numbers each
+  std::unique_ptr<SpdSolver> solver_;
 };
 
 }  // namespace beltrami

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "base/types.h"
+#include "energy/energy.h"
 #include "flatten/laplacian.h"
+#include "mesh/rest_shape.h"
 
 namespace beltrami {
 
@@ -23,6 +25,9 @@ class StiffnessInverse {
   /// Takes another stiffness, which is not asked later, and springs, per vertex or none. Throws
   /// Error SOLVER.
   virtual void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) = 0;
+  /// Takes the Hessian of the energy at this map, of positive faces, where it can do with that
+  /// beside the stiffness and it is cheap enough.
+  virtual void take_hessian(Energy, const std::vector<RestTriangle>&, const std::vector<Vec2>&) {}
   /// Sets `x` to it times `rhs`; one entry per vertex.
   virtual void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) = 0;
 };

@@ -71,24 +71,32 @@ struct VCycle::Level {
   SingleField coarse_rhs, coarse_x;  ///< of the level below
 };
 
-VCycle::VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, const Work& work)
+VCycle::VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness,
+               Index most_for_hessian, const Work& work)
     : work_(work),
       coarsest_(mesh),
+      most_for_hessian_(most_for_hessian),
       coarsest_stiffness_(stiffness),
       factor_(mesh, stiffness, only_first_of_boundary(mesh), {.precision = Precision::kSingle}, {},
               work) {}
 
 VCycle::~VCycle() = default;
 
+const DiskMesh& VCycle::finest() const {
+  return levels_.empty() ? coarsest_ : levels_.back()->mesh;
+}
+
 void VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
                           const std::vector<Vec2>& uvs) {
-  hessian_.emplace(energy, coarsest_, rest, uvs, work_);
-  if (!hessian_->found()) hessian_.reset();
+  if (finest().face_count() > most_for_hessian_) return;
+  if (!hessian_ || hessian_level_ != levels_.size()) hessian_.emplace(finest(), work_);
+  hessian_level_ = levels_.size();
+  if (!hessian_->fit(energy, rest, uvs)) hessian_.reset();
 }
 
 void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
-  const DiskMesh& below = levels_.empty() ? coarsest_ : levels_.back()->mesh;
-  levels_.push_back(std::make_unique<Level>(mesh, std::move(points), below.vertex_count(), work_));
+  levels_.push_back(
+      std::make_unique<Level>(mesh, std::move(points), finest().vertex_count(), work_));
 }
 
 void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<double>& springs) {
@@ -142,26 +150,20 @@ void VCycle::refit(const StiffnessOfFaces& stiffness, const std::vector<double>&
   parallel_free(work_, weights);
 }
 
-/// coarsest_x_ = about the inverse of the coarsest level's Laplacian, or Hessian, times
-/// coarsest_rhs_.
-void VCycle::solve_coarsest(bool by_hessian) {
-  if (by_hessian && hessian_) {
-    hessian_->precondition(coarsest_rhs_, coarsest_x_);
-  } else {
-    factor_.precondition(coarsest_rhs_, coarsest_x_);
-  }
+template <class Factor>
+void VCycle::solve_with(Factor& factor, const SingleField& rhs, SingleField& x) {
+  solve_rhs_.resize(rhs.size());
+  for (std::size_t v = 0; v < rhs.size(); ++v) solve_rhs_[v] = rhs[v].cast<double>();
+  factor.precondition(solve_rhs_, solve_x_);
+  x.resize(rhs.size());
+  for (std::size_t v = 0; v < rhs.size(); ++v) x[v] = solve_x_[v].cast<float>();
 }
 
-/// x = about the inverse of a level's Laplacian times rhs; level 0 is the coarsest.
+/// x = about the inverse of a level's Laplacian, or of its Hessian where there is one, times rhs;
+/// level 0 is the coarsest.
 void VCycle::apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x) {
-  if (level == 0) {
-    coarsest_rhs_.resize(rhs.size());
-    for (std::size_t v = 0; v < rhs.size(); ++v) coarsest_rhs_[v] = rhs[v].cast<double>();
-    solve_coarsest(by_hessian);
-    x.resize(rhs.size());
-    for (std::size_t v = 0; v < rhs.size(); ++v) x[v] = coarsest_x_[v].cast<float>();
-    return;
-  }
+  if (by_hessian && hessian_ && level == hessian_level_) return solve_with(*hessian_, rhs, x);
+  if (level == 0) return solve_with(factor_, rhs, x);
   Level& l = *levels_[level - 1];
   l.smoother.sweep_forward(rhs, x);
   l.smoother.residual_after_forward(x, l.spare);

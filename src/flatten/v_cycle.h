@@ -26,15 +26,18 @@ namespace beltrami {
 /// is like on a finer mesh, the coarser one knows well enough.
 class VCycle final : public StiffnessInverse {
  public:
-  /// The coarsest level, with its factor. Keeps references to the meshes. Throws Error SOLVER.
-  VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, const Work& work);
+  /// The coarsest level, with its factor; levels of more than `most_for_hessian` faces get no
+  /// Hessian. Keeps references to the meshes. Throws Error SOLVER.
+  VCycle(const DiskMesh& mesh, const std::vector<EdgeWeights>& stiffness, Index most_for_hessian,
+         const Work& work);
   ~VCycle() override;
 
-  /// From now on precondition() has on the coarsest level a factor of the Hessian of the energy at
-  /// this map of it, as long as there are no springs: what is left over there of a descent by
-  /// stiffness, which is slow along motions of large parts, takes a few steps with it.
+  /// From now on precondition() ends on the level that is the finest now, with a factor of the
+  /// Hessian of the energy at this map of it, as long as there are no springs: what is left over
+  /// there of a descent by stiffness, which is slow along motions of large parts, takes a few steps
+  /// with it. It takes the place of that of a coarser level.
   void take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
-                    const std::vector<Vec2>& uvs);
+                    const std::vector<Vec2>& uvs) override;
 
   /// Adds the next finer level, without weights yet; `points`: of its vertices on the one before.
   void add(const DiskMesh& mesh, std::vector<Footpoint> points);
@@ -59,17 +62,21 @@ class VCycle final : public StiffnessInverse {
  private:
   struct Level;
 
+  const DiskMesh& finest() const;
   void apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x);
-  void solve_coarsest(bool by_hessian);
+  template <class Factor>
+  void solve_with(Factor& factor, const SingleField& rhs, SingleField& x);
   void set_springs_below(std::size_t level, const std::vector<float>& springs);
 
   Work work_;
   const DiskMesh& coarsest_;
+  const Index most_for_hessian_;
   std::vector<EdgeWeights> coarsest_stiffness_;
   MetricLaplacian factor_;
   std::optional<HessianFactor> hessian_;
+  std::size_t hessian_level_ = 0;               ///< 0 is the coarsest
   std::vector<std::unique_ptr<Level>> levels_;  ///< from the coarsest that has no factor
-  std::vector<Vec2> coarsest_rhs_, coarsest_x_;
+  std::vector<Vec2> solve_rhs_, solve_x_;
 };
 
 }  // namespace beltrami

@@ -21,8 +21,8 @@ Place place_of(const Point& point) {
   return place;
 }
 
-/// A symmetric matrix of block_size x block_size blocks: one block row per free vertex, blocks
-/// where two free vertices share an edge. Only the lower triangle is stored.
+/// A symmetric matrix of block_size x block_size blocks, of size 1 or 2: one block row per free
+/// vertex, blocks where two free vertices share an edge. Only the lower triangle is stored.
 class MeshMatrix {
  public:
   /// `fixed`: per vertex, whether it is left out of the system.
@@ -39,13 +39,17 @@ class MeshMatrix {
   std::vector<Place> places(const std::vector<Point>& points) const;
 
   void set_zero(const Work& work);
-  /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries. To be
-  /// called once for every unordered pair of corners, the diagonal ones included. Fixed corners are
-  /// skipped.
+  /// Adds the block of corner i against corner j of a face; `block(r, c)` gives its entries, of a
+  /// corner against itself those of the lower triangle. To be called once for every unordered pair
+  /// of corners, the diagonal ones included. Fixed corners are skipped.
   template <class Block>
   void add(Index face, const Triangle& corners, int i, int j, const Block& block) {
-    for_each_entry(face, corners, i, j, block,
-                   [](Index, double& entry, double term) { entry += term; });
+    with_size([&]<int kSize>(Size<kSize> size) {
+      for_each_column(size, face, corners, i, j, block,
+                      [](Index, double* entries, const double* terms, int count) {
+                        for (int r = 0; r < count; ++r) entries[r] += terms[r];
+                      });
+    });
   }
   /// Adds to the block of a row against itself.
   template <class Block>
@@ -59,6 +63,9 @@ class MeshMatrix {
   /// parallel; the same bits at any number of threads. `faces` are those of the constructor.
   template <class Give>
   void add_up(const Work& work, const std::vector<Triangle>& faces, const Give& give);
+  /// The same with chunks: calls `give(begin, end, add)`, which adds by add(face, i, j, block).
+  template <class Give>
+  void add_up_chunks(const Work& work, const std::vector<Triangle>& faces, const Give& give);
 
   const SparseMatrix& matrix() const { return matrix_; }
   SparseMatrix& matrix() { return matrix_; }
@@ -67,11 +74,18 @@ class MeshMatrix {
   const FaceChunks& chunks() const { return chunks_; }
 
  private:
-  /// Calls visit(vertex, entry, term) for the entries of a block, `vertex` being that of the
-  /// column.
-  template <class Block, class Visit>
-  void for_each_entry(Index face, const Triangle& corners, int i, int j, const Block& block,
-                      const Visit& visit);
+  template <int kSize>
+  struct Size {};
+  /// Calls body with the size of the blocks, so that loops over them have a fixed length.
+  template <class Body>
+  void with_size(const Body& body) {
+    block_size_ == 1 ? body(Size<1>()) : body(Size<2>());
+  }
+  /// Calls visit(vertex, entries, terms, count) for the columns of a block, `vertex` being that of
+  /// the column.
+  template <int kSize, class Block, class Visit>
+  void for_each_column(Size<kSize> size, Index face, const Triangle& corners, int i, int j,
+                       const Block& block, const Visit& visit);
 
   int block_size_;
   FaceChunks chunks_;
@@ -91,17 +105,18 @@ std::vector<Place> MeshMatrix::places(const std::vector<Point>& points) const {
   return places;
 }
 
-template <class Block, class Visit>
-void MeshMatrix::for_each_entry(Index face, const Triangle& corners, int i, int j,
-                                const Block& block, const Visit& visit) {
+template <int kSize, class Block, class Visit>
+void MeshMatrix::for_each_column(Size<kSize>, Index face, const Triangle& corners, int i, int j,
+                                 const Block& block, const Visit& visit) {
   const Index ri = row_[corners[i]], rj = row_[corners[j]];
   if (ri == kNone || rj == kNone) return;
   double* values = matrix_.valuePtr();
   const int* starts = matrix_.outerIndexPtr();
+  double terms[kSize];
   if (i == j) {
-    for (int c = 0; c < block_size_; ++c) {
-      double* column = values + starts[block_size_ * ri + c];
-      for (int r = c; r < block_size_; ++r) visit(corners[i], column[r - c], block(r, c));
+    for (int c = 0; c < kSize; ++c) {
+      for (int r = c; r < kSize; ++r) terms[r - c] = block(r, c);
+      visit(corners[i], values + starts[kSize * ri + c], terms, kSize - c);
     }
     return;
   }
@@ -109,39 +124,49 @@ void MeshMatrix::for_each_entry(Index face, const Triangle& corners, int i, int 
   const bool swap = ri < rj;  // the block below the diagonal has the larger row
   const Index column_block = swap ? ri : rj;
   const Index vertex = corners[swap ? i : j];
-  for (int c = 0; c < block_size_; ++c) {
-    double* column =
-        values + starts[block_size_ * column_block + c] + (block_size_ - c) + rank * block_size_;
-    for (int r = 0; r < block_size_; ++r) {
-      visit(vertex, column[r], swap ? block(c, r) : block(r, c));
-    }
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = 0; r < kSize; ++r) terms[r] = swap ? block(c, r) : block(r, c);
+    visit(vertex, values + starts[kSize * column_block + c] + (kSize - c) + rank * kSize, terms,
+          kSize);
   }
 }
 
 template <class Give>
 void MeshMatrix::add_up(const Work& work, const std::vector<Triangle>& faces, const Give& give) {
+  add_up_chunks(work, faces, [&](std::int64_t begin, std::int64_t end, const auto& add) {
+    for (auto f = static_cast<Index>(begin); f < end; ++f) {
+      give(f, [&](int i, int j, const auto& block) { add(f, i, j, block); });
+    }
+  });
+}
+
+template <class Give>
+void MeshMatrix::add_up_chunks(const Work& work, const std::vector<Triangle>& faces,
+                               const Give& give) {
   struct Aside {
     double* entry;
     double term;
   };
   PutAside<Aside> aside(chunks_, size_of(row_));
-  parallel_for(work, static_cast<std::int64_t>(faces.size()), chunks_.grain(),
-               [&](std::int64_t begin, std::int64_t end) {
-                 const std::size_t chunk = chunks_.of(begin);
-                 const auto put = [&](Index vertex, double& entry, double term) {
-                   if (chunks_.shared(vertex)) {
-                     aside.put(chunk, vertex, {&entry, term});
-                   } else {
-                     entry += term;
-                   }
-                 };
-                 for (std::int64_t f = begin; f < end; ++f) {
-                   const auto face = static_cast<Index>(f);
-                   give(face, [&](int i, int j, const auto& block) {
-                     for_each_entry(face, faces[face], i, j, block, put);
+  with_size([&]<int kSize>(Size<kSize> size) {
+    parallel_for(work, static_cast<std::int64_t>(faces.size()), chunks_.grain(),
+                 [&](std::int64_t begin, std::int64_t end) {
+                   const std::size_t chunk = chunks_.of(begin);
+                   const auto visit = [&](Index vertex, double* entries, const double* terms,
+                                          int count) {
+                     if (chunks_.shared(vertex)) {
+                       for (int r = 0; r < count; ++r) {
+                         aside.put(chunk, vertex, {entries + r, terms[r]});
+                       }
+                     } else {
+                       for (int r = 0; r < count; ++r) entries[r] += terms[r];
+                     }
+                   };
+                   give(begin, end, [&](Index face, int i, int j, const auto& block) {
+                     for_each_column(size, face, faces[face], i, j, block, visit);
                    });
-                 }
-               });
+                 });
+  });
   aside.add_up(work, [](const Aside& a) { *a.entry += a.term; });
 }
 

@@ -158,8 +158,10 @@ std::vector<double> gains_alone(Energy energy, const DiskMesh& mesh, const std::
   with_density(energy, [&](const auto& density) {
     for (Index f = 0; f < mesh.face_count(); ++f) {
       const Triangle& t = mesh.faces[f];
-      const FaceModel model =
-          face_model(rest[f], linear_map(rest[f], uvs[t[0]], uvs[t[1]], uvs[t[2]]), density);
+      FaceModels models;
+      give_face_models(
+          mesh.faces, rest, uvs, f, f + 1, density, [](auto) { return 1.0; }, models);
+      const FaceModel model = models.at(0);
       for (int k = 0; k < 3; ++k) {
         gradient[t[k]] += rest[f].area() * model.gradient.segment<2>(2 * k);
         hessian[t[k]] += rest[f].area() * model.hessian.block<2, 2>(2 * k, 2 * k);

@@ -45,16 +45,22 @@ std::vector<SingleWeights> single(const std::vector<EdgeWeights>& weights) {
   return result;
 }
 
-/// Bumps with the stiffness of its flat map, on levels of about 9,000, 1,100 and 150 faces.
+/// Bumps with the stiffness of its flat map, on levels of about 9,000, 1,100 and 150 faces, the
+/// Hessian of it on some of them.
 struct Cycle {
-  explicit Cycle(int threads)
+  enum class Hessian { kNone, kOfCoarsest, kOfMiddle, kOfBoth };
+  static constexpr Index kMostForHessian = 5000;
+
+  explicit Cycle(int threads, Hessian hessian = Hessian::kNone)
       : work(threads),
         fine(disks::disk(meshes::bumps(67, 67))),
         middle(simplify(fine, 1100, work)),
         coarse(simplify(middle.mesh, 150, work)),
-        cycle(coarse.mesh, stiffness(coarse.mesh), work) {
+        cycle(coarse.mesh, stiffness(coarse.mesh), kMostForHessian, work) {
+    if (hessian == Hessian::kOfCoarsest || hessian == Hessian::kOfBoth) take_hessian(coarse.mesh);
     add(coarse, middle.mesh);
     cycle.set(single(stiffness(middle.mesh)), {});
+    if (hessian == Hessian::kOfMiddle || hessian == Hessian::kOfBoth) take_hessian(middle.mesh);
     add(middle, fine);
     cycle.set(single(stiffness(fine)), {});
   }
@@ -62,6 +68,9 @@ struct Cycle {
   std::vector<EdgeWeights> stiffness(const DiskMesh& mesh) const {
     return energy_stiffness(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh),
                             disks::flat_uvs(mesh), work);
+  }
+  void take_hessian(const DiskMesh& mesh) {
+    cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(mesh), disks::flat_uvs(mesh));
   }
   void add(const CoarseDisk& below, const DiskMesh& mesh) {
     cycle.add(mesh, footpoints(below.mesh, below.fine_vertex, below.nearby, mesh, work));
@@ -172,30 +181,48 @@ TEST(VCycle, HasTheSameBitsAtAnyNumberOfThreads) {
   EXPECT_EQ(x, y);
 }
 
-TEST(VCycle, IsSymmetricAndDefiniteWithTheHessianOfTheCoarsestLevelToo) {
+TEST(VCycle, IsSymmetricAndDefiniteWithTheHessianOfALevelToo) {
+  Cycle plain(1);
+  const auto a = doubled(random_field(plain.fine.vertex_count(), 1));
+  const auto b = doubled(random_field(plain.fine.vertex_count(), 2));
+  std::vector<Vec2> without;
+  plain.cycle.precondition(a, without);
+  for (const auto hessian : {Cycle::Hessian::kOfCoarsest, Cycle::Hessian::kOfMiddle}) {
+    Cycle levels(1, hessian);
+    std::vector<Vec2> of_a, of_b;
+    levels.cycle.precondition(a, of_a);
+    levels.cycle.precondition(b, of_b);
+    EXPECT_NE(of_a, without);
+    EXPECT_GT(dot(a, of_a), 0);
+    EXPECT_GT(dot(b, of_b), 0);
+    EXPECT_NEAR(dot(of_a, b), dot(a, of_b), 1e-3 * std::sqrt(dot(a, of_a) * dot(b, of_b)));
+  }
+}
+
+TEST(VCycle, TheHessianOfAFinerLevelTakesThePlaceOfThatOfACoarserOne) {
+  Cycle both(1, Cycle::Hessian::kOfBoth), middle(1, Cycle::Hessian::kOfMiddle);
+  const auto rhs = doubled(random_field(both.fine.vertex_count(), 4));
+  std::vector<Vec2> x, y;
+  both.cycle.precondition(rhs, x);
+  middle.cycle.precondition(rhs, y);
+  EXPECT_EQ(x, y);
+}
+
+TEST(VCycle, TakesNoHessianOfALevelOfMoreFacesThanItMay) {
   Cycle levels(1);
-  const auto a = doubled(random_field(levels.fine.vertex_count(), 1));
-  const auto b = doubled(random_field(levels.fine.vertex_count(), 2));
-  std::vector<Vec2> without, of_a, of_b;
-  levels.cycle.precondition(a, without);
-  const DiskMesh& coarsest = levels.coarse.mesh;
-  levels.cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(coarsest),
-                            disks::flat_uvs(coarsest));
-  levels.cycle.precondition(a, of_a);
-  levels.cycle.precondition(b, of_b);
-  EXPECT_NE(of_a, without);
-  EXPECT_GT(dot(a, of_a), 0);
-  EXPECT_GT(dot(b, of_b), 0);
-  EXPECT_NEAR(dot(of_a, b), dot(a, of_b), 1e-3 * std::sqrt(dot(a, of_a) * dot(b, of_b)));
+  ASSERT_GT(levels.fine.face_count(), Cycle::kMostForHessian);
+  const auto rhs = doubled(random_field(levels.fine.vertex_count(), 4));
+  std::vector<Vec2> before, after;
+  levels.cycle.precondition(rhs, before);
+  levels.take_hessian(levels.fine);
+  levels.cycle.precondition(rhs, after);
+  EXPECT_EQ(before, after);
 }
 
 TEST(VCycle, GivesTheHessianUpForSprings) {
-  Cycle with(1), without(1);
+  Cycle with(1, Cycle::Hessian::kOfCoarsest), without(1);
   std::vector<double> springs(with.fine.positions.size(), 0);
   springs[with.fine.boundary.front()] = 1e6;
-  const DiskMesh& coarsest = with.coarse.mesh;
-  with.cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(coarsest),
-                          disks::flat_uvs(coarsest));
   const auto rhs = doubled(random_field(with.fine.vertex_count(), 9));
   std::vector<Vec2> x, y;
   for (Cycle* levels : {&with, &without}) {

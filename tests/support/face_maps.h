@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <complex>
+#include <vector>
 
 #include "base/types.h"
 #include "descend/assembly.h"
@@ -36,7 +37,11 @@ double energy_of(const Vector6& x) {
 
 template <class Density>
 FaceModel model_of(const Vector6& x, const Density& density) {
-  return face_model(kRest, map_of(x), density);
+  const std::vector<Vec2> uvs = {x.segment<2>(0), x.segment<2>(2), x.segment<2>(4)};
+  FaceModels models;
+  give_face_models(
+      {{0, 1, 2}}, {kRest}, uvs, 0, 1, density, [](auto) { return 1.0; }, models);
+  return models.at(0);
 }
 
 /// Of the gradients of the model, `h` apart in each coordinate.

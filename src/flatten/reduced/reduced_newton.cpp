@@ -180,13 +180,14 @@ template <class Density>
 std::vector<FaceModel> Descent::model_faces(const LooseFaces& loose, const Density& density) const {
   std::vector<FaceModel> models(loose.faces.size());
   parallel_for(work_, size_of(loose.faces), 1024, [&](std::int64_t begin, std::int64_t end) {
+    const auto weight = [&](std::int64_t f) { return loose.weights[f]; };
+    FaceModels block;
     for (std::int64_t f = begin; f < end; ++f) {
-      const Triangle& t = loose.faces[f];
-      const LinearMap map =
-          linear_map(loose.rest[f], loose.points[t[0]], loose.points[t[1]], loose.points[t[2]]);
-      models[f] = face_model(loose.rest[f], map, density);
-      models[f].gradient *= loose.weights[f];
-      models[f].hessian *= loose.weights[f];
+      const auto at = static_cast<int>((f - begin) % FaceModels::kFaces);
+      if (at == 0) {
+        give_face_models(loose.faces, loose.rest, loose.points, f, end, density, weight, block);
+      }
+      models[f] = block.at(at);
     }
   });
   return models;
