@@ -33,12 +33,18 @@ bool HessianFactor::fit(Energy energy, const std::vector<RestTriangle>& rest,
   for (Eigen::Index c = 0; c < lower.cols(); ++c) {
     lower.valuePtr()[lower.outerIndexPtr()[c]] *= 1 + kShift;
   }
-  if (row_.empty()) {
+  if (!analyzed_) {
     row_ = matrix.rows();
     rows_ = matrix.free_count();
     solver_->analyze(lower, matrix.places(uvs));
+    analyzed_ = true;
   }
   return factorize_shifted(*solver_, lower) >= 0;
+}
+
+void HessianFactor::settle() {
+  solver_->keep_preconditioner();
+  analyzed_ = false;
 }
 
 void HessianFactor::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {

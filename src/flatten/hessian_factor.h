@@ -27,6 +27,9 @@ class HessianFactor {
   /// positive. Returns whether there is a factor: in floating point the matrix may not be definite.
   bool fit(Energy energy, const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
 
+  /// Frees what only the next fit() is faster with.
+  void settle();
+
   /// Sets `x` to about its inverse times `rhs`; one entry per vertex. Linear, symmetric, definite.
   /// Precondition: the last fit() found one.
   void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const;
@@ -34,7 +37,8 @@ class HessianFactor {
  private:
   const DiskMesh& mesh_;
   const Work work_;
-  std::vector<Index> row_;  ///< per vertex, or kNone; empty before the first fit
+  bool analyzed_ = false;
+  std::vector<Index> row_;  ///< per vertex, or kNone
   Index rows_ = 0;          ///< of two numbers each
   std::unique_ptr<SpdSolver> solver_;
 };

@@ -95,6 +95,7 @@ void VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
 }
 
 void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
+  if (hessian_) hessian_->settle();
   levels_.push_back(
       std::make_unique<Level>(mesh, std::move(points), finest().vertex_count(), work_));
 }

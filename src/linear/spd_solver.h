@@ -58,6 +58,8 @@ class SpdSolver {
   /// until the next factorization. Good to single precision at least, and never slower than
   /// solve().
   virtual DenseMatrix precondition(const DenseMatrix& rhs) const { return solve(rhs); }
+  /// Frees what precondition() has no use for, which is all that is called until the next analysis.
+  virtual void keep_preconditioner() {}
   /// The given rows of the solution alone, in the order of `rows`: rows(A^-1 rhs). A back end may
   /// skip the parts of the factor that neither the right-hand sides nor the rows reach;
   /// neighbouring columns should have their nonzeros close together. Same bits at any number of

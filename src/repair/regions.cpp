@@ -26,12 +26,16 @@ constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours 
 constexpr Index kMostOf = 7;
 constexpr Index kMostFacesAtVertex = 1000;
 
-/// Calls visit(u) for the neighbours of a vertex, for some of them twice.
+/// Vertices that move in a region to be relaxed: that many, or a share of all.
+constexpr Index kMostTogether = 2000, kTogetherOf = 125;
+
+/// Calls visit(u) for the neighbours of a vertex, on the boundary for some of them twice.
 template <class Visit>
 void for_each_neighbour(const DiskMesh& mesh, Index vertex, const Visit& visit) {
+  const bool on_boundary = mesh.on_boundary[vertex];
   mesh.for_each_outgoing(vertex, [&](Index h) {
     visit(mesh.target(h));
-    visit(mesh.origin(Surface::previous(h)));
+    if (on_boundary) visit(mesh.origin(Surface::previous(h)));
   });
 }
 
@@ -44,12 +48,13 @@ class Membership {
   bool take(Index vertex) {
     if (of_[vertex] != kOutside) return false;
     const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
-    of_[vertex] = hub ? kHub : kWaiting;
+    of_[vertex] = hub ? kHeld : kWaiting;
     return !hub;
   }
 
   /// The vertices of the region that one belongs to, increasing; empty where they have been given.
-  std::vector<Index> connected_to(Index vertex, Index region) {
+  /// What is beside so many of them stays, and parts them from the rest.
+  std::vector<Index> connected_to(Index vertex, Index region, Index most) {
     std::vector<Index> members;
     if (of_[vertex] != kWaiting) return members;
     PollSometimes poll;
@@ -59,8 +64,9 @@ class Membership {
       for_each_neighbour(mesh_, members[i], [&](Index u) {
         poll();
         if (of_[u] != kWaiting) return;
-        of_[u] = region;
-        members.push_back(u);
+        const bool full = size_of(members) >= most;
+        of_[u] = full ? kHeld : region;
+        if (!full) members.push_back(u);
       });
     }
     std::sort(members.begin(), members.end());
@@ -70,7 +76,7 @@ class Membership {
   bool moves(Index vertex, Index region) const { return of_[vertex] == region; }
 
  private:
-  static constexpr Index kOutside = -1, kWaiting = -2, kHub = -3;
+  static constexpr Index kOutside = -1, kWaiting = -2, kHeld = -3;
 
   const DiskMesh& mesh_;
   std::vector<Index> of_;
@@ -150,11 +156,12 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               int rings, const Work& work) {
+                               const RegionSize& size, const Work& work) {
   Membership membership(mesh);
   std::vector<std::vector<Index>> vertices;  // of each region
-  for (const Index v : around(mesh, faces, rings, membership)) {
-    std::vector<Index> connected = membership.connected_to(v, size_of(vertices));
+  for (const Index v : around(mesh, faces, size.rings, membership)) {
+    std::vector<Index> connected =
+        membership.connected_to(v, size_of(vertices), size.most_vertices);
     if (!connected.empty()) vertices.push_back(std::move(connected));
   }
   std::vector<Patch> regions(vertices.size());
@@ -181,7 +188,8 @@ std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
                            const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                            const std::vector<Index>& faces, int rings, const Work& work) {
-  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, rings, work);
+  const RegionSize size{rings, std::max(kMostTogether, mesh.vertex_count() / kTogetherOf)};
+  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, size, work);
   NewtonOptions options;
   options.energy = energy;
   options.tolerance = kTolerance;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "base/types.h"
@@ -18,13 +19,20 @@ namespace beltrami {
 /// Rings around the faces that regions of a repair reach over.
 inline constexpr int kRegionRings = 4;
 
-/// The vertices of the faces and those up to `rings` rings around move, or fewer rings where that
+/// How far regions reach.
+struct RegionSize {
+  int rings;  ///< around the faces
+  /// That move; what is larger is parted, along vertices that stay.
+  Index most_vertices = std::numeric_limits<Index>::max();
+};
+
+/// The vertices of the faces and those up to so many rings around move, or fewer rings where that
 /// would be more than a seventh of all vertices; what hangs together is one patch, so that none
 /// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay fixed. `rest` may be
 /// empty, and that of the patches then is. Takes time for the mesh.
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               int rings, const Work& work);
+                               const RegionSize& size, const Work& work);
 
 /// Calls treat(region) for each, in parallel and the largest first, so that it does not come last.
 /// Returns for each whether that said true.
@@ -32,7 +40,8 @@ std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
                                         const std::function<bool(Patch&)>& treat, const Work& work);
 
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
-/// decrease of 0.1% in a step, in 30 steps at most. A region that moves boundary vertices is taken
+/// decrease of 0.1% in a step, in 30 steps at most. Large regions are parted, so that each fits a
+/// processor's cache, and one thread's turn: neighbours change anyway. A region that moves boundary vertices is taken
 /// back if it adds boundary crossings. Ends where the time is up. Returns the number of regions
 /// that changed. Precondition: the faces of the mesh are positive; they stay so.
 std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,

@@ -116,7 +116,7 @@ class Repair {
 
   /// Of many faces most patches have others on their edges, which hold them.
   void untangle_regions(const std::vector<Index>& bad, PatchWork& patches) {
-    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, kRegionRings, work_);
+    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, {kRegionRings}, work_);
     const Work alone = work_.aside();
     const auto unfold = [&](Patch& region) {
       return untangle(region.faces, region.rest, region.fixed, region.uvs, alone);

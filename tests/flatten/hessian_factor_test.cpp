@@ -101,6 +101,22 @@ TEST(HessianFactor, IsSymmetricAndDefinite) {
   EXPECT_NEAR(dot(of_a, b), dot(a, of_b), 1e-4 * std::sqrt(dot(a, of_a) * dot(b, of_b)));
 }
 
+TEST(HessianFactor, StaysWhatItIsOnceSettledAndFitsAgain) {
+  const NearMinimum at(Energy::kSymmetricDirichlet);
+  HessianFactor factor(at.mesh, Work(1));
+  ASSERT_TRUE(factor.fit(at.energy, at.rest, at.uvs));
+  disks::Random random(6);
+  std::vector<Vec2> rhs, before, settled, again;
+  for (std::size_t v = 0; v < at.uvs.size(); ++v) rhs.push_back(random.vec2());
+  factor.precondition(rhs, before);
+  factor.settle();
+  factor.precondition(rhs, settled);
+  EXPECT_EQ(settled, before);
+  ASSERT_TRUE(factor.fit(at.energy, at.rest, at.uvs));
+  factor.precondition(rhs, again);
+  EXPECT_EQ(again, before);
+}
+
 TEST(HessianFactor, FitsAgainAsItWouldAnew) {
   const NearMinimum at(Energy::kSymmetricDirichlet);
   HessianFactor again(at.mesh, Work(1)), anew(at.mesh, Work(1));

@@ -61,7 +61,7 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
   const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   const std::vector<Index> faces = {0, 3, 2 * n * n - 1, n * n};
   const std::vector<Patch> regions =
-      cut_regions(mesh, disks::rest_of(mesh), uvs, faces, 2, Work(1));
+      cut_regions(mesh, disks::rest_of(mesh), uvs, faces, {2}, Work(1));
   EXPECT_EQ(regions.size(), 3u);  // the first two are one
   std::set<Index> moving, present;
   for (const Patch& region : regions) {
@@ -88,7 +88,7 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
 TEST(CutRegions, OfTheWholeMeshHoldOneVertex) {
   const DiskMesh mesh = disks::disk(meshes::grid(2, 2));
   const std::vector<Patch> regions =
-      cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, 3, Work(1));
+      cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, {3}, Work(1));
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_EQ(std::count(regions[0].fixed.begin(), regions[0].fixed.end(), true), 1);
 }
@@ -98,7 +98,7 @@ TEST(CutRegions, StayAPartOfTheMesh) {
   std::vector<Index> faces;
   for (Index f = 0; f < mesh.face_count(); f += 97) faces.push_back(f);
   std::size_t moving = 0;
-  for (const Patch& region : cut_regions(mesh, {}, disks::flat_uvs(mesh), faces, 20, Work(1))) {
+  for (const Patch& region : cut_regions(mesh, {}, disks::flat_uvs(mesh), faces, {20}, Work(1))) {
     moving += std::count(region.fixed.begin(), region.fixed.end(), false);
   }
   EXPECT_LT(moving, mesh.positions.size() / 2);
@@ -109,7 +109,7 @@ TEST(CutRegions, LeaveAHubWhereItIs) {
     const DiskMesh mesh = disks::disk(meshes::fan(faces));
     const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
     return count_polls([&] {
-      for (const Patch& region : cut_regions(mesh, {}, uvs, {7}, 1, Work(1))) {
+      for (const Patch& region : cut_regions(mesh, {}, uvs, {7}, {1}, Work(1))) {
         for (std::size_t v = 0; v < region.fixed.size(); ++v) {
           EXPECT_TRUE(region.mesh_vertices[v] != 0 || region.fixed[v]);
         }

@@ -110,6 +110,13 @@ class NativeSolver final : public SpdSolver {
     return restored(x, static_cast<int>(rhs.cols()), unit);
   }
 
+  void keep_preconditioner() override {
+    if (single_.empty()) return;  // solve() is what preconditions then
+    values_ = {};
+    unscaling_ = {};
+    pattern_ = {};
+  }
+
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const override {
     if (rows.empty() || rhs.cols() == 0) return DenseMatrix(rows.size(), rhs.cols());
     if (single_.empty() && scaling_.empty()) {
