@@ -265,7 +265,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const auto solve = [&] {
     const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
-    rough = found.flips > share_of(mesh, kFairlyFew);
+    rough = cycle.has_hessian_of_finer() && found.flips > share_of(mesh, kFairlyFew);
     // What cannot be unfolded in the one map may be in the other.
     const bool has_other = found.by_steps && found.of_carried && is_bearable(*found.of_carried);
     const bool as_good = has_other && *found.of_carried <= kAsGood * found.flips;

@@ -38,6 +38,8 @@ class VCycle final : public StiffnessInverse {
   /// with it. It takes the place of that of a coarser level.
   void take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
                     const std::vector<Vec2>& uvs) override;
+  /// Whether that is of a level finer than the coarsest.
+  bool has_hessian_of_finer() const { return hessian_ && hessian_level_ > 0; }
 
   /// Adds the next finer level, without weights yet; `points`: of its vertices on the one before.
   void add(const DiskMesh& mesh, std::vector<Footpoint> points);

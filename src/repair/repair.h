@@ -17,7 +17,7 @@ struct RepairOptions {
   bool simple_boundary = false;
   /// Of so many faces left by rung 1, more are left to rung 3: where that is done, it is cheaper.
   std::size_t most_patches = 1000;
-  int most_rings = 8;      ///< of a patch in rung 2
+  int most_rings = 8;  ///< of a patch in rung 2; if less, none where regions leave over 30 faces
   bool global_fix = true;  ///< rung 3; it takes more memory than the others
 };
 

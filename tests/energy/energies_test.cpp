@@ -33,6 +33,36 @@ using faces::least_eigenvalue;
 using faces::map_of;
 using faces::model_of;
 
+TEST(FaceModels, AreThoseOfEachFaceAlone) {
+  std::vector<Triangle> faces;
+  std::vector<RestTriangle> rest;
+  std::vector<Vec2> uvs;
+  // More than a block, among them one that is conformal and one that has shrunk to a point.
+  for (int f = 0; f < FaceModels::kFaces + 3; ++f) {
+    const double s1 = f == 4 ? 0 : 1 + 0.1 * f, s2 = f == 2 ? s1 : f == 4 ? 0 : 0.9 - 0.03 * f;
+    const Vector6 x = corners_of(s1, s2);
+    const auto first = static_cast<Index>(uvs.size());
+    faces.push_back({first, first + 1, first + 2});
+    rest.push_back(faces::kRest);
+    for (int k = 0; k < 3; ++k) uvs.emplace_back(x.segment<2>(2 * k));
+  }
+  const auto weight = [](std::int64_t f) { return 1.0 + static_cast<double>(f); };
+  const SymmetricArap::Proxy density;
+  const std::int64_t count = size_of(faces);
+  for (std::int64_t first = 0; first < count; first += FaceModels::kFaces) {
+    FaceModels together, alone;
+    give_face_models(faces, rest, uvs, first, count, density, weight, together);
+    for (std::int64_t f = first; f < std::min(count, first + FaceModels::kFaces); ++f) {
+      give_face_models(faces, rest, uvs, f, f + 1, density, weight, alone);
+      const FaceModel one = together.at(static_cast<int>(f - first)), other = alone.at(0);
+      if (f == 4) continue;  // no density is finite there
+      EXPECT_EQ(one.gradient, other.gradient) << f;
+      EXPECT_EQ(one.hessian, other.hessian) << f;
+      EXPECT_TRUE(one.hessian.allFinite()) << f;
+    }
+  }
+}
+
 // ---- The density in its singular values -----------------------------------------------------
 
 class DensityAt : public testing::TestWithParam<std::pair<double, double>> {

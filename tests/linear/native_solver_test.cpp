@@ -404,5 +404,28 @@ TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
   }
 }
 
+TEST(NativeSolver, PreconditionsAsBeforeWithItsFactorAlone) {
+  Random random(22);
+  const DiskMesh mesh = disks::disk(meshes::grid(30, 20));
+  MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 2, Work(1));
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const auto same = [](int r, int c) { return r == c ? 3.0 : 0.5; };
+      matrix.add(f, mesh.faces[f], i, i, same);
+    }
+  }
+  const DenseMatrix rhs = random_matrix(random, 2 * matrix.free_count(), 1);
+  for (const int least_single : {0, kLeastSingle}) {
+    const auto solver = make_native_solver({Precision::kSingle}, least_single, Work(1));
+    for (int time = 0; time < 2; ++time) {  // it can be given a matrix again
+      solver->analyze(matrix.matrix());
+      ASSERT_TRUE(solver->factorize(matrix.matrix()));
+      const DenseMatrix before = solver->precondition(rhs);
+      solver->keep_preconditioner();
+      EXPECT_EQ(solver->precondition(rhs), before);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace beltrami

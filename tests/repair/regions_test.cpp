@@ -85,6 +85,34 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
   }
 }
 
+TEST(CutRegions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
+  constexpr Index kMost = 60;
+  const DiskMesh mesh = disks::disk(meshes::grid(40, 40));
+  const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  const std::vector<Index> faces = {1600, 20};
+  const std::vector<Patch> whole = cut_regions(mesh, {}, uvs, faces, {8}, Work(1));
+  EXPECT_EQ(whole.size(), 2u);
+  std::set<Index> moving_in_whole, moving, staying;
+  for (const Patch& region : whole) {
+    for (std::size_t v = 0; v < region.fixed.size(); ++v) {
+      if (!region.fixed[v]) moving_in_whole.insert(region.mesh_vertices[v]);
+    }
+  }
+  const std::vector<Patch> parts = cut_regions(mesh, {}, uvs, faces, {8, kMost}, Work(1));
+  EXPECT_GE(parts.size(), 4u);
+  for (const Patch& region : parts) {
+    EXPECT_LE(std::count(region.fixed.begin(), region.fixed.end(), false), kMost);
+    for (std::size_t v = 0; v < region.fixed.size(); ++v) {
+      (region.fixed[v] ? staying : moving).insert(region.mesh_vertices[v]);
+    }
+  }
+  for (const Index v : moving) {
+    EXPECT_TRUE(moving_in_whole.contains(v));
+    EXPECT_FALSE(staying.contains(v));
+  }
+  EXPECT_GT(moving.size(), moving_in_whole.size() / 2);
+}
+
 TEST(CutRegions, OfTheWholeMeshHoldOneVertex) {
   const DiskMesh mesh = disks::disk(meshes::grid(2, 2));
   const std::vector<Patch> regions =
