@@ -167,8 +167,9 @@ bool relax_worst(const Setting& setting, State& state) {
   return true;
 }
 
-/// Relaxes regions around those of the faces that are singular first.
-void relax(const Setting& setting, std::vector<SingularStep> faces, State& state) {
+/// Relaxes regions around those of the faces that are singular first. Returns what the mean energy
+/// gains by it.
+double relax(const Setting& setting, std::vector<SingularStep> faces, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
   const auto is_first = [](const SingularStep& a, const SingularStep& b) {
     return a.length != b.length ? a.length < b.length : a.face < b.face;
@@ -181,8 +182,11 @@ void relax(const Setting& setting, std::vector<SingularStep> faces, State& state
   }
   std::sort(faces.begin(), faces.end(), is_first);
   const double done = share(state.iterations);
-  state.cleaned_patches += relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs,
-                                         faces_of(faces), kRings, setting.work.part(done, done));
+  const RelaxedRegions relaxed =
+      relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs, faces_of(faces),
+                    kRings, setting.work.part(done, done));
+  state.cleaned_patches += relaxed.changed;
+  return relaxed.gain / setting.area;
 }
 
 /// Whether the last step looked at promises more than a share of the energy.
@@ -239,9 +243,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   if (state.last.iterations() > 0) state.clean = false;
   state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kNearOf, mesh);
   if (state.alternated && !state.last.converged) {
-    relax(setting, std::move(state.last.near), state);
-    state.energy =
-        mean_energy(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, setting.work);
+    state.energy -= relax(setting, std::move(state.last.near), state);
   } else if (state.last.blocked) {
     clear_way(setting, state);
   }

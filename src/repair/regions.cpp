@@ -1,6 +1,7 @@
 #include "repair/regions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <iterator>
@@ -185,9 +186,9 @@ std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
   return done;
 }
 
-std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
-                           const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                           const std::vector<Index>& faces, int rings, const Work& work) {
+RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
+                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                             const std::vector<Index>& faces, int rings, const Work& work) {
   const RegionSize size{rings, std::max(kMostTogether, mesh.vertex_count() / kTogetherOf)};
   std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, size, work);
   NewtonOptions options;
@@ -196,17 +197,25 @@ std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
   options.max_iterations = kNewtonSteps;
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
   const Work alone = work.aside();
+  std::vector<double> gains(regions.size(), 0);
   const auto minimise = [&](Patch& region) {
-    minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+    const NewtonResult done =
+        minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+    double area = 0;
+    for (const RestTriangle& r : region.rest) area += r.area();
+    const double gain = area * (done.energies.front() - done.energies.back());
+    if (std::isfinite(gain)) gains[&region - regions.data()] = gain;
     return non_positive_faces(region.faces, region.uvs, alone).empty();
   };
   const std::vector<std::uint8_t> positive = treat_regions(regions, minimise, work);
   PatchWork taken(mesh, uvs);
-  std::int64_t changed = 0;
+  RelaxedRegions relaxed;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (positive[i] != 0 && taken.take(regions[i])) ++changed;
+    if (positive[i] == 0 || !taken.take(regions[i])) continue;
+    ++relaxed.changed;
+    relaxed.gain += gains[i];
   }
-  return changed;
+  return relaxed;
 }
 
 }  // namespace beltrami

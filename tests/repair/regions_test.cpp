@@ -10,6 +10,7 @@
 #include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "mesh/boundary.h"
 #include "repair/repair.h"
 #include "support/disks.h"
 #include "support/meshes.h"
@@ -161,7 +162,11 @@ TEST(RelaxRegions, FindTheMinimumNearbyAndTouchNothingElse) {
       faces.push_back(f);
     }
   }
-  EXPECT_EQ(relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, 4, Work(1)), 1);
+  const RelaxedRegions relaxed =
+      relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, 4, Work(1));
+  EXPECT_EQ(relaxed.changed, 1);
+  const double area = surface_area(mesh, Work(1));
+  EXPECT_NEAR(relaxed.gain, area * (before - energy_of(mesh, uvs)), 1e-9 * area * before);
   EXPECT_GT(before - 2, 0.01);
   EXPECT_LT(energy_of(mesh, uvs) - 2, 0.01 * (before - 2));
   EXPECT_TRUE(injective(mesh, uvs));
@@ -178,7 +183,7 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
   for (int i = 0; i < 12; ++i) faces.push_back(random.below(mesh.face_count()));
   const auto rest = disks::rest_of(mesh);
   const double before = energy_of(mesh, one);
-  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, 4, Work(1)), 1);
+  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, 4, Work(1)).changed, 1);
   relax_regions(kEnergy, mesh, rest, two, faces, 4, Work(2));
   EXPECT_EQ(one, two);
   EXPECT_LT(energy_of(mesh, one), before);
