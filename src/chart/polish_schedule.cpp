@@ -72,7 +72,7 @@ constexpr double kNearOf = 3e-4;
 /// After so many of these, if the last one gained so much, the Hessian is worth its cost where it
 /// is to be had.
 constexpr int kFirstSteps = 3;
-constexpr double kFarFromRest = 5e-4;
+constexpr double kFarFromRest = 2e-3;
 constexpr double kStale = 2e-3;  // relative decrease from which on another one is
 
 /// What a length of the polish means.
