@@ -13,7 +13,7 @@ namespace beltrami {
 /// limit is too low for it.
 enum class Extra {
   kHarmonicMap,   ///< beside the metric one, where that flips many faces
-  kLevelHessian,  ///< of a level of several that is solved by a factor of its own
+  kLevelHessian,  ///< of a level of several that is hard
   kNewtonSteps,   ///< after a polish that nearly singular faces block: several times the memory
   kGlobalFix,     ///< of the repair
 };

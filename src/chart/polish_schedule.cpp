@@ -35,7 +35,6 @@
 #include "descend/line_search.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
-#include "descend/tutte.h"
 #include "energy/energy.h"
 #include "energy/symmetric_dirichlet.h"
 #include "flatten/metric.h"

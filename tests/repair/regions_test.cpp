@@ -10,7 +10,6 @@
 #include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
-#include "mesh/boundary.h"
 #include "repair/repair.h"
 #include "support/disks.h"
 #include "support/meshes.h"
