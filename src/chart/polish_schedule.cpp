@@ -16,6 +16,9 @@
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since
 //
+// On a level that still gains much after three rounds with regions, its own Hessian takes the place
+// of that factor.
+//
 // Held up: nearly singular faces would shorten the steps. Patches around these are optimised then,
 // or whole regions where they are many, each of which a patch would leave to its neighbours.
 // Steps of the whole and regions in turns are a nonlinear Schwarz method with a coarse correction

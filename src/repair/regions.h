@@ -22,7 +22,8 @@ inline constexpr int kRegionRings = 4;
 /// How far regions reach.
 struct RegionSize {
   int rings;  ///< around the faces
-  /// That move; what is larger is parted, along vertices that stay.
+  /// That move; what is larger is parted, along vertices that stay: a face with none that moves is
+  /// in no patch.
   Index most_vertices = std::numeric_limits<Index>::max();
 };
 
