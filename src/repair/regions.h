@@ -40,14 +40,15 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
 std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
                                         const std::function<bool(Patch&)>& treat, const Work& work);
 
+/// What relax_regions did.
 struct RelaxedRegions {
   std::int64_t changed = 0;  ///< regions
   double gain = 0;           ///< by which the integral of the energy has fallen
 };
 
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
-/// decrease of 0.1% in a step, in 30 steps at most. Large regions are parted, so that each fits a
-/// processor's cache, and one thread's turn: neighbours change anyway. A region that moves boundary
+/// decrease of 0.1% in a step, in 30 steps at most. Large regions are parted, so that none
+/// keeps one thread long: neighbours change anyway. A region that moves boundary
 /// vertices is taken back if it adds boundary crossings. Ends where the time is up. Precondition:
 /// the faces of the mesh are positive; they stay so.
 RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
