@@ -58,6 +58,13 @@ struct NearMinimum {
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
 };
 
+std::vector<Vec2> random_field(std::size_t size, int seed) {
+  disks::Random random(seed);
+  std::vector<Vec2> field;
+  for (std::size_t v = 0; v < size; ++v) field.push_back(random.vec2());
+  return field;
+}
+
 TEST(HessianFactor, TakesTheStepOfCompositeMajorization) {
   for (const Energy energy : {Energy::kSymmetricDirichlet, Energy::kExponentialDirichlet}) {
     NearMinimum at(energy);
@@ -88,12 +95,8 @@ TEST(HessianFactor, IsSymmetricAndDefinite) {
   const NearMinimum at(Energy::kSymmetricDirichlet);
   HessianFactor factor(at.mesh, Work(1));
   ASSERT_TRUE(factor.fit(at.energy, at.rest, at.uvs));
-  disks::Random random(5);
-  std::vector<Vec2> a, b, of_a, of_b;
-  for (std::size_t v = 0; v < at.uvs.size(); ++v) {
-    a.push_back(random.vec2());
-    b.push_back(random.vec2());
-  }
+  const std::vector<Vec2> a = random_field(at.uvs.size(), 5), b = random_field(at.uvs.size(), 8);
+  std::vector<Vec2> of_a, of_b;
   factor.precondition(a, of_a);
   factor.precondition(b, of_b);
   EXPECT_GT(dot(a, of_a), 0);
@@ -105,9 +108,8 @@ TEST(HessianFactor, StaysWhatItIsOnceSettledAndFitsAgain) {
   const NearMinimum at(Energy::kSymmetricDirichlet);
   HessianFactor factor(at.mesh, Work(1));
   ASSERT_TRUE(factor.fit(at.energy, at.rest, at.uvs));
-  disks::Random random(6);
-  std::vector<Vec2> rhs, before, settled, again;
-  for (std::size_t v = 0; v < at.uvs.size(); ++v) rhs.push_back(random.vec2());
+  const std::vector<Vec2> rhs = random_field(at.uvs.size(), 6);
+  std::vector<Vec2> before, settled, again;
   factor.precondition(rhs, before);
   factor.settle();
   factor.precondition(rhs, settled);
@@ -123,9 +125,8 @@ TEST(HessianFactor, FitsAgainAsItWouldAnew) {
   ASSERT_TRUE(again.fit(at.energy, at.rest, disks::flat_uvs(at.mesh)));
   ASSERT_TRUE(again.fit(at.energy, at.rest, at.uvs));
   ASSERT_TRUE(anew.fit(at.energy, at.rest, at.uvs));
-  disks::Random random(7);
-  std::vector<Vec2> rhs, of_again, of_anew;
-  for (std::size_t v = 0; v < at.uvs.size(); ++v) rhs.push_back(random.vec2());
+  const std::vector<Vec2> rhs = random_field(at.uvs.size(), 7);
+  std::vector<Vec2> of_again, of_anew;
   again.precondition(rhs, of_again);
   anew.precondition(rhs, of_anew);
   double apart = 0, size = 0;  // the order of the unknowns is that of the first map
