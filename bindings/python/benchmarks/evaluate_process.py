@@ -16,6 +16,7 @@ from typing import Any
 
 PREPARING = 600.0  # seconds that a mesh may take to be made
 STOPPED = "STOPPED"  # at the end of the budget: no result, and not recorded
+ENDED = {"status": STOPPED, "error": "the budget ended"}
 
 
 def execute(task: dict[str, Any]) -> dict[str, Any]:
@@ -63,6 +64,9 @@ def _in_folder(task: dict[str, Any], folder: Path, deadline: float) -> dict[str,
 
 def _call(command: list[str], deadline: float) -> dict[str, Any]:
     """Run a command on one thread; return nothing, or how it failed."""
+    left = deadline - time.monotonic()
+    if left <= 0:
+        return dict(ENDED)
     one = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     try:
         done = subprocess.run(
@@ -72,11 +76,11 @@ def _call(command: list[str], deadline: float) -> dict[str, Any]:
             text=True,
             errors="replace",
             env={**os.environ, **one},
-            timeout=max(0.1, deadline - time.monotonic()),
+            timeout=left,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return {"status": STOPPED, "error": "the budget ended"}
+        return dict(ENDED)
     if done.returncode == 0:
         return {}
     if -done.returncode == signal.SIGXCPU:
