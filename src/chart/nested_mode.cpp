@@ -64,7 +64,7 @@ constexpr double kRising = 1.25;
 struct Bearable {
   double flips, patches;
 };
-constexpr Bearable kWhereCheap{5e-2, 5e-2}, kOnAnyLevel{1e-2, 1e-2};
+constexpr Bearable kWhereCheap{5e-2, 2e-2}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
 /// Times as many flips in another map, up to which that is as good.
 constexpr double kAsGood = 2;
@@ -262,6 +262,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   };
   const auto mend_flips = [&](std::size_t flips, bool last) {
     how.most_rings = last ? RepairOptions().most_rings : kRingsAtFirst;
+    how.most_after_regions = last ? RepairOptions().most_after_regions : kFewPatches;
     return is_bearable(flips) && mend_level(level, how, options, work.part(0.5, 0.6), climb.map);
   };
   const auto solve = [&] {
@@ -431,7 +432,7 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
 }  // namespace
 
 double nested_hessian_bytes(const MeshCounts& n, int threads) {
-  const MeshCounts level = part_of(n, std::min<double>(kMostFactored, n.faces / kLeastRatio));
+  const MeshCounts level = part_of(n, std::min(1.0 * kMostFactored, kCoarseEnough * n.faces));
   return nested_bytes(n, threads) + system_bytes(level, 2, Precision::kSingle, threads).kept;
 }
 

@@ -38,6 +38,7 @@
 #include "descend/line_search.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
+#include "descend/tutte.h"
 #include "energy/energy.h"
 #include "energy/symmetric_dirichlet.h"
 #include "flatten/metric.h"
@@ -76,6 +77,8 @@ constexpr double kNearOf = 3e-4;
 constexpr int kFirstSteps = 3;
 constexpr double kFarFromRest = 2e-3;
 constexpr double kStale = 2e-3;  // relative decrease from which on another one is
+/// Of the energy: what is left of it after more is measured, since a difference may be rounding.
+constexpr double kMostlyGained = 0.5;
 
 /// What a length of the polish means.
 struct Bounds {
@@ -169,8 +172,7 @@ bool relax_worst(const Setting& setting, State& state) {
   return true;
 }
 
-/// Relaxes regions around those of the faces that are singular first. Returns what the mean energy
-/// gains by it.
+/// Relaxes regions around those of the faces that are singular first. Returns the mean energy then.
 double relax(const Setting& setting, std::vector<SingularStep> faces, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
   const auto is_first = [](const SingularStep& a, const SingularStep& b) {
@@ -184,11 +186,13 @@ double relax(const Setting& setting, std::vector<SingularStep> faces, State& sta
   }
   std::sort(faces.begin(), faces.end(), is_first);
   const double done = share(state.iterations);
-  const RelaxedRegions relaxed =
-      relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs, faces_of(faces),
-                    kRings, setting.work.part(done, done));
+  const Work inner = setting.work.part(done, done);
+  const RelaxedRegions relaxed = relax_regions(setting.options.energy, mesh, setting.fine.rest,
+                                               state.uvs, faces_of(faces), kRings, inner);
   state.cleaned_patches += relaxed.changed;
-  return relaxed.gain / setting.area;
+  const double gain = relaxed.gain / setting.area;
+  if (gain <= kMostlyGained * state.energy) return state.energy - gain;
+  return mean_energy(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, inner);
 }
 
 /// Whether the last step looked at promises more than a share of the energy.
@@ -245,7 +249,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   if (state.last.iterations() > 0) state.clean = false;
   state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kNearOf, mesh);
   if (state.alternated && !state.last.converged) {
-    state.energy -= relax(setting, std::move(state.last.near), state);
+    state.energy = relax(setting, std::move(state.last.near), state);
   } else if (state.last.blocked) {
     clear_way(setting, state);
   }
@@ -318,8 +322,9 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.alternated && state.iterations >= kFirstSteps &&
         state.energy < (1 - kStale) * state.hessian_at &&
         gained > kFarFromRest * setting.comparable(state.energy)) {
-      setting.inverse.take_hessian(setting.options.energy, setting.fine.rest, state.uvs);
-      state.hessian_at = state.energy;
+      const bool taken =
+          setting.inverse.take_hessian(setting.options.energy, setting.fine.rest, state.uvs);
+      state.hessian_at = taken ? state.energy : 0;  // or never again
     }
     if (gained <= state.bounds.little_gain * setting.comparable(state.energy)) {
       state.last.converged = state.alternated && state.last.iterations() > 0;

@@ -26,8 +26,10 @@ class StiffnessInverse {
   /// Error SOLVER.
   virtual void refit(const StiffnessOfFaces& stiffness, const std::vector<double>& springs) = 0;
   /// Takes the Hessian of the energy at this map, of positive faces, where it can do with that
-  /// beside the stiffness and it is cheap enough.
-  virtual void take_hessian(Energy, const std::vector<RestTriangle>&, const std::vector<Vec2>&) {}
+  /// beside the stiffness and it is cheap enough. Returns whether it has.
+  virtual bool take_hessian(Energy, const std::vector<RestTriangle>&, const std::vector<Vec2>&) {
+    return false;
+  }
   /// Sets `x` to it times `rhs`; one entry per vertex.
   virtual void precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) = 0;
 };

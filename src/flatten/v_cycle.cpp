@@ -86,12 +86,18 @@ const DiskMesh& VCycle::finest() const {
   return levels_.empty() ? coarsest_ : levels_.back()->mesh;
 }
 
-void VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
+bool VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
                           const std::vector<Vec2>& uvs) {
-  if (finest().face_count() > most_for_hessian_) return;
-  if (!hessian_ || hessian_level_ != levels_.size()) hessian_.emplace(finest(), work_);
+  if (finest().face_count() > most_for_hessian_) return false;
+  if (hessian_ && hessian_level_ == levels_.size()) {
+    if (!hessian_->fit(energy, rest, uvs)) hessian_.reset();
+    return hessian_ != nullptr;
+  }
+  auto own = std::make_unique<HessianFactor>(finest(), work_);
+  if (!own->fit(energy, rest, uvs)) return false;
+  hessian_ = std::move(own);
   hessian_level_ = levels_.size();
-  if (!hessian_->fit(energy, rest, uvs)) hessian_.reset();
+  return true;
 }
 
 void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {

@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/types.h"
@@ -35,8 +34,9 @@ class VCycle final : public StiffnessInverse {
   /// From now on precondition() ends on the level that is the finest now, with a factor of the
   /// Hessian of the energy at this map of it, as long as there are no springs: what is left over
   /// there of a descent by stiffness, which is slow along motions of large parts, takes a few steps
-  /// with it. It takes the place of that of a coarser level.
-  void take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
+  /// with it. It takes the place of that of a coarser level, which stays where this one cannot be
+  /// factorized.
+  bool take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
                     const std::vector<Vec2>& uvs) override;
   /// Whether that is of a level finer than the coarsest.
   bool has_hessian_of_finer() const { return hessian_ && hessian_level_ > 0; }
@@ -75,7 +75,7 @@ class VCycle final : public StiffnessInverse {
   const Index most_for_hessian_;
   std::vector<EdgeWeights> coarsest_stiffness_;
   MetricLaplacian factor_;
-  std::optional<HessianFactor> hessian_;
+  std::unique_ptr<HessianFactor> hessian_;
   std::size_t hessian_level_ = 0;               ///< 0 is the coarsest
   std::vector<std::unique_ptr<Level>> levels_;  ///< from the coarsest that has no factor
   std::vector<Vec2> solve_rhs_, solve_x_;

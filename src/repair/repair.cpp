@@ -98,7 +98,7 @@ class Repair {
     if (bad.size() > kManyFlips && count <= kMostFlips * mesh_.face_count()) {
       untangle_regions(bad, patches);
       look_again(bad);
-      if (bad.size() > kManyFlips && options_.most_rings < kPatchRings.back()) return;
+      if (bad.size() > options_.most_after_regions) return;
     }
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;

@@ -17,8 +17,6 @@ constexpr double kLeastReduction = 0.8;
 /// Sweeps that leave so many times the faces asked for are followed by passes: the boundary is
 /// long.
 constexpr double kFallenShort = 1.3;
-/// What is known of a disk serves as a level from this share of its faces down.
-constexpr double kCoarseEnough = 0.3;
 /// The sweeps' share of the progress: that of their time.
 constexpr double kSwept = 0.8;
 
