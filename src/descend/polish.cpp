@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -198,7 +197,8 @@ class Rigid {
   /// it now does. Vertices that do not move, because they are held, still do not.
   void move(const std::vector<SingularStep>& steps, Field& direction) {
     changed_.resize(direction.size());
-    std::vector<Index> more;  // faces at vertices that had not been changed
+    ++round_;
+    faces_.clear();
     PollSometimes poll;
     for (const SingularStep& s : steps) {
       const Triangle& face = mesh_.faces[s.face];
@@ -206,26 +206,23 @@ class Rigid {
       for (const Index v : face) {
         if (direction[v] == Vec2::Zero()) continue;
         direction[v] = mean + kSingularShare * s.length * (direction[v] - mean);
-        if (std::exchange(changed_[v], 1) != 0) continue;
+        if (std::exchange(changed_[v], round_) == round_) continue;
         mesh_.for_each_outgoing(v, [&](Index h) {
           poll();
-          more.push_back(h / 3);
+          faces_.push_back(h / 3);
         });
       }
     }
-    if (more.empty()) return;
-    sort_unique(more);
-    std::vector<Index> all;
-    std::set_union(faces_.begin(), faces_.end(), more.begin(), more.end(), std::back_inserter(all));
-    faces_.swap(all);
+    sort_unique(faces_);
   }
 
-  /// All faces with a vertex that has been changed, increasing.
+  /// All faces with a vertex that the last call has moved, increasing.
   const std::vector<Index>& faces() const { return faces_; }
 
  private:
   const DiskMesh& mesh_;
-  std::vector<std::uint8_t> changed_;
+  std::uint8_t round_ = 0;
+  std::vector<std::uint8_t> changed_;  ///< the round in which each vertex was, or 0
   std::vector<Index> faces_;
 };
 
@@ -246,6 +243,7 @@ double hold_back(const DiskMesh& mesh, const Field& uvs, bool rigidly, double ne
   Rigid rigid(mesh);
   for (int round = 0; rigidly && round < kHoldRounds && !singular->empty(); ++round) {
     rigid.move(*singular, direction);
+    // The others go as they went when they were looked at last.
     left = singular_steps_of(rigid.faces(), mesh.faces, uvs, direction, kLimit);
     singular = &left;
   }

@@ -26,6 +26,7 @@ constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours 
 /// what the mesh takes.
 constexpr Index kMostOf = 7;
 constexpr Index kMostFacesAtVertex = 1000;
+constexpr std::int64_t kGrain = 1024;
 
 /// Vertices that move in a region to be relaxed: that many, or a share of all.
 constexpr Index kMostTogether = 2000, kTogetherOf = 125;
@@ -44,6 +45,8 @@ void for_each_neighbour(const DiskMesh& mesh, Index vertex, const Visit& visit) 
 class Membership {
  public:
   explicit Membership(const DiskMesh& mesh) : mesh_(mesh), of_(mesh.positions.size(), kOutside) {}
+
+  bool is_outside(Index vertex) const { return of_[vertex] == kOutside; }
 
   /// Takes the vertex in. Returns whether it was outside and may move.
   bool take(Index vertex) {
@@ -85,7 +88,7 @@ class Membership {
 
 /// The vertices that are to move, each once.
 std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces, int rings,
-                          Membership& membership) {
+                          const Work& work, Membership& membership) {
   std::vector<Index> found;
   PollSometimes poll;
   for (const Index face : faces) {
@@ -93,15 +96,26 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
       if (membership.take(v)) found.push_back(v);
     }
   }
-  std::size_t begin = 0;
+  std::int64_t inner = 0;  // of those found, all of whose neighbours are
   for (int ring = 0; ring < rings; ++ring) {
-    const std::size_t end = found.size();
-    if (static_cast<Index>(end) > mesh.vertex_count() / kMostOf) break;
-    for (; begin < end; ++begin) {
-      for_each_neighbour(mesh, found[begin], [&](Index u) {
+    const std::int64_t count = size_of(found);
+    if (count > mesh.vertex_count() / kMostOf) break;
+    // Several threads look for what is outside, some of it many times; one takes it in.
+    std::vector<std::vector<Index>> outside((count - inner) / kGrain + 1);
+    parallel_for(work, count - inner, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<Index>& of_chunk = outside[begin / kGrain];
+      for (std::int64_t i = inner + begin; i < inner + end; ++i) {
+        for_each_neighbour(mesh, found[i], [&](Index u) {
+          if (membership.is_outside(u)) of_chunk.push_back(u);
+        });
+      }
+    });
+    inner = count;
+    for (const std::vector<Index>& of_chunk : outside) {
+      for (const Index u : of_chunk) {
         poll();
         if (membership.take(u)) found.push_back(u);
-      });
+      }
     }
   }
   return found;
@@ -160,7 +174,7 @@ std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTrian
                                const RegionSize& size, const Work& work) {
   Membership membership(mesh);
   std::vector<std::vector<Index>> vertices;  // of each region
-  for (const Index v : around(mesh, faces, size.rings, membership)) {
+  for (const Index v : around(mesh, faces, size.rings, work, membership)) {
     std::vector<Index> connected =
         membership.connected_to(v, size_of(vertices), size.most_vertices);
     if (!connected.empty()) vertices.push_back(std::move(connected));
