@@ -12,6 +12,8 @@
 namespace beltrami {
 namespace {
 
+constexpr std::int64_t kGrain = 2048;  // of some faces
+
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -50,6 +52,26 @@ std::optional<double> singular_before(double limit, const Triangle& face,
   return root < limit ? std::optional(root) : std::nullopt;
 }
 
+/// Of the faces face_at(0 .. count - 1), in their order.
+template <class FaceAt>
+std::vector<SingularStep> singular_among(std::int64_t count, std::int64_t grain,
+                                         const FaceAt& face_at, const std::vector<Triangle>& faces,
+                                         const std::vector<Vec2>& uvs,
+                                         const std::vector<Vec2>& direction, double limit,
+                                         const Work& work) {
+  std::vector<std::vector<SingularStep>> found(count / grain + 1);
+  parallel_for(work, count, grain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const Index f = face_at(i);
+      const auto length = singular_before(limit, faces[f], uvs, direction);
+      if (length) found[begin / grain].push_back({f, *length});
+    }
+  });
+  std::vector<SingularStep> all;
+  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
+}
+
 }  // namespace
 
 double first_singular_step(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
@@ -70,30 +92,22 @@ std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
                                          const Work& work) {
-  const std::int64_t grain = FaceChunks::grain_of(size_of(faces));
-  std::vector<std::vector<SingularStep>> found(faces.size() / grain + 1);
-  parallel_for(work, size_of(faces), grain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t f = begin; f < end; ++f) {
-      const auto length = singular_before(limit, faces[f], uvs, direction);
-      if (length) found[begin / grain].push_back({static_cast<Index>(f), *length});
-    }
-  });
-  std::vector<SingularStep> all;
-  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
+  return singular_among(size_of(faces), FaceChunks::grain_of(size_of(faces)),
+                        [](std::int64_t f) { return static_cast<Index>(f); }, faces, uvs, direction,
+                        limit, work);
 }
 
 std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
                                             const std::vector<Triangle>& faces,
                                             const std::vector<Vec2>& uvs,
-                                            const std::vector<Vec2>& direction, double limit) {
-  std::vector<SingularStep> found;
-  PollSometimes poll;
-  for (const Index f : some) {
-    poll();
-    const auto length = singular_before(limit, faces[f], uvs, direction);
-    if (length) found.push_back({f, *length});
-  }
+                                            const std::vector<Vec2>& direction, double limit,
+                                            const Work& work) {
+  std::vector<SingularStep> found =
+      singular_among(size_of(some), kGrain, [&](std::int64_t i) { return some[i]; }, faces, uvs,
+                     direction, limit, work);
+  sort_interruptibly(
+      found.begin(), found.end(),
+      [](const SingularStep& one, const SingularStep& other) { return one.face < other.face; });
   return found;
 }
 

@@ -27,10 +27,11 @@ std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& direction, double limit,
                                          const Work& work);
 
-/// The same among some of the faces, in their order.
+/// The same among some of the faces, which come in any order, each once.
 std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
                                             const std::vector<Triangle>& faces,
                                             const std::vector<Vec2>& uvs,
-                                            const std::vector<Vec2>& direction, double limit);
+                                            const std::vector<Vec2>& direction, double limit,
+                                            const Work& work);
 
 }  // namespace beltrami

@@ -8,7 +8,6 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "base/sort_unique.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
 #include "mesh/disk_mesh.h"
@@ -197,6 +196,7 @@ class Rigid {
   /// it now does. Vertices that do not move, because they are held, still do not.
   void move(const std::vector<SingularStep>& steps, Field& direction) {
     changed_.resize(direction.size());
+    added_.resize(mesh_.faces.size());
     ++round_;
     faces_.clear();
     PollSometimes poll;
@@ -209,20 +209,19 @@ class Rigid {
         if (std::exchange(changed_[v], round_) == round_) continue;
         mesh_.for_each_outgoing(v, [&](Index h) {
           poll();
-          faces_.push_back(h / 3);
+          if (std::exchange(added_[h / 3], round_) != round_) faces_.push_back(h / 3);
         });
       }
     }
-    sort_unique(faces_);
   }
 
-  /// All faces with a vertex that the last call has moved, increasing.
+  /// All faces with a vertex that the last call has moved, in no order.
   const std::vector<Index>& faces() const { return faces_; }
 
  private:
   const DiskMesh& mesh_;
   std::uint8_t round_ = 0;
-  std::vector<std::uint8_t> changed_;  ///< the round in which each vertex was, or 0
+  std::vector<std::uint8_t> changed_, added_;  ///< the round in which each vertex, face was, or 0
   std::vector<Index> faces_;
 };
 
@@ -244,7 +243,7 @@ double hold_back(const DiskMesh& mesh, const Field& uvs, bool rigidly, double ne
   for (int round = 0; rigidly && round < kHoldRounds && !singular->empty(); ++round) {
     rigid.move(*singular, direction);
     // The others go as they went when they were looked at last.
-    left = singular_steps_of(rigid.faces(), mesh.faces, uvs, direction, kLimit);
+    left = singular_steps_of(rigid.faces(), mesh.faces, uvs, direction, kLimit, work);
     singular = &left;
   }
   double length = 1;
