@@ -23,6 +23,10 @@ constexpr std::int64_t kGrain = 4096;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr int kPatience = 3;            // steps with contact that gain next to nothing
 constexpr int kHoldRounds = 16;         // after which a few faces hold back the whole map
+/// More than that do, too, where a round leaves so many times those before it: they push each
+/// other, and more rounds do not end that.
+constexpr std::size_t kManyHeld = 100;
+constexpr double kAsMany = 0.97;
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 
@@ -242,9 +246,11 @@ double hold_back(const DiskMesh& mesh, const Field& uvs, bool rigidly, double ne
   Rigid rigid(mesh);
   for (int round = 0; rigidly && round < kHoldRounds && !singular->empty(); ++round) {
     rigid.move(*singular, direction);
+    const double before = static_cast<double>(singular->size());
     // The others go as they went when they were looked at last.
     left = singular_steps_of(rigid.faces(), mesh.faces, uvs, direction, kLimit, work);
     singular = &left;
+    if (left.size() > kManyHeld && static_cast<double>(left.size()) > kAsMany * before) break;
   }
   double length = 1;
   for (const SingularStep& s : *singular) length = std::min(length, kSingularShare * s.length);

@@ -143,13 +143,13 @@ TEST(Repair, MendsAnEarThatIsFoldedInwards) {
 // Slit in its middle, a saddle has too much of its surface around the slit: what relaxes there
 // closes it, and its sides cross. Here they are a hair apart, and one is drawn up on itself.
 TEST(Repair, HoldsTheBoundaryWhereTheSidesOfASlitWouldCross) {
-  const DiskMesh mesh = disks::disk(disks::slit_saddle(2, 0.5));
+  const DiskMesh mesh = disks::disk(disks::slit_saddle(2, 1.5));
   std::vector<Vec2> before = disks::flat_uvs(mesh);
   before[13].y() -= 0.0025;
   before[14].y() -= 0.005;
   before[25].y() += 0.0025;
   before[26].y() += 0.005;
-  before[14] += Vec2(-0.36, -0.05);
+  before[14] += Vec2(-0.4, -0.05);
   const Certificate folded = certify(mesh.faces, mesh.boundary, before, Work(1));
   ASSERT_EQ(folded.crossings.count, 0);
   ASSERT_EQ(folded.orientations.negative, 1);
