@@ -26,7 +26,7 @@ constexpr int kHoldRounds = 16;         // after which a few faces hold back the
 /// More than that do, too, where a round leaves so many times those before it: they push each
 /// other, and more rounds do not end that.
 constexpr std::size_t kManyHeld = 100;
-constexpr double kAsMany = 0.97;
+constexpr double kAsMany = 0.9;
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 

@@ -69,8 +69,9 @@ struct Cycle {
     return energy_stiffness(Energy::kSymmetricDirichlet, mesh.faces, disks::rest_of(mesh),
                             disks::flat_uvs(mesh), work);
   }
-  void take_hessian(const DiskMesh& mesh) {
-    cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(mesh), disks::flat_uvs(mesh));
+  bool take_hessian(const DiskMesh& mesh) {
+    return cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(mesh),
+                              disks::flat_uvs(mesh));
   }
   void add(const CoarseDisk& below, const DiskMesh& mesh) {
     cycle.add(mesh, footpoints(below.mesh, below.fine_vertex, below.nearby, mesh, work));
@@ -214,8 +215,28 @@ TEST(VCycle, TakesNoHessianOfALevelOfMoreFacesThanItMay) {
   const auto rhs = doubled(random_field(levels.fine.vertex_count(), 4));
   std::vector<Vec2> before, after;
   levels.cycle.precondition(rhs, before);
-  levels.take_hessian(levels.fine);
+  EXPECT_FALSE(levels.take_hessian(levels.fine));
   levels.cycle.precondition(rhs, after);
+  EXPECT_EQ(before, after);
+}
+
+// As at the edge of what double precision holds.
+TEST(VCycle, KeepsTheHessianOfACoarserLevelWhereOneOfItsOwnHasNoFactor) {
+  const Cycle levels(1);
+  const CoarseDisk& below = levels.coarse;
+  const DiskMesh& middle = levels.middle.mesh;
+  VCycle cycle(below.mesh, levels.stiffness(below.mesh), middle.face_count(), Work(1));
+  ASSERT_TRUE(cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(below.mesh),
+                                 disks::flat_uvs(below.mesh)));
+  cycle.add(middle, footpoints(below.mesh, below.fine_vertex, below.nearby, middle, Work(1)));
+  cycle.set(single(levels.stiffness(middle)), {});
+  const auto rhs = doubled(random_field(middle.vertex_count(), 4));
+  std::vector<Vec2> before, after;
+  cycle.precondition(rhs, before);
+  std::vector<Vec2> uvs = disks::flat_uvs(middle);
+  for (Vec2& uv : uvs) uv *= 1e-200;
+  EXPECT_FALSE(cycle.take_hessian(Energy::kSymmetricDirichlet, disks::rest_of(middle), uvs));
+  cycle.precondition(rhs, after);
   EXPECT_EQ(before, after);
 }
 
