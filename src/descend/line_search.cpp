@@ -92,9 +92,9 @@ std::vector<SingularStep> singular_steps(const std::vector<Triangle>& faces,
                                          const std::vector<Vec2>& uvs,
                                          const std::vector<Vec2>& direction, double limit,
                                          const Work& work) {
-  return singular_among(size_of(faces), FaceChunks::grain_of(size_of(faces)),
-                        [](std::int64_t f) { return static_cast<Index>(f); }, faces, uvs, direction,
-                        limit, work);
+  return singular_among(
+      size_of(faces), FaceChunks::grain_of(size_of(faces)),
+      [](std::int64_t f) { return static_cast<Index>(f); }, faces, uvs, direction, limit, work);
 }
 
 std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
@@ -102,9 +102,9 @@ std::vector<SingularStep> singular_steps_of(const std::vector<Index>& some,
                                             const std::vector<Vec2>& uvs,
                                             const std::vector<Vec2>& direction, double limit,
                                             const Work& work) {
-  std::vector<SingularStep> found =
-      singular_among(size_of(some), kGrain, [&](std::int64_t i) { return some[i]; }, faces, uvs,
-                     direction, limit, work);
+  std::vector<SingularStep> found = singular_among(
+      size_of(some), kGrain, [&](std::int64_t i) { return some[i]; }, faces, uvs, direction, limit,
+      work);
   sort_interruptibly(
       found.begin(), found.end(),
       [](const SingularStep& one, const SingularStep& other) { return one.face < other.face; });
