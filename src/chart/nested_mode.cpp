@@ -432,7 +432,7 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
 }  // namespace
 
 double nested_hessian_bytes(const MeshCounts& n, int threads) {
-  const MeshCounts level = part_of(n, std::min(1.0 * kMostFactored, kCoarseEnough * n.faces));
+  const MeshCounts level = part_of(n, std::min<double>(kMostFactored, kCoarseEnough * n.faces));
   return nested_bytes(n, threads) + system_bytes(level, 2, Precision::kSingle, threads).kept;
 }
 
