@@ -60,7 +60,8 @@ constexpr double kFalling = 0.9;  // times as many flips are left, or less
 /// carried map that is better than all of them.
 constexpr double kRising = 1.25;
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
-/// hard for the V-cycle. Where a factor is cheap, and on any level.
+/// hard for the V-cycle. Where a factor is cheap, and on any level. For patches no more than 2%, up
+/// to which a repair has regions before them.
 struct Bearable {
   double flips, patches;
 };
