@@ -91,6 +91,8 @@ class NewtonStepper {
   template <class Model>
   void assemble_model(const Model& model, const std::vector<Vec2>& uvs);
   bool factorize();
+  void go_further(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction, double longest,
+                  NewtonStep& made, std::vector<Vec2>& reached);
 
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
@@ -240,6 +242,26 @@ void NewtonStepper<Density>::add_loose(const std::vector<Vec2>& uvs) {
   }
 }
 
+/// Doubles the step that leads from `uvs` to `reached`, where that lowers the energy, and on as
+/// long as it falls fast.
+template <class Density>
+void NewtonStepper<Density>::go_further(const std::vector<Vec2>& uvs,
+                                        const std::vector<Vec2>& direction, double longest,
+                                        NewtonStep& made, std::vector<Vec2>& reached) {
+  std::vector<Vec2> trial(uvs.size());
+  for (double falls = 0; falls < newton::kFallsFast && 2 * made.length <= longest;) {
+    const double length = 2 * made.length;
+    for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
+    const double energy = mean_energy(trial);
+    if (!(energy < made.energy)) return;
+    falls = energy / made.energy;
+    made.gain = last_gain_ = made.gain + (made.energy - energy);
+    made.energy = energy;
+    made.length = length;
+    reached.swap(trial);
+  }
+}
+
 template <class Density>
 template <class Model>
 NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec2>& uvs,
@@ -263,11 +285,11 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   for (Index v = 0; v < size_of(uvs); ++v) {
     if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
   }
-  double length = 1;
+  double longest = std::numeric_limits<double>::infinity();
   if (Density::kBarrier) {
-    length = std::min(length,
-                      newton::kSingularShare * first_singular_step(faces_, uvs, direction, work_));
+    longest = newton::kSingularShare * first_singular_step(faces_, uvs, direction, work_);
   }
+  double length = std::min(1.0, longest);
   const auto pressure = [&](const std::vector<Vec2>& map, const std::vector<Contact>& contacts) {
     return contact_ ? strength() * contact_energy(contacts, map) : 0.0;
   };
@@ -287,11 +309,15 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
     const double after = trial_energy + pressure(trial, touching);
     if (after < before && after <= before - newton::kArmijo * length * result.predicted &&
         (!contact_ || contact_->is_simple(trial))) {
-      uvs.swap(trial);
-      neighbours_ = std::move(neighbours);
       result.length = length;
       result.energy = trial_energy;
       result.gain = last_gain_ = before - after;
+      const bool whole = !contact_ && length == 1;
+      if (whole && result.gain > newton::kUnderrated * result.predicted) {
+        go_further(uvs, direction, longest, result, trial);
+      }
+      uvs.swap(trial);
+      neighbours_ = std::move(neighbours);
       break;
     }
   }
