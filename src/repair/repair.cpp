@@ -32,6 +32,8 @@ constexpr double kLeastAreaShare = 1e-3;
 /// unless they are so many of all that regions would be the mesh.
 constexpr std::size_t kManyFlips = 30;
 constexpr double kMostFlips = 0.02;
+/// Of the regions around what the first ones, of kRegionRings, left.
+constexpr int kWiderRings = 8;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
 constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
 
@@ -96,8 +98,11 @@ class Repair {
     PatchWork patches(mesh_, uvs_);
     const auto count = static_cast<double>(bad.size());
     if (bad.size() > kManyFlips && count <= kMostFlips * mesh_.face_count()) {
-      untangle_regions(bad, patches);
-      look_again(bad);
+      for (const int rings : {kRegionRings, kWiderRings}) {
+        untangle_regions(bad, rings, patches);
+        look_again(bad);
+        if (bad.empty()) return;
+      }
       if (bad.size() > options_.most_after_regions) return;
     }
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
@@ -115,8 +120,8 @@ class Repair {
   }
 
   /// Of many faces most patches have others on their edges, which hold them.
-  void untangle_regions(const std::vector<Index>& bad, PatchWork& patches) {
-    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, {kRegionRings}, work_);
+  void untangle_regions(const std::vector<Index>& bad, int rings, PatchWork& patches) {
+    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, {rings}, work_);
     const Work alone = work_.aside();
     const auto unfold = [&](Patch& region) {
       return untangle(region.faces, region.rest, region.fixed, region.uvs, alone);

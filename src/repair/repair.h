@@ -42,7 +42,8 @@ struct RepairResult {
 ///    (an ear that became collinear cannot be mended otherwise); a patch is taken only if all its
 ///    faces are then positive and the boundary has no more crossings than before. Where it would
 ///    have more, again with the boundary held, and from a straight one. Of over 30 faces, but no
-///    more than 2% of all, the regions within 4 rings come first, each untangled at once.
+///    more than 2% of all, the regions within 4 rings come first, each untangled at once, and
+///    those within 8 of what is left.
 /// 3. Global fix: see global_fix.h; taken if it leaves fewer faces that are not positive, or no
 ///    crossing where a simple boundary was asked for. What rounding folded in it goes through 1 and
 ///    2 again.
