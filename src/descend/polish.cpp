@@ -19,7 +19,7 @@ namespace {
 
 using Field = std::vector<Vec2>;  // one entry per vertex
 
-constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kGrain = 2048;
 constexpr double kSingularShare = 0.8;  // of the way to the first singular face
 constexpr int kPatience = 3;            // steps with contact that gain next to nothing
 constexpr int kHoldRounds = 16;         // after which a few faces hold back the whole map

@@ -12,7 +12,7 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kGrain = 1024;
 constexpr std::int64_t kBlock = 64;  // faces whose stiffness is rounded at a time
 /// Parts of the fine vertices whose shares of a coarse field are summed apart, then together.
 constexpr std::int64_t kParts = 8;

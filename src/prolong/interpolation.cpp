@@ -11,7 +11,7 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kGrain = 1024;
 /// Coarse faces around a vertex that are looked at for the closest point, and through which a walk
 /// is begun: at a hub the vertex itself is near enough.
 constexpr int kMostFaces = 40;

@@ -46,7 +46,7 @@ Value interpolated(const Footpoint& at, const std::vector<Value>& values) {
 template <class Value>
 std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Footpoint>& points,
                            const Work& work) {
-  constexpr std::int64_t kGrain = 4096;
+  constexpr std::int64_t kGrain = 1024;
   std::vector<Value> fine(points.size());
   parallel_for(work, size_of(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) fine[v] = interpolated(points[v], values);

@@ -126,7 +126,7 @@ class NativeSolver final : public SpdSolver {
   }
 
  private:
-  static constexpr std::int64_t kGrain = 16384;
+  static constexpr std::int64_t kGrain = 2048;
 
   static double unit_of(double largest) {
     if (!(largest > 0) || !std::isfinite(largest)) return 1;
