@@ -20,7 +20,7 @@ class FaceChunks {
  public:
   /// Of a chunk: small meshes are parted, too, but not into less than is worth a thread.
   static std::int64_t grain_of(std::int64_t faces) {
-    constexpr std::int64_t kLeast = 512, kMost = 8192, kChunks = 16;
+    constexpr std::int64_t kLeast = 256, kMost = 8192, kChunks = 16;
     return std::clamp((faces + kChunks - 1) / kChunks, kLeast, kMost);
   }
 
