@@ -28,6 +28,7 @@
 #include "chart/polish_schedule.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -191,7 +192,9 @@ double relax(const Setting& setting, std::vector<SingularStep> faces, State& sta
                                                state.uvs, faces_of(faces), kRings, inner);
   state.cleaned_patches += relaxed.changed;
   const double gain = relaxed.gain / setting.area;
-  if (gain <= kMostlyGained * state.energy) return state.energy - gain;
+  if (std::isfinite(state.energy) && gain <= kMostlyGained * state.energy) {
+    return state.energy - gain;
+  }
   return mean_energy(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, inner);
 }
 
@@ -377,7 +380,12 @@ ChartMap polish_map(const FineProblem& fine, const BoundaryContact* contact, Pol
                           inner, surface_area(*fine.mesh, inner), inverse};
     State state{.bounds = bounds_of(length, fine.mesh->face_count()), .uvs = std::move(start)};
     if (state.bounds.rough) relax_worst(setting, state);
-    take_steps(setting, state.bounds.in_haste ? state.bounds.most_steps / 2 : 1, false, state);
+    const int first_steps = state.bounds.in_haste ? state.bounds.most_steps / 2 : 1;
+    take_steps(setting, first_steps, false, state);
+    // A face that is positive by exact predicates may be singular in floats.
+    if (!std::isfinite(state.energy) && relax_worst(setting, state)) {
+      take_steps(setting, first_steps, false, state);
+    }
     take_rounds(setting, state);
     end_with_newton(setting, state);
     if (!state.clean) clean(setting, {}, state);

@@ -16,6 +16,7 @@
 #include "mesh/surface.h"
 #include "repair/hub_turns.h"
 #include "repair/patch_work.h"
+#include "repair/untangle.h"
 
 namespace beltrami {
 namespace {
@@ -29,7 +30,7 @@ constexpr Index kMostFacesAtVertex = 1000;
 constexpr std::int64_t kGrain = 1024;
 
 /// Vertices that move in a region to be relaxed: that many, or a share of all.
-constexpr Index kMostTogether = 1000, kTogetherOf = 500;
+constexpr Index kMostTogether = 2000, kTogetherOf = 125;
 
 /// Calls visit(u) for the neighbours of a vertex, on the boundary for some of them twice.
 template <class Visit>
@@ -213,8 +214,15 @@ RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
   const Work alone = work.aside();
   std::vector<double> gains(regions.size(), 0);
   const auto minimise = [&](Patch& region) {
-    const NewtonResult done =
-        minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+    const auto descend = [&] {
+      return minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+    };
+    NewtonResult done = descend();
+    // Faces that are positive by exact predicates may have no positive determinant in floats.
+    if (!std::isfinite(done.energies.front())) {
+      if (!untangle(region.faces, region.rest, region.fixed, region.uvs, alone)) return false;
+      done = descend();
+    }
     double area = 0;
     for (const RestTriangle& r : region.rest) area += r.area();
     const double gain = area * (done.energies.front() - done.energies.back());

@@ -49,8 +49,9 @@ struct RelaxedRegions {
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. Large regions are parted, so that none
 /// keeps one thread long: neighbours change anyway. A region that moves boundary
-/// vertices is taken back if it adds boundary crossings. Ends where the time is up. Precondition:
-/// the faces of the mesh are positive; they stay so.
+/// vertices is taken back if it adds boundary crossings. Faces that are singular in floats are
+/// untangled first, and what that gains is not counted. Ends where the time is up. Precondition:
+/// the faces of the mesh are positive by exact predicates; they stay so.
 RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
                              const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                              const std::vector<Index>& faces, int rings, const Work& work);
