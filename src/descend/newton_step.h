@@ -92,7 +92,7 @@ class NewtonStepper {
   void assemble_model(const Model& model, const std::vector<Vec2>& uvs);
   bool factorize();
   void go_further(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction, double longest,
-                  NewtonStep& made, std::vector<Vec2>& reached);
+                  NewtonStep& made, std::vector<Vec2>& reached, Neighbours& neighbours);
 
   const std::vector<Triangle>& faces_;
   const std::vector<RestTriangle>& rest_;
@@ -242,18 +242,24 @@ void NewtonStepper<Density>::add_loose(const std::vector<Vec2>& uvs) {
   }
 }
 
-/// Doubles the step that leads from `uvs` to `reached`, where that lowers the energy, and on as
-/// long as it falls fast.
+/// Doubles the step that leads from `uvs` to `reached`, where that lowers the energy and brings
+/// nothing into contact, and on as long as the energy falls fast.
 template <class Density>
 void NewtonStepper<Density>::go_further(const std::vector<Vec2>& uvs,
                                         const std::vector<Vec2>& direction, double longest,
-                                        NewtonStep& made, std::vector<Vec2>& reached) {
+                                        NewtonStep& made, std::vector<Vec2>& reached,
+                                        Neighbours& neighbours) {
   std::vector<Vec2> trial(uvs.size());
   for (double falls = 0; falls < newton::kFallsFast && 2 * made.length <= longest;) {
     const double length = 2 * made.length;
     for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
     const double energy = mean_energy(trial);
     if (!(energy < made.energy)) return;
+    if (contact_) {
+      Neighbours near = contact_->neighbours(trial);
+      if (!contact_->find(trial, near).empty() || !contact_->is_simple(trial)) return;
+      neighbours = std::move(near);
+    }
     falls = energy / made.energy;
     made.gain = last_gain_ = made.gain + (made.energy - energy);
     made.energy = energy;
@@ -312,9 +318,9 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
       result.length = length;
       result.energy = trial_energy;
       result.gain = last_gain_ = before - after;
-      const bool whole = !contact_ && length == 1;
-      if (whole && result.gain > newton::kUnderrated * result.predicted) {
-        go_further(uvs, direction, longest, result, trial);
+      const bool apart = before == energy && touching.empty();
+      if (length == 1 && apart && result.gain > newton::kUnderrated * result.predicted) {
+        go_further(uvs, direction, longest, result, trial, neighbours);
       }
       uvs.swap(trial);
       neighbours_ = std::move(neighbours);

@@ -388,17 +388,17 @@ TEST(MinimiseEnergy, EndsWhereTheEnergyIsStationary) {
   }
 }
 
-// A tiny map has E ~ s^-2, where Newton multiplies s by 4/3: E falls by (3/4)^2 a step.
-TEST(MinimiseEnergy, ContractsTheEnergyOfATinyMapByNineSixteenths) {
+// A tiny map has E ~ s^-2, where Newton's step multiplies s by 4/3, so that E falls by (3/4)^2: a
+// step goes on as long as that pays, and E falls by (3/5)^2 at least.
+TEST(MinimiseEnergy, LengthensStepsWhereTheModelPromisesTooLittle) {
   const DiskMesh mesh = disks::disk(meshes::grid(6, 6));
   NewtonOptions options;
   options.proxy_steps = 0;
   const Minimum minimum = minimise(mesh, scaled(disks::flat_uvs(mesh), 0.01), options);
   const auto& energies = minimum.result.energies;
-  ASSERT_GT(energies.size(), 10u);
   EXPECT_NEAR(energies.front(), 1e4, 1);
   for (std::size_t i = 0; energies[i] > 100; ++i) {
-    EXPECT_NEAR(energies[i + 1] / energies[i], 0.5625, 0.01) << i;
+    ASSERT_LT(energies[i + 1] / energies[i], 0.37) << i;
   }
   EXPECT_NEAR(energies.back(), 2, 1e-3);
   EXPECT_TRUE(minimum.result.converged);
