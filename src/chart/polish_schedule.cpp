@@ -275,7 +275,8 @@ void fit_factor(const Setting& setting, const State& state) {
 bool is_stationary(const Setting& setting, const State& state) {
   const double energy = setting.comparable(state.energy);
   const double predicted = state.last.predicted;  // below 0 where it would lead uphill
-  return predicted >= 0 && 0.5 * predicted <= state.bounds.stationary * energy;
+  return std::isfinite(energy) && predicted >= 0 &&
+         0.5 * predicted <= state.bounds.stationary * energy;
 }
 
 /// The same of what the last steps gained: a few faces promise more than that.
