@@ -11,6 +11,7 @@
 #include "energy/energy.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 #include "support/disks.h"
 #include "support/energies.h"
 #include "support/meshes.h"
