@@ -18,7 +18,7 @@ inline constexpr int kMaxHalvings = 40;        ///< of a step, for that decrease
 /// half, is doubled: the model is a majorizer, and near a singular face s a step of 1 / s^2 leads
 /// to 4 s / 3 only. And again while the energy falls to less than a share of what it was.
 inline constexpr double kUnderrated = 0.58, kFallsFast = 0.7;
-inline constexpr double kNoGain = 1e-14;       ///< relative predicted decrease within the roundoff
+inline constexpr double kNoGain = 1e-14;  ///< relative predicted decrease within the roundoff
 /// Of the diagonal: what nearly costs nothing gets it, growing a hundredfold up to the largest one
 /// while the system is not definite.
 inline constexpr double kShift = 1e-13, kLargestShift = 1e-3;
