@@ -15,8 +15,9 @@ inline constexpr double kSingularShare = 0.8;  ///< of the way to the first sing
 inline constexpr double kArmijo = 1e-4;        ///< sufficient share of the predicted decrease
 inline constexpr int kMaxHalvings = 40;        ///< of a step, for that decrease
 /// A full step that gains more than this share of the predicted decrease, of which the model has a
-/// half, is doubled: the model is a majorizer, and near a singular face s a step of 1 / s^2 leads
-/// to 4 s / 3 only. And again while the energy falls to less than a share of what it was.
+/// half, is doubled: the model is a majorizer, and a face that is nearly singular, of energy s^-2,
+/// goes from s to 4 s / 3 only. And again while each time the energy falls below a share of what it
+/// was.
 inline constexpr double kUnderrated = 0.58, kFallsFast = 0.7;
 inline constexpr double kNoGain = 1e-14;  ///< relative predicted decrease within the roundoff
 /// Of the diagonal: what nearly costs nothing gets it, growing a hundredfold up to the largest one
@@ -45,7 +46,7 @@ inline constexpr double kLittleLeft = 0.05;  ///< predicted decrease, relative t
 
 /// What a step did.
 struct NewtonStep {
-  double length = 0;     ///< of the Newton step, as taken; 0: no representable decrease
+  double length = 0;     ///< in Newton steps, over 1 if doubled; 0: no representable decrease
   double energy = 0;     ///< mean energy after it
   double gain = 0;       ///< what it took from the objective: the mean energy and all barriers
   double predicted = 0;  ///< -gradient . direction: twice the decrease of the quadratic model;
