@@ -1,5 +1,6 @@
 // The method beltrami in levels: no factorization of the finest, but where all else fails.
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -111,29 +112,56 @@ bool is_injective(const DiskMesh& mesh, const std::vector<Vec2>& uvs, bool simpl
          (!simple || find_crossings(mesh.boundary, uvs).empty());
 }
 
-/// A level as its solve sees it.
+/// A level as its solve sees it. Fields of the finest are made when they are needed, for memory.
 struct Level {
   FineProblem problem;
   const CoarseDisk& coarse;
-  std::vector<Vec2> carried;  ///< the map of the coarse level at the footpoints
-  SingleField residual;       ///< what pulls it to the target, whose stiffness the cycle has
+  std::vector<Vec2> from;  ///< the map of the coarse level
+  SingleField
+      residual;  ///< what pulls the carried one to the target, whose stiffness the cycle has
   BoundaryContact contact;
 };
+
+/// The map of the coarse level at the footpoints.
+std::vector<Vec2> carried_map(const Level& level, const std::vector<Footpoint>& points,
+                              const Work& work) {
+  return carried(level.from, level.coarse.mesh.faces, points, work);
+}
 
 std::vector<VertexDerivative> carried_derivatives(const DiskMesh& coarse,
                                                   const std::vector<Vec2>& uvs,
                                                   const std::vector<Footpoint>& points,
                                                   const Work& work) {
   const auto rest = rest_triangles(coarse.positions, coarse.faces, work);
-  return carried(vertex_derivatives(coarse, rest, uvs, work), points, work);
+  return carried(vertex_derivatives(coarse, rest, uvs, work), coarse.faces, points, work);
+}
+
+/// What the carried map is to become.
+TargetEquations target_of(const Level& level, const std::vector<Footpoint>& points, Energy energy,
+                          const Work& work) {
+  std::vector<Vec2> start = carried_map(level, points, work);
+  std::vector<VertexDerivative> derivatives =
+      carried_derivatives(level.coarse.mesh, level.from, points, work);
+  TargetEquations equations =
+      target_equations(energy, *level.problem.mesh, level.problem.rest, derivatives, start, work);
+  parallel_free(work, derivatives);
+  parallel_free(work, start);
+  return equations;
+}
+
+void take_aim(TargetEquations equations, const Work& work, VCycle& cycle, Level& level) {
+  level.residual = std::move(equations.residual);
+  cycle.set(equations.weights, {});
+  parallel_free(work, equations.weights);
 }
 
 Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartOptions& options,
                     const Work& work, VCycle& cycle, Climb& climb) {
+  cycle.settle();
   Level level{
       .problem = {.mesh = &mesh},
       .coarse = coarse,
-      .carried = {},
+      .from = climb.map.uvs,
       .residual = {},
       .contact = {mesh.boundary, boundary_lengths(mesh), coarse_boundary_lengths(mesh, coarse)}};
   run_stage("prolong", work, climb.map.statistics.stages, [&](StageStatistics&, const Work& inner) {
@@ -142,16 +170,9 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
     std::vector<Footpoint> points =
         footpoints(coarse.mesh, coarse.fine_vertex, coarse.nearby, mesh, inner);
     inner.report(0.5);
-    level.carried = carried(climb.map.uvs, points, inner);
-    std::vector<VertexDerivative> derivatives =
-        carried_derivatives(coarse.mesh, climb.map.uvs, points, inner);
-    TargetEquations equations = target_equations(options.energy, mesh, level.problem.rest,
-                                                 derivatives, level.carried, inner);
-    parallel_free(inner, derivatives);
-    level.residual = std::move(equations.residual);
+    TargetEquations equations = target_of(level, points, options.energy, inner);
     cycle.add(mesh, std::move(points));
-    cycle.set(equations.weights, {});
-    parallel_free(inner, equations.weights);
+    take_aim(std::move(equations), inner, cycle, level);
   });
   return level;
 }
@@ -171,7 +192,7 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     if (!anchored.empty()) cycle.anchor(anchored);
-    parallel_copy(inner, level.carried, map.uvs);
+    map.uvs = carried_map(level, cycle.points(), inner);
     SingleField residual;
     parallel_copy(inner, level.residual, residual);
     const auto flips_of = [&](const std::vector<Vec2>& uvs) {
@@ -194,15 +215,16 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
         },
         residual, map.uvs);
     if (!anchored.empty()) {
-      put_in_place(anchored, level.carried, map.uvs);
+      put_in_place(anchored, carried_map(level, cycle.points(), inner), map.uvs);
       solved.flips = flips_of(map.uvs);
     }
     if (at_most(kFairlyFew)) return;
-    solved.of_carried = flips_of(level.carried);
+    std::vector<Vec2> start = carried_map(level, cycle.points(), inner);
+    solved.of_carried = flips_of(start);
     if (*solved.of_carried >= solved.flips) return;
     solved.flips = *solved.of_carried;
     solved.by_steps = false;
-    map.uvs = level.carried;
+    map.uvs = std::move(start);
   });
   return solved;
 }
@@ -223,26 +245,28 @@ bool mend_level(const Level& level, const RepairOptions& how, const ChartOptions
   return true;
 }
 
-/// Polishes where it is worth it; with contact where the boundary would cross itself.
-void polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
-                  const ChartOptions& options, const Work& work, Climb& climb) {
-  VCycle& cycle = *climb.cycle;
-  const bool may_return = simple && !pressed;
-  std::vector<Vec2> start;
-  if (may_return) parallel_copy(work, climb.map.uvs, start);
-  ChartMap polished = polish_map(level.problem, pressed ? &level.contact : nullptr, length, options,
-                                 work, cycle, std::move(climb.map.uvs));
-  if (may_return && !level.contact.is_simple(polished.uvs)) {
-    const StageStatistics lost = given_up(polished.statistics.stages);
-    polished = polish_map(level.problem, &level.contact, PolishLength::kWhole, options, work, cycle,
-                          std::move(start));
+/// Polishes where it is worth it; with contact where the boundary is `pressed`, or would cross
+/// itself: then from a new start, which `begin_again` makes. Returns whether there was one.
+bool polish_level(const Level& level, bool simple, PolishLength length, bool pressed,
+                  const ChartOptions& options, const Work& work,
+                  const std::function<bool()>& begin_again, Climb& climb) {
+  const auto polished_from = [&](std::vector<Vec2> start, const BoundaryContact* contact) {
+    return polish_map(level.problem, contact, contact ? PolishLength::kWhole : length, options,
+                      work, *climb.cycle, std::move(start));
+  };
+  ChartMap polished = polished_from(std::move(climb.map.uvs), pressed ? &level.contact : nullptr);
+  if (simple && !pressed && !level.contact.is_simple(polished.uvs)) {
+    climb.map.statistics.stages.push_back(given_up(polished.statistics.stages));
+    parallel_free(work, polished.uvs);
+    if (!begin_again()) return false;
+    polished = polished_from(std::move(climb.map.uvs), &level.contact);
     polished.in_contact = true;
-    climb.map.statistics.stages.push_back(lost);
   }
   climb.map.in_contact = climb.map.in_contact || polished.in_contact;
   climb.map.uvs = std::move(polished.uvs);
   climb.map.converged = polished.converged;
   climb.map.statistics.append(polished.statistics);
+  return true;
 }
 
 /// From the map of a coarse level to that of the next finer one, by the V-cycle. Returns whether
@@ -254,7 +278,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   Level level = prepare_level(mesh, coarse, options, work.part(0, 0.3), cycle, climb);
   const bool pressed = climb.map.in_contact && simple;
   std::vector<bool> anchored;
-  if (pressed) anchored = vertices_in_contact(coarse, climb.map.uvs, mesh.vertex_count());
+  if (pressed) anchored = vertices_in_contact(coarse, level.from, mesh.vertex_count());
   RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
                     .global_fix = false};
   bool positive = false, rough = false;
@@ -274,14 +298,16 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
     const bool as_good = has_other && *found.of_carried <= kAsGood * found.flips;
     positive = mend_flips(found.flips, !as_good);
     if (positive || !has_other) return positive;
-    parallel_copy(work, level.carried, climb.map.uvs);
+    climb.map.uvs = carried_map(level, cycle.points(), work);
     positive = mend_flips(*found.of_carried, true);
     return positive;
   };
-  const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
-  if (!solved || !positive) return false;
-  parallel_free(work, level.residual);
-  parallel_free(work, level.carried);
+  const auto reach_start = [&] {
+    const bool solved = simple ? solve_until_simple(mesh, climb.map.uvs, anchored, solve) : solve();
+    parallel_free(work, level.residual);
+    return solved && positive;
+  };
+  if (!reach_start()) return false;
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
@@ -289,7 +315,14 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
                               : !is_finest          ? PolishLength::kMiddling
                               : climb.hard || rough ? PolishLength::kLong
                                                     : PolishLength::kShort;
-  polish_level(level, simple, length, touches, options, work.part(0.6, 1), climb);
+  const auto begin_again = [&] {
+    take_aim(target_of(level, cycle.points(), options.energy, work), work, cycle, level);
+    return reach_start();
+  };
+  if (!polish_level(level, simple, length, touches, options, work.part(0.6, 1), begin_again,
+                    climb)) {
+    return false;
+  }
   const bool converged = climb.map.converged;
   const double below = climb.energy;
   if (!converged || !is_finest) {

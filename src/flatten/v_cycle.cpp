@@ -27,8 +27,9 @@ double dot(const SingleField& a, const SingleField& b, const Work& work) {
 
 /// Sets coarse = P^T fine, where P interpolates.
 template <class Value>
-void restrict_to(const std::vector<Footpoint>& points, const std::vector<Value>& fine,
-                 const Value& zero, std::vector<Value>& coarse, const Work& work) {
+void restrict_to(const std::vector<Footpoint>& points, const std::vector<Triangle>& faces,
+                 const std::vector<Value>& fine, const Value& zero, std::vector<Value>& coarse,
+                 const Work& work) {
   const auto count = static_cast<std::int64_t>(points.size());
   const std::int64_t grain = (count + kParts - 1) / kParts;
   std::vector<std::vector<Value>> parts(kParts);
@@ -37,9 +38,10 @@ void restrict_to(const std::vector<Footpoint>& points, const std::vector<Value>&
     part.assign(coarse.size(), zero);
     for (std::int64_t v = begin; v < end; ++v) {
       const Footpoint& at = points[v];
-      part[at.corners[0]] += at.first_share() * fine[v];
-      part[at.corners[1]] += at.shares[0] * fine[v];
-      part[at.corners[2]] += at.shares[1] * fine[v];
+      const Triangle corners = at.corners(faces);
+      part[corners[0]] += at.first_share() * fine[v];
+      part[corners[1]] += at.shares[0] * fine[v];
+      part[corners[2]] += at.shares[1] * fine[v];
     }
   });
   parallel_for(work, size_of(coarse), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -56,15 +58,16 @@ void restrict_to(const std::vector<Footpoint>& points, const std::vector<Value>&
 }  // namespace
 
 struct VCycle::Level {
-  Level(const DiskMesh& disk, std::vector<Footpoint> on_coarser, Index coarser_vertices,
+  Level(const DiskMesh& disk, std::vector<Footpoint> on_coarser, const DiskMesh& coarser_disk,
         const Work& work)
       : mesh(disk),
+        coarser(coarser_disk),
         points(std::move(on_coarser)),
         smoother(disk, work),
-        coarse_rhs(coarser_vertices),
-        coarse_x(coarser_vertices) {}
+        coarse_rhs(coarser.vertex_count()),
+        coarse_x(coarser.vertex_count()) {}
 
-  const DiskMesh& mesh;
+  const DiskMesh &mesh, &coarser;
   std::vector<Footpoint> points;
   Smoother smoother;
   SingleField spare;
@@ -100,10 +103,16 @@ bool VCycle::take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
   return true;
 }
 
-void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
+void VCycle::settle() {
   if (hessian_) hessian_->settle();
-  levels_.push_back(
-      std::make_unique<Level>(mesh, std::move(points), finest().vertex_count(), work_));
+}
+
+void VCycle::add(const DiskMesh& mesh, std::vector<Footpoint> points) {
+  levels_.push_back(std::make_unique<Level>(mesh, std::move(points), finest(), work_));
+}
+
+const std::vector<Footpoint>& VCycle::points() const {
+  return levels_.back()->points;
 }
 
 void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<double>& springs) {
@@ -129,7 +138,7 @@ void VCycle::anchor(const std::vector<bool>& vertices) {
 /// The springs of a level, and what they are on those below it.
 void VCycle::set_springs_below(std::size_t level, const std::vector<float>& springs) {
   std::vector<float> below(levels_[level]->coarse_rhs.size());
-  restrict_to(levels_[level]->points, springs, 0.0F, below, work_);
+  restrict_to(levels_[level]->points, levels_[level]->coarser.faces, springs, 0.0F, below, work_);
   if (level > 0) {
     levels_[level - 1]->smoother.set_springs(below);
     set_springs_below(level - 1, below);
@@ -174,10 +183,12 @@ void VCycle::apply(std::size_t level, const SingleField& rhs, bool by_hessian, S
   Level& l = *levels_[level - 1];
   l.smoother.sweep_forward(rhs, x);
   l.smoother.residual_after_forward(x, l.spare);
-  restrict_to(l.points, l.spare, Eigen::Vector2f(0, 0), l.coarse_rhs, work_);
+  restrict_to(l.points, l.coarser.faces, l.spare, Eigen::Vector2f(0, 0), l.coarse_rhs, work_);
   apply(level - 1, l.coarse_rhs, by_hessian, l.coarse_x);
   parallel_for(work_, size_of(x), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) x[v] += interpolated(l.points[v], l.coarse_x);
+    for (std::int64_t v = begin; v < end; ++v) {
+      x[v] += interpolated(l.points[v], l.coarser.faces, l.coarse_x);
+    }
   });
   l.smoother.sweep_backward(rhs, x, l.spare);
 }
@@ -204,7 +215,7 @@ void VCycle::improve(int most, const std::function<bool(int step)>& enough, Sing
       for (std::int64_t v = begin; v < end; ++v) body(v);
     });
   };
-  SingleField z, direction, product;
+  SingleField z, direction;
   double before = 0;
   for (int step = 0; step < most; ++step) {
     apply(levels_.size(), residual, false, z);
@@ -216,6 +227,7 @@ void VCycle::improve(int most, const std::function<bool(int step)>& enough, Sing
       add_up([&](std::int64_t v) { direction[v] = z[v] + beta * direction[v]; });
     }
     before = now;
+    SingleField& product = z;  // in its place
     finest.smoother.multiply(direction, product);
     const double curvature = dot(direction, product, work_);
     if (!(now > 0) || !(curvature > 0)) return;

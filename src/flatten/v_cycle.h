@@ -41,8 +41,14 @@ class VCycle final : public StiffnessInverse {
   /// Whether that is of a level finer than the coarsest.
   bool has_hessian_of_finer() const { return hessian_ && hessian_level_ > 0; }
 
+  /// Frees what only the next Hessian of this level would be made faster with.
+  void settle();
+
   /// Adds the next finer level, without weights yet; `points`: of its vertices on the one before.
   void add(const DiskMesh& mesh, std::vector<Footpoint> points);
+
+  /// Those of the finest level.
+  const std::vector<Footpoint>& points() const;
 
   /// Gives the finest level its stiffness, and all of them springs, per vertex of the finest or
   /// none.

@@ -55,10 +55,11 @@ class SpdSolver {
   /// single precision turns out to be useless and there is none in double precision.
   virtual DenseMatrix solve(const DenseMatrix& rhs) const = 0;
   /// An approximate inverse times `rhs`, for preconditioning: linear, symmetric, definite, the same
-  /// until the next factorization. Good to single precision at least, and never slower than
-  /// solve().
+  /// until the next factorization or keep_preconditioner(). Good to single precision at least, and
+  /// never slower than solve().
   virtual DenseMatrix precondition(const DenseMatrix& rhs) const { return solve(rhs); }
-  /// Frees what precondition() has no use for, which is all that is called until the next analysis.
+  /// Frees what precondition() has no use for, which is all that is called until the next analysis;
+  /// that may get a little less exact.
   virtual void keep_preconditioner() {}
   /// The given rows of the solution alone, in the order of `rows`: rows(A^-1 rhs). A back end may
   /// skip the parts of the factor that neither the right-hand sides nor the rows reach;

@@ -31,6 +31,9 @@ class VertexSums {
         chunks_(vertex_count, faces, work),
         aside_(chunks_, vertex_count) {}
 
+  /// Faces of a chunk, whose values are added up on their own.
+  std::int64_t grain() const { return chunks_.grain(); }
+
   /// Sets sums[v] to the sum over the corners at v of what `give(face, terms)` writes into its
   /// terms. Returns the sum over the faces of what `give` returns.
   template <class Give>

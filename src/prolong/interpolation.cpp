@@ -16,6 +16,20 @@ constexpr std::int64_t kGrain = 1024;
 /// is begun: at a hub the vertex itself is near enough.
 constexpr int kMostFaces = 40;
 
+/// A coarse vertex itself.
+Footpoint at_vertex(const DiskMesh& coarse, Index v) {
+  return {coarse.outgoing[v], {0, 0}};
+}
+
+/// The half-edge of the boundary that begins at a vertex.
+Index boundary_halfedge(const DiskMesh& mesh, Index from) {
+  Index found = kNone;
+  mesh.for_each_outgoing(from, [&](Index h) {
+    if (mesh.twin[h] == kNone) found = h;
+  });
+  return found;
+}
+
 /// The vertices of the boundary, along the coarse edges.
 void set_boundary(const DiskMesh& coarse, const std::vector<Index>& fine_vertex,
                   const DiskMesh& fine, std::vector<Footpoint>& points) {
@@ -33,11 +47,11 @@ void set_boundary(const DiskMesh& coarse, const std::vector<Index>& fine_vertex,
     double total = lengths[i];
     Index end = next(i);
     for (; coarse_of[loop[end]] == kNone; end = next(end)) total += lengths[end];
-    const Index to = coarse_of[loop[end]];
-    points[loop[i]] = {{from, from, from}, {0, 0}};
+    points[loop[i]] = at_vertex(coarse, from);
+    const Index edge = boundary_halfedge(coarse, from);
     double along = lengths[i];
     for (Index k = next(i); k != end; k = next(k)) {
-      points[loop[k]] = {{from, to, to}, {static_cast<float>(along / total), 0}};
+      points[loop[k]] = {edge, {static_cast<float>(along / total), 0}};
       along += lengths[k];
     }
     i = end;
@@ -62,8 +76,9 @@ SurfacePoint closest_around(const DiskMesh& coarse, Index home, const Vec3& poin
   return best;
 }
 
-Footpoint on_face(const Triangle& face, const SurfacePoint& at) {
-  return {face, {static_cast<float>(at.barycentric[1]), static_cast<float>(at.barycentric[2])}};
+Footpoint on_face(const SurfacePoint& at) {
+  return {3 * at.face,
+          {static_cast<float>(at.barycentric[1]), static_cast<float>(at.barycentric[2])}};
 }
 
 bool touches(const DiskMesh& mesh, Index face, Index v) {
@@ -98,13 +113,13 @@ std::vector<Footpoint> footpoints(const DiskMesh& coarse, const std::vector<Inde
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
       if (fine.on_boundary[v]) continue;
       const Index home = nearby[v];
-      points[v] = {{home, home, home}, {0, 0}};
+      points[v] = at_vertex(coarse, home);
       if (fine_vertex[home] == v) continue;
       const Vec3& point = fine.positions[v];
       const Index start = touches(coarse, last, home) ? last : coarse.outgoing[home] / 3;
       SurfacePoint hit = walk.find(point, normal_at(fine, v), start);
       if (hit.face == kNone) hit = closest_around(coarse, home, point);
-      if (hit.face != kNone) points[v] = on_face(coarse.faces[hit.face], hit);
+      if (hit.face != kNone) points[v] = on_face(hit);
       last = hit.face;
     }
   });

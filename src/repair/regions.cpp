@@ -45,7 +45,9 @@ void for_each_neighbour(const DiskMesh& mesh, Index vertex, const Visit& visit) 
 /// Where each vertex belongs: to a region by its number, to none yet, or to none for good.
 class Membership {
  public:
-  explicit Membership(const DiskMesh& mesh) : mesh_(mesh), of_(mesh.positions.size(), kOutside) {}
+  Membership(const DiskMesh& mesh, std::vector<Index>& of) : mesh_(mesh), of_(of) {
+    of_.assign(mesh.positions.size(), kOutside);
+  }
 
   bool is_outside(Index vertex) const { return of_[vertex] == kOutside; }
 
@@ -78,13 +80,11 @@ class Membership {
     return members;
   }
 
-  bool moves(Index vertex, Index region) const { return of_[vertex] == region; }
-
  private:
   static constexpr Index kOutside = -1, kWaiting = -2, kHeld = -3;
 
   const DiskMesh& mesh_;
-  std::vector<Index> of_;
+  std::vector<Index>& of_;
 };
 
 /// The vertices that are to move, each once.
@@ -122,19 +122,29 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
   return found;
 }
 
-/// The faces at these vertices, which are those of a region and increase.
-Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-               const std::vector<Vec2>& uvs, const std::vector<Index>& vertices,
-               const Membership& membership, Index region) {
+}  // namespace
+
+Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
+                 const Work& work)
+    : mesh_(mesh) {
+  Membership membership(mesh, of_);
+  for (const Index v : around(mesh, faces, size.rings, work, membership)) {
+    std::vector<Index> connected = membership.connected_to(v, count(), size.most_vertices);
+    if (!connected.empty()) vertices_.push_back(std::move(connected));
+  }
+}
+
+Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
+                     const std::vector<Vec2>& uvs) const {
+  const auto moves = [&](Index v) { return of_[v] == region; };
   Patch patch;
   std::vector<Index> rim;  // vertices of the faces that stay
   PollSometimes poll;
-  for (const Index v : vertices) {
+  for (const Index v : vertices_[region]) {
     poll();
-    patch.moves_boundary = patch.moves_boundary || mesh.on_boundary[v];
-    mesh.for_each_outgoing(v, [&](Index h) {
-      const Triangle& corners = mesh.faces[h / 3];
-      const auto moves = [&](Index u) { return membership.moves(u, region); };
+    patch.moves_boundary = patch.moves_boundary || mesh_.on_boundary[v];
+    mesh_.for_each_outgoing(v, [&](Index h) {
+      const Triangle& corners = mesh_.faces[h / 3];
       // Each face comes with the first of its corners that moves.
       if (std::any_of(corners.begin(), corners.end(), [&](Index u) { return u < v && moves(u); })) {
         return;
@@ -147,11 +157,11 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   }
   sort_interruptibly(patch.mesh_faces.begin(), patch.mesh_faces.end(), std::less<>());
   sort_unique(rim);
-  std::merge(vertices.begin(), vertices.end(), rim.begin(), rim.end(),
+  std::merge(vertices_[region].begin(), vertices_[region].end(), rim.begin(), rim.end(),
              std::back_inserter(patch.mesh_vertices));
   for (const Index v : patch.mesh_vertices) {
     patch.uvs.push_back(uvs[v]);
-    patch.fixed.push_back(!membership.moves(v, region));
+    patch.fixed.push_back(!moves(v));
   }
   const auto local = [&](Index v) {
     const auto& all = patch.mesh_vertices;
@@ -159,7 +169,7 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   };
   for (const Index f : patch.mesh_faces) {
     poll();
-    const Triangle& t = mesh.faces[f];
+    const Triangle& t = mesh_.faces[f];
     patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
     if (!rest.empty()) patch.rest.push_back(rest[f]);
   }
@@ -168,72 +178,58 @@ Patch patch_of(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   return patch;
 }
 
-}  // namespace
-
-std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                               const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               const RegionSize& size, const Work& work) {
-  Membership membership(mesh);
-  std::vector<std::vector<Index>> vertices;  // of each region
-  for (const Index v : around(mesh, faces, size.rings, work, membership)) {
-    std::vector<Index> connected =
-        membership.connected_to(v, size_of(vertices), size.most_vertices);
-    if (!connected.empty()) vertices.push_back(std::move(connected));
-  }
-  std::vector<Patch> regions(vertices.size());
-  parallel_for(work, size_of(regions), 1, [&](std::int64_t i, std::int64_t) {
-    regions[i] = patch_of(mesh, rest, uvs, vertices[i], membership, static_cast<Index>(i));
+std::vector<std::optional<Patch>> Regions::treat(
+    const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+    const std::function<bool(Patch& patch, Index region)>& treat, const Work& work) const {
+  std::vector<Index> order(vertices_.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return vertices_[a].size() > vertices_[b].size(); });
+  std::vector<std::optional<Patch>> treated(vertices_.size());
+  parallel_for(work, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
+    const Index region = order[i];
+    Patch own = patch(region, rest, uvs);
+    if (!treat(own, region)) return;
+    own.faces = {};
+    own.rest = {};
+    treated[region] = std::move(own);
   });
-  return regions;
-}
-
-std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
-                                        const std::function<bool(Patch&)>& treat,
-                                        const Work& work) {
-  std::vector<std::size_t> order(regions.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return regions[a].faces.size() > regions[b].faces.size();
-  });
-  std::vector<std::uint8_t> done(regions.size(), 0);
-  parallel_for(work, size_of(order), 1,
-               [&](std::int64_t i, std::int64_t) { done[order[i]] = treat(regions[order[i]]); });
-  return done;
+  return treated;
 }
 
 RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
                              const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                              const std::vector<Index>& faces, int rings, const Work& work) {
   const RegionSize size{rings, std::max(kMostTogether, mesh.vertex_count() / kTogetherOf)};
-  std::vector<Patch> regions = cut_regions(mesh, rest, uvs, faces, size, work);
+  const Regions regions(mesh, faces, size, work);
   NewtonOptions options;
   options.energy = energy;
   options.tolerance = kTolerance;
   options.max_iterations = kNewtonSteps;
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
   const Work alone = work.aside();
-  std::vector<double> gains(regions.size(), 0);
-  const auto minimise = [&](Patch& region) {
+  std::vector<double> gains(regions.count(), 0);
+  const auto minimise = [&](Patch& patch, Index region) {
     const auto descend = [&] {
-      return minimise_energy(region.faces, region.rest, region.fixed, region.uvs, options, alone);
+      return minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
     };
     NewtonResult done = descend();
     // Faces that are positive by exact predicates may have no positive determinant in floats.
     if (!std::isfinite(done.energies.front())) {
-      if (!untangle(region.faces, region.rest, region.fixed, region.uvs, alone)) return false;
+      if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone)) return false;
       done = descend();
     }
     double area = 0;
-    for (const RestTriangle& r : region.rest) area += r.area();
+    for (const RestTriangle& r : patch.rest) area += r.area();
     const double gain = area * (done.energies.front() - done.energies.back());
-    if (std::isfinite(gain)) gains[&region - regions.data()] = gain;
-    return non_positive_faces(region.faces, region.uvs, alone).empty();
+    if (std::isfinite(gain)) gains[region] = gain;
+    return non_positive_faces(patch.faces, patch.uvs, alone).empty();
   };
-  const std::vector<std::uint8_t> positive = treat_regions(regions, minimise, work);
+  std::vector<std::optional<Patch>> patches = regions.treat(rest, uvs, minimise, work);
   PatchWork taken(mesh, uvs);
   RelaxedRegions relaxed;
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (positive[i] == 0 || !taken.take(regions[i])) continue;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (!patches[i] || !taken.take(*patches[i])) continue;
     ++relaxed.changed;
     relaxed.gain += gains[i];
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/types.h"
@@ -28,17 +29,32 @@ struct RegionSize {
 };
 
 /// The vertices of the faces and those up to so many rings around move, or fewer rings where that
-/// would be more than a seventh of all vertices; what hangs together is one patch, so that none
-/// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay fixed. `rest` may be
-/// empty, and that of the patches then is. Takes time for the mesh.
-std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                               const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               const RegionSize& size, const Work& work);
+/// would be more than a seventh of all vertices; what hangs together is one region, so that none
+/// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay.
+class Regions {
+ public:
+  /// Takes time for the mesh. Keeps a reference to it.
+  Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
+          const Work& work);
 
-/// Calls treat(region) for each, in parallel and the largest first, so that it does not come last.
-/// Returns for each whether that said true.
-std::vector<std::uint8_t> treat_regions(std::vector<Patch>& regions,
-                                        const std::function<bool(Patch&)>& treat, const Work& work);
+  Index count() const { return size_of(vertices_); }
+
+  /// `rest` may be empty, and that of the patch then is.
+  Patch patch(Index region, const std::vector<RestTriangle>& rest,
+              const std::vector<Vec2>& uvs) const;
+
+  /// Calls treat(patch, region) for each, in parallel and the largest first, so that it does not
+  /// come last. Returns the patches for which that said true, without their faces and rest shapes:
+  /// those are there one at a time on each thread.
+  std::vector<std::optional<Patch>> treat(
+      const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
+      const std::function<bool(Patch& patch, Index region)>& treat, const Work& work) const;
+
+ private:
+  const DiskMesh& mesh_;
+  std::vector<std::vector<Index>> vertices_;  ///< that move, of each, increasing
+  std::vector<Index> of_;                     ///< per vertex: its region, or below 0
+};
 
 /// What relax_regions did.
 struct RelaxedRegions {

@@ -121,16 +121,15 @@ class Repair {
 
   /// Of many faces most patches have others on their edges, which hold them.
   void untangle_regions(const std::vector<Index>& bad, int rings, PatchWork& patches) {
-    std::vector<Patch> regions = cut_regions(mesh_, rest_, uvs_, bad, {rings}, work_);
     const Work alone = work_.aside();
-    const auto unfold = [&](Patch& region) {
-      return untangle(region.faces, region.rest, region.fixed, region.uvs, alone);
+    const auto unfold = [&](Patch& patch, Index) {
+      return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
     };
-    const std::vector<std::uint8_t> positive = treat_regions(regions, unfold, work_);
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      if (positive[i] == 0 || !patches.take(regions[i])) continue;
+    const Regions regions(mesh_, bad, {rings}, work_);
+    for (std::optional<Patch>& unfolded : regions.treat(rest_, uvs_, unfold, work_)) {
+      if (!unfolded || !patches.take(*unfolded)) continue;
       ++result_.patch_fixes;
-      const std::vector<Index>& faces = regions[i].mesh_faces;
+      const std::vector<Index>& faces = unfolded->mesh_faces;
       changed_.insert(changed_.end(), faces.begin(), faces.end());
     }
   }

@@ -54,7 +54,7 @@ TEST(Footpoints, AreConvexAndCoarseVerticesAreTheirOwn) {
     EXPECT_GE(at.first_share(), -1e-6);
   }
   for (Index c = 0; c < made.coarse.mesh.vertex_count(); ++c) {
-    EXPECT_EQ(made.points[made.coarse.fine_vertex[c]].corners[0], c);
+    EXPECT_EQ(made.points[made.coarse.fine_vertex[c]].corners(made.coarse.mesh.faces)[0], c);
     EXPECT_EQ(made.points[made.coarse.fine_vertex[c]].shares, (std::array<float, 2>{}));
   }
 }
@@ -64,7 +64,8 @@ TEST(Footpoints, OnAFlatDiskReproduceWhatIsLinear) {
   const LinearMap map = turned_map(0.7, 0.3);
   const std::vector<Vec2> coarse = mapped(made.coarse.mesh, map), fine = mapped(made.fine, map);
   for (Index v = 0; v < made.fine.vertex_count(); ++v) {
-    EXPECT_LE((interpolated(made.points[v], coarse) - fine[v]).norm(), 1e-5) << v;
+    EXPECT_LE((interpolated(made.points[v], made.coarse.mesh.faces, coarse) - fine[v]).norm(), 1e-5)
+        << v;
   }
 }
 
@@ -72,7 +73,7 @@ TEST(Footpoints, OfTheBoundaryLieOnTheCoarseBoundary) {
   const Levels made = levels(meshes::bumps(24, 24), 150);
   for (const Index v : made.fine.boundary) {
     for (int k = 0; k < 2; ++k) {
-      const Index corner = made.points[v].corners[k];
+      const Index corner = made.points[v].corners(made.coarse.mesh.faces)[k];
       EXPECT_TRUE(made.coarse.mesh.on_boundary[corner]) << v;
     }
     EXPECT_EQ(made.points[v].shares[1], 0);
@@ -95,7 +96,7 @@ TEST(Derivative, OfALinearMapOfThePlaneIsItselfOnEveryFineFace) {
   const std::vector<Vec2> uvs = mapped(made.coarse.mesh, map);
   const auto derivatives =
       carried(vertex_derivatives(made.coarse.mesh, disks::rest_of(made.coarse.mesh), uvs, Work(1)),
-              made.points, Work(1));
+              made.coarse.mesh.faces, made.points, Work(1));
   const std::vector<RestTriangle> rest = disks::rest_of(made.fine);
   const std::vector<Vec2> fine = mapped(made.fine, map);
   for (Index f = 0; f < made.fine.face_count(); ++f) {

@@ -55,13 +55,21 @@ std::vector<Vec2> mirrored_block(const DiskMesh& mesh, Index n, Index from, Inde
   return uvs;
 }
 
-TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
+std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                               const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
+                               const RegionSize& size) {
+  const Regions regions(mesh, faces, size, Work(1));
+  std::vector<Patch> patches;
+  for (Index i = 0; i < regions.count(); ++i) patches.push_back(regions.patch(i, rest, uvs));
+  return patches;
+}
+
+TEST(Regions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
   const Index n = 40;
   const DiskMesh mesh = disks::disk(meshes::grid(n, n));
   const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   const std::vector<Index> faces = {0, 3, 2 * n * n - 1, n * n};
-  const std::vector<Patch> regions =
-      cut_regions(mesh, disks::rest_of(mesh), uvs, faces, {2}, Work(1));
+  const std::vector<Patch> regions = cut_regions(mesh, disks::rest_of(mesh), uvs, faces, {2});
   EXPECT_EQ(regions.size(), 3u);  // the first two are one
   std::set<Index> moving, present;
   for (const Patch& region : regions) {
@@ -85,12 +93,12 @@ TEST(CutRegions, MoveNoVertexOfEachOtherAndAllThatIsNear) {
   }
 }
 
-TEST(CutRegions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
+TEST(Regions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
   constexpr Index kMost = 60;
   const DiskMesh mesh = disks::disk(meshes::grid(40, 40));
   const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
   const std::vector<Index> faces = {1600, 20};
-  const std::vector<Patch> whole = cut_regions(mesh, {}, uvs, faces, {8}, Work(1));
+  const std::vector<Patch> whole = cut_regions(mesh, {}, uvs, faces, {8});
   EXPECT_EQ(whole.size(), 2u);
   std::set<Index> moving_in_whole, moving, staying;
   for (const Patch& region : whole) {
@@ -98,7 +106,7 @@ TEST(CutRegions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
       if (!region.fixed[v]) moving_in_whole.insert(region.mesh_vertices[v]);
     }
   }
-  const std::vector<Patch> parts = cut_regions(mesh, {}, uvs, faces, {8, kMost}, Work(1));
+  const std::vector<Patch> parts = cut_regions(mesh, {}, uvs, faces, {8, kMost});
   EXPECT_GE(parts.size(), 4u);
   for (const Patch& region : parts) {
     EXPECT_LE(std::count(region.fixed.begin(), region.fixed.end(), false), kMost);
@@ -113,31 +121,31 @@ TEST(CutRegions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
   EXPECT_GT(moving.size(), moving_in_whole.size() / 2);
 }
 
-TEST(CutRegions, OfTheWholeMeshHoldOneVertex) {
+TEST(Regions, OfTheWholeMeshHoldOneVertex) {
   const DiskMesh mesh = disks::disk(meshes::grid(2, 2));
   const std::vector<Patch> regions =
-      cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, {3}, Work(1));
+      cut_regions(mesh, {}, disks::flat_uvs(mesh), {0, 2, 5, 7}, {3});
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_EQ(std::count(regions[0].fixed.begin(), regions[0].fixed.end(), true), 1);
 }
 
-TEST(CutRegions, StayAPartOfTheMesh) {
+TEST(Regions, StayAPartOfTheMesh) {
   const DiskMesh mesh = disks::disk(meshes::grid(60, 60));
   std::vector<Index> faces;
   for (Index f = 0; f < mesh.face_count(); f += 97) faces.push_back(f);
   std::size_t moving = 0;
-  for (const Patch& region : cut_regions(mesh, {}, disks::flat_uvs(mesh), faces, {20}, Work(1))) {
+  for (const Patch& region : cut_regions(mesh, {}, disks::flat_uvs(mesh), faces, {20})) {
     moving += std::count(region.fixed.begin(), region.fixed.end(), false);
   }
   EXPECT_LT(moving, mesh.positions.size() / 2);
 }
 
-TEST(CutRegions, LeaveAHubWhereItIs) {
+TEST(Regions, LeaveAHubWhereItIs) {
   const auto polls = [](Index faces) {
     const DiskMesh mesh = disks::disk(meshes::fan(faces));
     const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
     return count_polls([&] {
-      for (const Patch& region : cut_regions(mesh, {}, uvs, {7}, {1}, Work(1))) {
+      for (const Patch& region : cut_regions(mesh, {}, uvs, {7}, {1})) {
         for (std::size_t v = 0; v < region.fixed.size(); ++v) {
           EXPECT_TRUE(region.mesh_vertices[v] != 0 || region.fixed[v]);
         }

@@ -17,11 +17,11 @@ namespace {
 template <class T>
 class TreeSolve {
  public:
-  TreeSolve(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x, int columns,
-            const Work& work)
+  TreeSolve(front::Vectors vectors, const Symbolic& symbolic, const PanelOf<T>& panel_of, T* x,
+            int columns, const Work& work)
       : vectors_(vectors),
         symbolic_(symbolic),
-        factor_(factor),
+        panel_of_(panel_of),
         x_(x),
         columns_(columns),
         work_(work),
@@ -67,6 +67,7 @@ class TreeSolve {
  private:
   struct Workspace {
     std::vector<T> front, above;  // above: sums for the rows of the top
+    std::vector<T> panel;
   };
 
   /// `above`: what the rows of the top are subtracted from, with `stride` between columns.
@@ -91,8 +92,7 @@ class TreeSolve {
         for (int b = 0; b < block; ++b) *y++ = from[b];
       }
     }
-    front::solve_forward(vectors_, factor_ + symbolic_.value_start[s], height, width, front,
-                         columns_);
+    front::solve_forward(vectors_, panel_of_(s, work.panel), height, width, front, columns_);
     for (int c = 0; c < columns_; ++c) {
       std::copy_n(front + static_cast<std::int64_t>(c) * height, width, x_ + c * size_ + first);
       const T* y = front + static_cast<std::int64_t>(c) * height + width;
@@ -117,8 +117,7 @@ class TreeSolve {
         for (int b = 0; b < block; ++b) *y++ = from[b];
       }
     }
-    front::solve_backward(vectors_, factor_ + symbolic_.value_start[s], height, width, front,
-                          columns_);
+    front::solve_backward(vectors_, panel_of_(s, work.panel), height, width, front, columns_);
     for (int c = 0; c < columns_; ++c) {
       std::copy_n(front + static_cast<std::int64_t>(c) * height, width, x_ + c * size_ + first);
     }
@@ -163,7 +162,7 @@ class TreeSolve {
 
   const front::Vectors vectors_;
   const Symbolic& symbolic_;
-  const T* factor_;
+  const PanelOf<T>& panel_of_;
   T* const x_;
   const int columns_;
   const Work work_;
@@ -291,7 +290,16 @@ class PrunedSolve {
 template <class T>
 void solve_with_factor(front::Vectors vectors, const Symbolic& symbolic, const T* factor, T* x,
                        int columns, const Work& work) {
-  TreeSolve<T>(vectors, symbolic, factor, x, columns, work).run();
+  const PanelOf<T> panel_of = [&](int s, std::vector<T>&) {
+    return factor + symbolic.value_start[s];
+  };
+  solve_with_panels(vectors, symbolic, panel_of, x, columns, work);
+}
+
+template <class T>
+void solve_with_panels(front::Vectors vectors, const Symbolic& symbolic, const PanelOf<T>& panel_of,
+                       T* x, int columns, const Work& work) {
+  TreeSolve<T>(vectors, symbolic, panel_of, x, columns, work).run();
 }
 
 template <class T>
@@ -309,6 +317,8 @@ DenseMatrix solve_rows_with_factor(front::Vectors vectors, const Symbolic& symbo
 template void solve_with_factor(front::Vectors, const Symbolic&, const float*, float*, int,
                                 const Work&);
 template void solve_with_factor(front::Vectors, const Symbolic&, const double*, double*, int,
+                                const Work&);
+template void solve_with_panels(front::Vectors, const Symbolic&, const PanelOf<float>&, float*, int,
                                 const Work&);
 template DenseMatrix solve_rows_with_factor(front::Vectors, const Symbolic&, const float*,
                                             const SparseMatrix&, const std::vector<int>&,

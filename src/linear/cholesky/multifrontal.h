@@ -47,6 +47,9 @@ class Factor {
   DenseMatrix solve_rows(const Symbolic& symbolic, const SparseMatrix& rhs,
                          const std::vector<int>& rows, const Work& work) const;
 
+  /// The panels of the supernodes, at symbolic.value_start.
+  const T* panels() const { return values_.get(); }
+
   bool empty() const { return values_ == nullptr; }
   void clear() {
     values_.reset();

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/scratch.h"
 #include "base/types.h"
+#include "linear/cholesky/compact_factor.h"
 #include "linear/cholesky/front.h"
 #include "linear/cholesky/graph.h"
 #include "linear/cholesky/minimum_degree.h"
@@ -41,6 +42,7 @@ class NativeSolver final : public SpdSolver {
   void analyze(const SparseMatrix& lower, std::span<const Place> places) override {
     single_.clear();
     double_.clear();
+    compact_ = {};
     scaling_.clear();
     const int block = block_size_of(lower);
     const Graph graph = graph_of(lower, block, work_);
@@ -102,12 +104,18 @@ class NativeSolver final : public SpdSolver {
   }
 
   DenseMatrix precondition(const DenseMatrix& rhs) const override {
-    if (single_.empty() || rhs.size() == 0) return solve(rhs);
+    const bool is_single = !single_.empty() || !compact_.empty();
+    if (!is_single || rhs.size() == 0) return solve(rhs);
     // A power of two keeps the numbers in the range of single precision, and costs no bits.
     const double unit = unit_of(largest_of(rhs.data(), rhs.size()));
     std::vector<float> x = permuted<float>(rhs, 1 / unit);
-    single_.solve(symbolic_, x.data(), static_cast<int>(rhs.cols()), work_);
-    return restored(x, static_cast<int>(rhs.cols()), unit);
+    const int columns = static_cast<int>(rhs.cols());
+    if (compact_.empty()) {
+      single_.solve(symbolic_, x.data(), columns, work_);
+    } else {
+      compact_.solve(vectors_, symbolic_, x.data(), columns, work_);
+    }
+    return restored(x, columns, unit);
   }
 
   void keep_preconditioner() override {
@@ -115,6 +123,8 @@ class NativeSolver final : public SpdSolver {
     values_ = {};
     unscaling_ = {};
     pattern_ = {};
+    compact_ = CompactFactor(symbolic_, single_.panels(), work_);
+    single_.clear();
   }
 
   DenseMatrix solve_rows(const SparseMatrix& rhs, const std::vector<int>& rows) const override {
@@ -392,6 +402,7 @@ class NativeSolver final : public SpdSolver {
   // One of them is empty. A single one that turns out to be useless is replaced while solving.
   mutable Factor<float> single_{vectors_};
   mutable Factor<double> double_{vectors_};
+  CompactFactor compact_;  // of the one in single precision, when that serves nothing else
 };
 
 }  // namespace
