@@ -27,6 +27,8 @@ constexpr double kFillInSpace = 2.75, kFillInPlane = 3.5;
 constexpr double kSymbolic = 48;
 /// Numbers per row in the update matrices of a factorization: on one thread, and on each other.
 constexpr double kFronts = 12, kFrontsOfThread = 6.5;
+/// Of a factor in single precision, what 16 bits per entry below the diagonal take.
+constexpr double kOfCompact = 0.5;
 /// Threads that a factorization keeps busy: it has so many tasks.
 constexpr double kMostTasks = 96;
 /// The global fix, per face: the corners' entries twice, as they come and scaled; and the factor,
@@ -108,7 +110,7 @@ System system_bytes(const MeshCounts& n, int block, Precision precision, int thr
   const double factorizing =
       entries * scalar + squares * scalar * (kFronts + kFrontsOfThread * others);
   const double solving = rows * kUv * (single ? kSolveFieldsOfSingle : kSolveFields);
-  return {kept, kept + std::max(factorizing, solving)};
+  return {kept, kept + std::max(factorizing, solving), rows * kSymbolic + kOfCompact * factor};
 }
 
 double global_fix_bytes(const MeshCounts& n) {

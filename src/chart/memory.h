@@ -24,9 +24,10 @@ double disk_bytes(const MeshCounts& n);
 double context_bytes(const MeshCounts& n);
 
 /// Bytes of a matrix of the mesh with its factor. `kept`: from the factorization to the end;
-/// `peak`: that and what factorizing or solving takes on top.
+/// `peak`: that and what factorizing or solving takes on top; `preconditioner`: what is left of it
+/// once it serves as one alone, in single precision.
 struct System {
-  double kept, peak;
+  double kept, peak, preconditioner;
 };
 
 /// Of blocks of one, ordered in space, or of two, ordered in the plane.

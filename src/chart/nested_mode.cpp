@@ -77,9 +77,8 @@ constexpr double kHopelessly = 1.2;
 // Shares of the progress.
 constexpr double kSimplified = 0.25, kStarted = 0.4;
 
-/// L-BFGS, as metric_mode has it, with the map and the one that it started from; on a large mesh
-/// without the steps, one gradient and the copy of it, but with what regions take.
-constexpr double kPolishFields = 2 * 5 + 4 + 2, kLargeFields = 8;
+/// L-BFGS, as metric_mode has it, with the map; on a large mesh without the steps and one gradient.
+constexpr double kPolishFields = 2 * 5 + 4 + 1, kLargeFields = 4;
 /// Neighbours of a vertex.
 constexpr double kNeighbours = 6;
 /// Bytes of a vertex of a coarser level with all that is kept of it.
@@ -467,7 +466,9 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
 
 double nested_hessian_bytes(const MeshCounts& n, int threads) {
   const MeshCounts level = part_of(n, std::min<double>(kMostFactored, kCoarseEnough * n.faces));
-  return nested_bytes(n, threads) + system_bytes(level, 2, Precision::kSingle, threads).kept;
+  const System system = system_bytes(level, 2, Precision::kSingle, threads);
+  return std::max(nested_bytes(n, threads) + system.preconditioner,
+                  nested_bytes(level, threads) + system.peak);
 }
 
 double nested_bytes(const MeshCounts& n, int threads) {

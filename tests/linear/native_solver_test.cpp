@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -404,26 +405,56 @@ TEST(NativeSolver, SolvesTheLaplaciansOfMeshes) {
   }
 }
 
-TEST(NativeSolver, PreconditionsAsBeforeWithItsFactorAlone) {
+TEST(NativeSolver, PreconditionsNearlyAsBeforeWithItsFactorAlone) {
   Random random(22);
-  const DiskMesh mesh = disks::disk(meshes::grid(30, 20));
-  MeshMatrix matrix(mesh.vertex_count(), mesh.faces, mesh.on_boundary, 2, Work(1));
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    for (int i = 0; i < 3; ++i) {
-      const auto same = [](int r, int c) { return r == c ? 3.0 : 0.5; };
-      matrix.add(f, mesh.faces[f], i, i, same);
+  const SparseMatrix lower = in_blocks(grid(60, 50, 1, random).lower, random);
+  const int n = static_cast<int>(lower.cols());
+  const DenseMatrix rhs = random_matrix(random, n, 2);
+  for (const int least_single : {0, 2 * n}) {
+    std::optional<DenseMatrix> alone;
+    for (const int threads : {1, 3}) {
+      const auto solver = make_native_solver({Precision::kSingle}, least_single, Work(threads));
+      for (int time = 0; time < 2; ++time) {  // it can be given a matrix again
+        solver->analyze(lower);
+        ASSERT_TRUE(solver->factorize(lower));
+        const DenseMatrix before = solver->precondition(rhs);
+        solver->keep_preconditioner();
+        const DenseMatrix after = solver->precondition(rhs);
+        EXPECT_LE((after - before).norm(), 1e-3 * before.norm());
+        EXPECT_TRUE(same_bits(after, alone.value_or(after)));
+        alone = after;
+        solver->keep_preconditioner();
+        EXPECT_TRUE(same_bits(solver->precondition(rhs), after));
+      }
+    }
+    const double across = rhs.col(0).dot(alone->col(1)), back = rhs.col(1).dot(alone->col(0));
+    EXPECT_NEAR(across, back, 1e-5 * rhs.col(0).norm() * alone->col(1).norm());
+    EXPECT_GT(rhs.col(0).dot(alone->col(0)), 0);
+  }
+}
+
+TEST(CompactFactor, IsDefiniteAndNearWhereTheMatrixIsNearlySingular) {
+  // Of a Laplacian with next to nothing on the diagonal: what is constant costs 1e-6.
+  Random random(23);
+  const System system = grid(80, 80, 1, random);
+  Triplets entries;
+  for (int c = 0; c < system.lower.cols(); ++c) {
+    for (SparseMatrix::InnerIterator e(system.lower, c); e; ++e) {
+      if (e.row() != c) entries.emplace_back(e.row(), c, e.value());
     }
   }
-  const DenseMatrix rhs = random_matrix(random, 2 * matrix.free_count(), 1);
-  for (const int least_single : {0, kLeastSingle}) {
-    const auto solver = make_native_solver({Precision::kSingle}, least_single, Work(1));
-    for (int time = 0; time < 2; ++time) {  // it can be given a matrix again
-      solver->analyze(matrix.matrix());
-      ASSERT_TRUE(solver->factorize(matrix.matrix()));
-      const DenseMatrix before = solver->precondition(rhs);
-      solver->keep_preconditioner();
-      EXPECT_EQ(solver->precondition(rhs), before);
-    }
+  const SparseMatrix lower = dominant(6400, entries, 1e-6);
+  const auto solver = make_native_solver({Precision::kSingle}, 0, Work(1));
+  solver->analyze(lower, system.places);
+  ASSERT_TRUE(solver->factorize(lower));
+  solver->keep_preconditioner();
+  const DenseMatrix ones = DenseMatrix::Ones(6400, 1);
+  const DenseMatrix solution = solver->precondition(ones);
+  const double cost = ones.col(0).dot(solution.col(0)) / 6400;  // the inverse of the excess
+  EXPECT_NEAR(cost, 1e6, 2e5);
+  for (int i = 0; i < 20; ++i) {
+    const DenseMatrix rhs = random_matrix(random, 6400, 1);
+    EXPECT_GT(rhs.col(0).dot(solver->precondition(rhs).col(0)), 0);
   }
 }
 
