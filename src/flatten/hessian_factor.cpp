@@ -1,5 +1,8 @@
 #include "flatten/hessian_factor.h"
 
+#include <cstdint>
+
+#include "base/parallel.h"
 #include "descend/assembly.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
@@ -11,6 +14,7 @@ namespace {
 /// Of the diagonal, added to it: enough for a factor in single precision, and little beside what
 /// the flattest motions of hard models have (1e-3 of it costs .1% of their energy).
 constexpr double kShift = 1e-6;
+constexpr std::int64_t kGrain = 2048;  // vertices
 
 }  // namespace
 
@@ -49,16 +53,20 @@ void HessianFactor::settle() {
 
 void HessianFactor::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) const {
   DenseMatrix packed(2 * rows_, 1);
-  for (Index v = 0; v < size_of(rhs); ++v) {
-    const Index row = row_[v];
-    if (row != kNone) packed.block<2, 1>(2 * row, 0) = rhs[v];
-  }
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      const Index row = row_[v];
+      if (row != kNone) packed.block<2, 1>(2 * row, 0) = rhs[v];
+    }
+  });
   const DenseMatrix solution = solver_->precondition(packed);
   x.resize(rhs.size());
-  for (Index v = 0; v < size_of(rhs); ++v) {
-    const Index row = row_[v];
-    x[v] = row != kNone ? Vec2(solution.block<2, 1>(2 * row, 0)) : Vec2(0, 0);
-  }
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) {
+      const Index row = row_[v];
+      x[v] = row != kNone ? Vec2(solution.block<2, 1>(2 * row, 0)) : Vec2(0, 0);
+    }
+  });
 }
 
 }  // namespace beltrami

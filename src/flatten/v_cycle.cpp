@@ -169,10 +169,14 @@ void VCycle::refit(const StiffnessOfFaces& stiffness, const std::vector<double>&
 template <class Factor>
 void VCycle::solve_with(Factor& factor, const SingleField& rhs, SingleField& x) {
   solve_rhs_.resize(rhs.size());
-  for (std::size_t v = 0; v < rhs.size(); ++v) solve_rhs_[v] = rhs[v].cast<double>();
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) solve_rhs_[v] = rhs[v].cast<double>();
+  });
   factor.precondition(solve_rhs_, solve_x_);
   x.resize(rhs.size());
-  for (std::size_t v = 0; v < rhs.size(); ++v) x[v] = solve_x_[v].cast<float>();
+  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t v = begin; v < end; ++v) x[v] = solve_x_[v].cast<float>();
+  });
 }
 
 /// x = about the inverse of a level's Laplacian, or of its Hessian where there is one, times rhs;

@@ -12,8 +12,11 @@
 namespace beltrami {
 namespace {
 
-/// Solves with subtrees side by side. What a task subtracts from rows of the top is collected apart
-/// and applied in the order of the tasks.
+/// Entries of fronts of the top at one depth that are worth several threads.
+constexpr std::int64_t kWorthThreads = 50000;
+
+/// Solves with subtrees side by side, then the fronts of the top that have the same depth. What
+/// these subtract from rows above is collected apart and applied in their order.
 template <class T>
 class TreeSolve {
  public:
@@ -28,7 +31,8 @@ class TreeSolve {
         size_(static_cast<std::int64_t>(symbolic.column_count()) * symbolic.block_size),
         top_(static_cast<std::int64_t>(symbolic.block_size) *
              symbolic.first_column[symbolic.top_begin()]),
-        sums_(symbolic.tasks.size()) {
+        sums_(symbolic.tasks.size()),
+        waves_(waves_of(symbolic)) {
     for (int s = 0; s < symbolic.supernode_count(); ++s) {
       highest_ = std::max(highest_, symbolic.height(s));
     }
@@ -46,16 +50,30 @@ class TreeSolve {
       auto work = pool.take(make);
       work->above.resize(static_cast<std::size_t>((size_ - top_) * columns_), T(0));
       const Symbolic::Range task = symbolic_.tasks[t];
-      for (int s = task.begin; s < task.end; ++s) forward(s, work->above.data(), *work);
+      for (int s = task.begin; s < task.end; ++s) forward(s, *work);
       collect(static_cast<int>(t), *work);
       pool.give_back(std::move(work));
     });
-    for (int t = 0; t < tasks; ++t) apply(t);
-    auto work = pool.take(make);
-    const int top = symbolic_.top_begin(), count = symbolic_.supernode_count();
-    for (int s = top; s < count; ++s) forward(s, x_ + top_, *work, size_);
-    for (int s = count - 1; s >= top; --s) backward(s, *work);
-    pool.give_back(std::move(work));
+    for (int t = 0; t < tasks; ++t) apply(symbolic_.tasks[t].end - 1, sums_[t]);
+    const auto for_wave = [&](const Wave& wave, const auto& body) {
+      const std::int64_t count = size_of(wave.fronts);
+      parallel_for(work_, count, wave.worth_threads ? 1 : count,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     auto own = pool.take(make);
+                     for (std::int64_t i = begin; i < end; ++i) body(i, *own);
+                     pool.give_back(std::move(own));
+                   });
+    };
+    for (std::size_t w = waves_.size(); w-- > 0;) {
+      const std::vector<int>& fronts = waves_[w].fronts;
+      std::vector<std::vector<T>> sums(fronts.size());
+      for_wave(waves_[w],
+               [&](std::int64_t i, Workspace& own) { sums[i] = forward_apart(fronts[i], own); });
+      for (std::size_t i = 0; i < fronts.size(); ++i) apply(fronts[i], sums[i]);
+    }
+    for (const Wave& wave : waves_) {
+      for_wave(wave, [&](std::int64_t i, Workspace& own) { backward(wave.fronts[i], own); });
+    }
     parallel_for(work_, tasks, 1, [&](std::int64_t t, std::int64_t) {
       auto own = pool.take(make);
       const Symbolic::Range task = symbolic_.tasks[t];
@@ -70,19 +88,45 @@ class TreeSolve {
     std::vector<T> panel;
   };
 
-  /// `above`: what the rows of the top are subtracted from, with `stride` between columns.
-  void forward(int s, T* above, Workspace& work) { forward(s, above, work, size_ - top_); }
+  /// Supernodes of the top at one depth, which share no columns.
+  struct Wave {
+    bool worth_threads = false;
+    std::vector<int> fronts;
+  };
 
-  void forward(int s, T* above, Workspace& work, std::int64_t stride) {
+  /// From the roots down.
+  static std::vector<Wave> waves_of(const Symbolic& symbolic) {
+    const int top = symbolic.top_begin(), count = symbolic.supernode_count();
+    std::vector<int> depth(count - top, 0);
+    std::vector<Wave> waves;
+    std::vector<std::int64_t> entries;
+    for (int s = count - 1; s >= top; --s) {
+      const int parent = symbolic.parent[s];
+      const int own = parent >= 0 ? depth[parent - top] + 1 : 0;
+      depth[s - top] = own;
+      if (own == static_cast<int>(waves.size())) {
+        waves.emplace_back();
+        entries.push_back(0);
+      }
+      waves[own].fronts.push_back(s);
+      entries[own] += static_cast<std::int64_t>(symbolic.height(s)) * symbolic.width(s);
+      waves[own].worth_threads = entries[own] > kWorthThreads;
+    }
+    return waves;
+  }
+
+  /// Of a supernode in a task; what it subtracts from rows of the top goes into the workspace.
+  void forward(int s, Workspace& work) {
     const int height = symbolic_.height(s), width = symbolic_.width(s),
               block = symbolic_.block_size;
     const std::int64_t first = static_cast<std::int64_t>(block) * symbolic_.first_column[s];
     const auto rows = symbolic_.rows_of(s);
-    const std::size_t inside = s >= symbolic_.top_begin() ? 0 : rows_inside(rows);
+    const std::size_t inside = rows_inside(rows);
     T* front = work.front.data();
     const auto target = [&](std::size_t i, int c) {
       const std::int64_t row = static_cast<std::int64_t>(block) * rows[i];
-      return i < inside ? x_ + c * size_ + row : above + c * stride + (row - top_);
+      return i < inside ? x_ + c * size_ + row
+                        : work.above.data() + c * (size_ - top_) + (row - top_);
     };
     for (int c = 0; c < columns_; ++c) {
       std::copy_n(x_ + c * size_ + first, width, front + static_cast<std::int64_t>(c) * height);
@@ -101,6 +145,29 @@ class TreeSolve {
         for (int b = 0; b < block; ++b) to[b] = *y++;
       }
     }
+  }
+
+  /// Of a supernode of the top. Returns what it adds to the rows below the diagonal block, as
+  /// apply() takes it.
+  std::vector<T> forward_apart(int s, Workspace& work) {
+    const int height = symbolic_.height(s), width = symbolic_.width(s), below = height - width;
+    const std::int64_t first =
+        static_cast<std::int64_t>(symbolic_.block_size) * symbolic_.first_column[s];
+    T* front = work.front.data();
+    for (int c = 0; c < columns_; ++c) {
+      T* column = front + static_cast<std::int64_t>(c) * height;
+      std::copy_n(x_ + c * size_ + first, width, column);
+      std::fill_n(column + width, below, T(0));
+    }
+    front::solve_forward(vectors_, panel_of_(s, work.panel), height, width, front, columns_);
+    std::vector<T> sums;
+    sums.reserve(static_cast<std::size_t>(below) * columns_);
+    for (int c = 0; c < columns_; ++c) {
+      const T* column = front + static_cast<std::int64_t>(c) * height;
+      std::copy_n(column, width, x_ + c * size_ + first);
+      sums.insert(sums.end(), column + width, column + height);
+    }
+    return sums;
   }
 
   void backward(int s, Workspace& work) {
@@ -149,9 +216,10 @@ class TreeSolve {
     }
   }
 
-  void apply(int t) {
-    const auto rows = symbolic_.rows_of(symbolic_.tasks[t].end - 1);
-    const T* from = sums_[t].data();
+  /// Adds what was collected for the rows of a supernode.
+  void apply(int s, const std::vector<T>& sums) {
+    const auto rows = symbolic_.rows_of(s);
+    const T* from = sums.data();
     for (int c = 0; c < columns_; ++c) {
       for (const int row : rows) {
         T* to = x_ + c * size_ + static_cast<std::int64_t>(symbolic_.block_size) * row;
@@ -169,6 +237,7 @@ class TreeSolve {
   const std::int64_t size_, top_;  // scalars: all, and before the top
   int highest_ = 0;
   std::vector<std::vector<T>> sums_;  // per task: for the rows of its root
+  const std::vector<Wave> waves_;
 };
 
 /// Solves for some rows only. The tree of supernodes tells what matters: forward a right-hand side
