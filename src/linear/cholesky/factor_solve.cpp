@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "base/types.h"
 #include "linear/cholesky/workspace_pool.h"
 
 namespace beltrami {
