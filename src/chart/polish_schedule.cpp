@@ -101,7 +101,7 @@ Bounds bounds_of(PolishLength length, Index faces) {
       return {1e-4, 1e-4, kMiddlingSteps, 3e-4, 1e-4, false, false, true};
     case PolishLength::kLong:
       if (faces <= kLargeMesh) return {1e-4, 1e-4, kLongSteps, 1e-3, 1.5e-4, false, false, true};
-      return {1e-4, 1.5e-3, kLongSteps, 1e-3, 1e-3, false, false, true};
+      return {1e-4, 5e-4, kLongSteps, 1e-3, 1e-3, false, false, true};
     default:
       return {0, 1e-3, kMostSteps, 1e-4, 1e-4, true, false, true};
   }

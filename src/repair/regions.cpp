@@ -30,7 +30,7 @@ constexpr Index kMostFacesAtVertex = 1000;
 constexpr std::int64_t kGrain = 1024;
 
 /// Vertices that move in a region to be relaxed: that many, or a share of all.
-constexpr Index kMostTogether = 500, kTogetherOf = 170;
+constexpr Index kMostTogether = 500, kTogetherOf = 125;
 
 /// Calls visit(u) for the neighbours of a vertex, on the boundary for some of them twice.
 template <class Visit>
