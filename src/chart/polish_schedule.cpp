@@ -76,7 +76,7 @@ constexpr double kNearOf = 3e-4;
 /// After so many of these, if the last one gained so much, the Hessian is worth its cost where it
 /// is to be had.
 constexpr int kFirstSteps = 3;
-constexpr double kFarFromRest = 7e-4;
+constexpr double kFarFromRest = 2e-3;
 constexpr double kStale = 1e-3;  // relative decrease from which on another one is
 /// Of the energy: what is left of it after more is measured, since a difference may be rounding.
 constexpr double kMostlyGained = 0.5;

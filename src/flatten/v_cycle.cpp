@@ -166,11 +166,11 @@ void VCycle::refit(const StiffnessOfFaces& stiffness, const std::vector<double>&
   parallel_free(work_, weights);
 }
 
-template <class Factor>
-void VCycle::solve_with(Factor& factor, const SingleField& rhs, SingleField& x) {
+template <class Factor, class Rhs>
+void VCycle::solve_with(Factor& factor, const std::vector<Rhs>& rhs, SingleField& x) {
   solve_rhs_.resize(rhs.size());
   parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) solve_rhs_[v] = rhs[v].cast<double>();
+    for (std::int64_t v = begin; v < end; ++v) solve_rhs_[v] = rhs[v].template cast<double>();
   });
   factor.precondition(solve_rhs_, solve_x_);
   x.resize(rhs.size());
@@ -181,7 +181,9 @@ void VCycle::solve_with(Factor& factor, const SingleField& rhs, SingleField& x) 
 
 /// x = about the inverse of a level's Laplacian, or of its Hessian where there is one, times rhs;
 /// level 0 is the coarsest.
-void VCycle::apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x) {
+template <class Rhs>
+void VCycle::apply(std::size_t level, const std::vector<Rhs>& rhs, bool by_hessian,
+                   SingleField& x) {
   if (by_hessian && hessian_ && level == hessian_level_) return solve_with(*hessian_, rhs, x);
   if (level == 0) return solve_with(factor_, rhs, x);
   Level& l = *levels_[level - 1];
@@ -198,13 +200,9 @@ void VCycle::apply(std::size_t level, const SingleField& rhs, bool by_hessian, S
 }
 
 void VCycle::precondition(const std::vector<Vec2>& rhs, std::vector<Vec2>& x) {
-  SingleField single(rhs.size()), result;
-  parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) single[v] = rhs[v].cast<float>();
-  });
-  apply(levels_.size(), single, true, result);
+  SingleField result;
+  apply(levels_.size(), rhs, true, result);
   if (!levels_.empty()) parallel_free(work_, levels_.back()->spare);
-  parallel_free(work_, single);
   x.resize(rhs.size());
   parallel_for(work_, size_of(rhs), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) x[v] = result[v].cast<double>();

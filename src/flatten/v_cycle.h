@@ -71,9 +71,10 @@ class VCycle final : public StiffnessInverse {
   struct Level;
 
   const DiskMesh& finest() const;
-  void apply(std::size_t level, const SingleField& rhs, bool by_hessian, SingleField& x);
-  template <class Factor>
-  void solve_with(Factor& factor, const SingleField& rhs, SingleField& x);
+  template <class Rhs>
+  void apply(std::size_t level, const std::vector<Rhs>& rhs, bool by_hessian, SingleField& x);
+  template <class Factor, class Rhs>
+  void solve_with(Factor& factor, const std::vector<Rhs>& rhs, SingleField& x);
   void set_springs_below(std::size_t level, const std::vector<float>& springs);
 
   Work work_;

@@ -113,11 +113,12 @@ void Smoother::multiply(const SingleField& x, SingleField& product) const {
   });
 }
 
-void Smoother::sweep_forward(const SingleField& rhs, SingleField& x) const {
+template <class Rhs>
+void Smoother::sweep_forward(const std::vector<Rhs>& rhs, SingleField& x) const {
   x.resize(rhs.size());
   parallel_for(work_, size_of(rhs), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = begin; v < end; ++v) {
-      Eigen::Vector2f sum = rhs[v];
+      Eigen::Vector2f sum = rhs[v].template cast<float>();
       for (Index i = rows_[v].begin; i < rows_[v].upper; ++i) sum += weight_[i] * x[column_[i]];
       x[v] = inverse_diagonal_[v] * sum;
     }
@@ -135,12 +136,14 @@ void Smoother::residual_after_forward(const SingleField& x, SingleField& residua
   });
 }
 
-void Smoother::sweep_backward(const SingleField& rhs, SingleField& x, SingleField& before) const {
+template <class Rhs>
+void Smoother::sweep_backward(const std::vector<Rhs>& rhs, SingleField& x,
+                              SingleField& before) const {
   parallel_copy(work_, x, before);
   parallel_for(work_, size_of(x), kBlock, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t v = end; v-- > begin;) {
       const Row& row = rows_[v];
-      Eigen::Vector2f sum = rhs[v];
+      Eigen::Vector2f sum = rhs[v].template cast<float>();
       for (Index i = row.begin; i < row.outside; ++i) sum += weight_[i] * x[column_[i]];
       for (Index i = row.outside; i < rows_[v + 1].begin; ++i) {
         sum += weight_[i] * before[column_[i]];
@@ -149,5 +152,10 @@ void Smoother::sweep_backward(const SingleField& rhs, SingleField& x, SingleFiel
     }
   });
 }
+
+template void Smoother::sweep_forward(const std::vector<Vec2>&, SingleField&) const;
+template void Smoother::sweep_forward(const SingleField&, SingleField&) const;
+template void Smoother::sweep_backward(const std::vector<Vec2>&, SingleField&, SingleField&) const;
+template void Smoother::sweep_backward(const SingleField&, SingleField&, SingleField&) const;
 
 }  // namespace beltrami

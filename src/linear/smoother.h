@@ -37,12 +37,15 @@ class Smoother {
 
   /// A x.
   void multiply(const SingleField& x, SingleField& product) const;
-  /// x = M^-1 rhs.
-  void sweep_forward(const SingleField& rhs, SingleField& x) const;
+  /// x = M^-1 rhs. Right-hand sides may be Vec2, too, and are rounded where they are read: a copy
+  /// of the finest level's would be memory at its peak.
+  template <class Rhs>
+  void sweep_forward(const std::vector<Rhs>& rhs, SingleField& x) const;
   /// rhs - A x, where x is what sweep_forward left.
   void residual_after_forward(const SingleField& x, SingleField& residual) const;
   /// x += M^-T (rhs - A x); `before` is for its own use.
-  void sweep_backward(const SingleField& rhs, SingleField& x, SingleField& before) const;
+  template <class Rhs>
+  void sweep_backward(const std::vector<Rhs>& rhs, SingleField& x, SingleField& before) const;
 
  private:
   static constexpr Index kBlock = 4096;
