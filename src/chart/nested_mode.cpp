@@ -82,7 +82,7 @@ constexpr double kPolishFields = 2 * 5 + 4 + 1, kLargeFields = 4;
 /// Neighbours of a vertex.
 constexpr double kNeighbours = 6;
 /// Bytes of a vertex of a coarser level with all that is kept of it.
-constexpr double kLevel = 300;
+constexpr double kLevel = 250;
 /// What all coarser levels have of the fine vertices: sweeps end below an eighth.
 constexpr double kLevels = 1.0 / 7;
 
@@ -474,7 +474,7 @@ double nested_hessian_bytes(const MeshCounts& n, int threads) {
 double nested_bytes(const MeshCounts& n, int threads) {
   const double row = sizeof(Footpoint) + 3 * sizeof(Index) + sizeof(float) +
                      kNeighbours * (sizeof(Index) + sizeof(float));
-  const double single = 3 * sizeof(Eigen::Vector2f);
+  const double single = 2 * sizeof(Eigen::Vector2f);
   const double fields =
       std::max(kPolishFields * part_of(n, kLargeMesh).vertices, kLargeFields * n.vertices);
   const double climb = n.faces * sizeof(RestTriangle) + fields * sizeof(Vec2) +

@@ -78,7 +78,8 @@ TEST(MemoryOfLimitedRun, StaysWithinItsLimit) {
   const PeakFrom peak(before);
   ASSERT_GE(run(context), BELTRAMI_OK) << message(context);
   EXPECT_LE(peak.bytes(), static_cast<double>(limit));
-  EXPECT_GE(peak.bytes(), 0.5 * static_cast<double>(limit)) << "the estimate says nothing";
+  // Half of it is for a level that needs a factor of its own, which this mesh has not.
+  EXPECT_GE(peak.bytes(), 0.4 * static_cast<double>(limit)) << "the estimate says nothing";
 }
 
 }  // namespace
