@@ -116,8 +116,7 @@ struct Level {
   FineProblem problem;
   const CoarseDisk& coarse;
   std::vector<Vec2> from;  ///< the map of the coarse level
-  SingleField
-      residual;  ///< what pulls the carried one to the target, whose stiffness the cycle has
+  SingleField residual;  ///< what pulls the carried one to the target; the cycle has its stiffness
   BoundaryContact contact;
 };
 
