@@ -34,6 +34,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
 #include "descend/line_search.h"
@@ -130,6 +131,7 @@ struct State {
   bool alternated = false;  ///< the last round was one step, and regions
   bool clean = true;        ///< no step since the last cleaning; it comes mended
   PolishResult last = {};   ///< of the last steps
+  LastStep step = {};       ///< of rounds of one step and regions, on large meshes
   double energy = 0;        ///< after these; and after regions that follow a step
   double fitted_at = std::numeric_limits<double>::infinity();   ///< the energy there
   double hessian_at = std::numeric_limits<double>::infinity();  ///< of the inverse, if it has one
@@ -239,7 +241,11 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   options.max_iterations = state.alternated ? 1 : steps;
   options.shortest_first = state.alternated ? kShortest : force_first ? 0 : kFullStep;
   const bool is_whole = state.bounds.newton && !setting.contact;
-  if (!is_whole && mesh.face_count() > kLargeMesh) options.history = 0;
+  if (!is_whole && mesh.face_count() > kLargeMesh) {
+    options.history = 0;
+    if (state.alternated) options.last = &state.step;
+  }
+  if (!options.last) parallel_free(setting.work, state.step.step);
   options.enough = state.bounds.enough;
   options.stationary = state.bounds.at_rest;
   options.contact = setting.contact;
@@ -331,7 +337,7 @@ void take_rounds(const Setting& setting, State& state) {
       state.hessian_at = taken ? state.energy : 0;  // or never again
     }
     if (gained <= state.bounds.little_gain * setting.comparable(state.energy)) {
-      state.last.converged = state.alternated && state.last.iterations() > 0;
+      state.last.converged = state.rough && !setting.contact && state.last.iterations() > 0;
       return;
     }
   }

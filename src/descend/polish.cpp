@@ -27,6 +27,7 @@ constexpr int kHoldRounds = 16;         // after which a few faces hold back the
 /// other, and more rounds do not end that.
 constexpr std::size_t kManyHeld = 100;
 constexpr double kAsMany = 0.9;
+constexpr double kMostContinued = 0.9;  // of the step of the call before
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 30;
 
@@ -224,6 +225,33 @@ class History {
   const Work work_;
 };
 
+/// Turns the preconditioned direction into a conjugate one, unless the last step leads uphill now.
+/// Returns whether it did.
+bool continue_step(const Field& gradient, Field& direction, LastStep& last, const Work& work) {
+  const double before = std::exchange(last.predicted, -dot(gradient, direction, work));
+  const bool is_there = last.step.size() == direction.size() && before > 0;
+  if (!is_there || !(last.predicted > 0)) return false;
+  const double slope = sum_over(
+      work, gradient, [&](std::size_t i) { return gradient[i].dot(last.step[i].cast<double>()); });
+  if (!(slope < 0)) return false;
+  const double share = std::min(kMostContinued, last.predicted / before);
+  parallel_for(work, size_of(direction), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      direction[i] += share * last.step[i].cast<double>();
+    }
+  });
+  return true;
+}
+
+void keep_step(double length, const Field& direction, LastStep& last, const Work& work) {
+  parallel_assign(work, last.step, direction.size());
+  parallel_for(work, size_of(direction), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      last.step[i] = (length * direction[i]).cast<float>();
+    }
+  });
+}
+
 /// What moves along more rigidly than the direction had it.
 class Rigid {
  public:
@@ -360,6 +388,7 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
     work.report(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back(), scale = comparable_energy<Density>(before);
     history.find_direction(gradient, precondition, trial, direction);
+    const bool continues = options.last && continue_step(gradient, direction, *options.last, work);
     if (options.enough > 0) {
       result.predicted = -dot(gradient, direction, work);
       result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;
@@ -384,10 +413,11 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
     const double after = search_line(objective, uvs, before, slope, options, fields,
                                      is_only ? nullptr : &next_gradient, length, work);
     if (!(after < before)) {
-      const bool plain = history.empty() && (!rigidly || result.blocking.empty());
+      const bool plain = history.empty() && !continues && (!rigidly || result.blocking.empty());
       result.blocked = plain;
       if (plain) break;
       history.clear();
+      if (continues) options.last->step.clear();
       rigidly = false;
       if (!remembers) objective.evaluate(uvs, gradient);  // that of the last trial is there
       continue;
@@ -395,6 +425,7 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
     rigidly = true;
     uvs.swap(trial);
     result.energies.push_back(after);
+    if (options.last) keep_step(length, direction, *options.last, work);
     if (is_only) break;
     // What nearly singular faces do to the gradient says nothing about other steps.
     if (length >= kFullStep && result.blocking.empty()) {

@@ -18,6 +18,12 @@ namespace beltrami {
 /// Shorter steps say nothing about convergence; all but the first one are at least so long.
 inline constexpr double kFullStep = 0.5;
 
+/// What a call of one step leaves to the next one, for conjugate gradients over calls.
+struct LastStep {
+  std::vector<Eigen::Vector2f> step;  ///< per vertex; empty: there is none
+  double predicted = 0;               ///< -gradient . preconditioned gradient before it
+};
+
 struct PolishOptions {
   Energy energy = Energy::kSymmetricDirichlet;
   double tolerance = 1e-5;   ///< relative energy decrease of a step after which it may end, if
@@ -32,6 +38,9 @@ struct PolishOptions {
   /// cross itself.
   const BoundaryContact* contact = nullptr;
   double near = 0;  ///< told are the faces that so many times the last step would make singular
+  /// With a history of 0: a share of the step before joins the direction (Fletcher & Reeves 1964,
+  /// "Function minimization by conjugate gradients"), and the last one is kept there. Or null.
+  LastStep* last = nullptr;
 };
 
 struct PolishResult {

@@ -29,8 +29,9 @@ constexpr Index kMostOf = 7;
 constexpr Index kMostFacesAtVertex = 1000;
 constexpr std::int64_t kGrain = 1024;
 
-/// Vertices that move in a region to be relaxed: that many, or a share of all.
-constexpr Index kMostTogether = 500, kTogetherOf = 125;
+/// Vertices that move in a region to be relaxed: that many, or a share of all, but no more than a
+/// share of what moves.
+constexpr Index kMostTogether = 500, kTogetherOf = 125, kTogetherOfMoving = 16;
 
 /// Calls visit(u) for the neighbours of a vertex, on the boundary for some of them twice.
 template <class Visit>
@@ -128,8 +129,11 @@ Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const Re
                  const Work& work)
     : mesh_(mesh) {
   Membership membership(mesh, of_);
-  for (const Index v : around(mesh, faces, size.rings, work, membership)) {
-    std::vector<Index> connected = membership.connected_to(v, count(), size.most_vertices);
+  const std::vector<Index> moving = around(mesh, faces, size.rings, work, membership);
+  const Index share = size_of(moving) / kTogetherOfMoving;
+  const Index most = std::min(size.most_vertices, std::max(size.few_vertices, share));
+  for (const Index v : moving) {
+    std::vector<Index> connected = membership.connected_to(v, count(), most);
     if (!connected.empty()) vertices_.push_back(std::move(connected));
   }
 }
@@ -200,7 +204,8 @@ std::vector<std::optional<Patch>> Regions::treat(
 RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
                              const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
                              const std::vector<Index>& faces, int rings, const Work& work) {
-  const RegionSize size{rings, std::max(kMostTogether, mesh.vertex_count() / kTogetherOf)};
+  const Index most = std::max(kMostTogether, mesh.vertex_count() / kTogetherOf);
+  const RegionSize size{rings, most, kMostTogether};
   const Regions regions(mesh, faces, size, work);
   NewtonOptions options;
   options.energy = energy;

@@ -26,6 +26,9 @@ struct RegionSize {
   /// That move; what is larger is parted, along vertices that stay: a face with none that moves is
   /// in no patch.
   Index most_vertices = std::numeric_limits<Index>::max();
+  /// With more they are parted, too, where they have more than a sixteenth of all that move, so
+  /// that none keeps one thread long.
+  Index few_vertices = most_vertices;
 };
 
 /// The vertices of the faces and those up to so many rings around move, or fewer rings where that

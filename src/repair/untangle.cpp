@@ -18,7 +18,8 @@ constexpr int kUntangleSteps = 100;
 /// it takes two and a half times as many; with twice as much many patches end as they were.
 constexpr double kSoftness = 0.4;
 /// At least, so that the barrier of a nearly mended face does not overflow: with a tenth of it the
-/// last steps only take that face's energy down, by a factor of 0.6 each.
+/// last steps only take that face's energy down, by a factor of 0.6 each. Faces can come to rest
+/// flipped by less than that: it is halved with each step after which the worst one is as bad.
 constexpr double kLeastSoftness = 0.01;
 /// Steps after which the worst face is as bad as before, by this share: of 131 patches that were
 /// untangled one took longer.
@@ -99,13 +100,17 @@ bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle
   double least = smallest_determinant(faces, rest, trial);
   double best = least;
   int best_at = 0;
+  double least_softness = kLeastSoftness;
   for (int i = 0; i < kUntangleSteps && !(least > 0) && i < best_at + kPatience; ++i) {
     // Of the size of the worst face, as Garanzha et al. choose it.
-    stepper.set_density({portable::hypot(kLeastSoftness, kSoftness * least)});
+    stepper.set_density({portable::hypot(least_softness, kSoftness * least)});
     const NewtonStep step = stepper.step(trial, stepper.mean_energy(trial));
     if (step.length == 0) break;
     least = smallest_determinant(faces, rest, trial);
-    if (least < kAsBad * best) continue;
+    if (least < kAsBad * best) {
+      least_softness *= 0.5;
+      continue;
+    }
     best = least;
     best_at = i + 1;
   }
