@@ -1,10 +1,10 @@
 #include "repair/regions.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -27,7 +27,7 @@ constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours 
 /// what the mesh takes.
 constexpr Index kMostOf = 7;
 constexpr Index kMostFacesAtVertex = 1000;
-constexpr std::int64_t kGrain = 1024;
+constexpr std::int64_t kGrain = 256;
 
 /// Vertices that move in a region to be relaxed: that many, or a share of all, but no more than a
 /// share of what moves.
@@ -43,14 +43,13 @@ void for_each_neighbour(const DiskMesh& mesh, Index vertex, const Visit& visit) 
   });
 }
 
-/// Where each vertex belongs: to a region by its number, to none yet, or to none for good.
+/// Where each vertex belongs: to a region, by its place in the list of what moves, to none yet, or
+/// to none for good.
 class Membership {
  public:
   Membership(const DiskMesh& mesh, std::vector<Index>& of) : mesh_(mesh), of_(of) {
     of_.assign(mesh.positions.size(), kOutside);
   }
-
-  bool is_outside(Index vertex) const { return of_[vertex] == kOutside; }
 
   /// Takes the vertex in. Returns whether it was outside and may move.
   bool take(Index vertex) {
@@ -60,29 +59,54 @@ class Membership {
     return !hub;
   }
 
-  /// The vertices of the region that one belongs to, increasing; empty where they have been given.
-  /// What is beside so many of them stays, and parts them from the rest.
-  std::vector<Index> connected_to(Index vertex, Index region, Index most) {
-    std::vector<Index> members;
-    if (of_[vertex] != kWaiting) return members;
+  /// Several threads may claim what is outside: it is the lowest chunk's. Returns whether this one
+  /// claims it first, or from a higher one.
+  bool claim(Index vertex, Index chunk) {
+    const std::atomic_ref of(of_[vertex]);
+    const Index own = kFirstClaim - chunk;
+    Index now = of.load(std::memory_order_relaxed);
+    while (now == kOutside || now < own) {
+      if (of.compare_exchange_weak(now, own, std::memory_order_relaxed)) return true;
+    }
+    return false;
+  }
+
+  /// Takes in, of what a chunk has claimed, what is its own, and leaves in the list what may move.
+  void take_claimed(Index chunk, std::vector<Index>& claimed) {
+    std::erase_if(claimed, [&](Index vertex) {
+      // Others, which had claimed it before, may look at it.
+      const std::atomic_ref of(of_[vertex]);
+      if (of.load(std::memory_order_relaxed) != kFirstClaim - chunk) return true;
+      const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
+      of.store(hub ? kHeld : kWaiting, std::memory_order_relaxed);
+      return hub;
+    });
+  }
+
+  /// Adds the region that a vertex belongs to, if it waits, to the list: increasing. What is beside
+  /// so many vertices of it stays, and parts them from the rest. Returns whether there was one.
+  bool give_region(Index vertex, Index most, std::vector<Index>& list) {
+    if (of_[vertex] != kWaiting) return false;
     PollSometimes poll;
-    of_[vertex] = region;
-    members.push_back(vertex);
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      for_each_neighbour(mesh_, members[i], [&](Index u) {
+    const std::size_t begin = list.size(), full = begin + static_cast<std::size_t>(most);
+    of_[vertex] = kGiven;
+    list.push_back(vertex);
+    for (std::size_t i = begin; i < list.size(); ++i) {
+      for_each_neighbour(mesh_, list[i], [&](Index u) {
         poll();
         if (of_[u] != kWaiting) return;
-        const bool full = size_of(members) >= most;
-        of_[u] = full ? kHeld : region;
-        if (!full) members.push_back(u);
+        const bool is_full = list.size() >= full;
+        of_[u] = is_full ? kHeld : kGiven;
+        if (!is_full) list.push_back(u);
       });
     }
-    std::sort(members.begin(), members.end());
-    return members;
+    std::sort(list.begin() + static_cast<std::ptrdiff_t>(begin), list.end());
+    for (std::size_t i = begin; i < list.size(); ++i) of_[list[i]] = static_cast<Index>(i);
+    return true;
   }
 
  private:
-  static constexpr Index kOutside = -1, kWaiting = -2, kHeld = -3;
+  static constexpr Index kGiven = 0, kOutside = -1, kWaiting = -2, kHeld = -3, kFirstClaim = -4;
 
   const DiskMesh& mesh_;
   std::vector<Index>& of_;
@@ -95,6 +119,7 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
   PollSometimes poll;
   for (const Index face : faces) {
     for (const Index v : mesh.faces[face]) {
+      poll();
       if (membership.take(v)) found.push_back(v);
     }
   }
@@ -102,22 +127,21 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
   for (int ring = 0; ring < rings; ++ring) {
     const std::int64_t count = size_of(found);
     if (count > mesh.vertex_count() / kMostOf) break;
-    // Several threads look for what is outside, some of it many times; one takes it in.
-    std::vector<std::vector<Index>> outside((count - inner) / kGrain + 1);
+    std::vector<std::vector<Index>> claimed((count - inner) / kGrain + 1);
     parallel_for(work, count - inner, kGrain, [&](std::int64_t begin, std::int64_t end) {
-      std::vector<Index>& of_chunk = outside[begin / kGrain];
+      const auto chunk = static_cast<Index>(begin / kGrain);
       for (std::int64_t i = inner + begin; i < inner + end; ++i) {
         for_each_neighbour(mesh, found[i], [&](Index u) {
-          if (membership.is_outside(u)) of_chunk.push_back(u);
+          if (membership.claim(u, chunk)) claimed[chunk].push_back(u);
         });
       }
     });
+    parallel_for(work, size_of(claimed), 1, [&](std::int64_t i, std::int64_t) {
+      membership.take_claimed(static_cast<Index>(i), claimed[i]);
+    });
     inner = count;
-    for (const std::vector<Index>& of_chunk : outside) {
-      for (const Index u : of_chunk) {
-        poll();
-        if (membership.take(u)) found.push_back(u);
-      }
+    for (const std::vector<Index>& of_chunk : claimed) {
+      found.insert(found.end(), of_chunk.begin(), of_chunk.end());
     }
   }
   return found;
@@ -132,20 +156,22 @@ Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const Re
   const std::vector<Index> moving = around(mesh, faces, size.rings, work, membership);
   const Index share = size_of(moving) / kTogetherOfMoving;
   const Index most = std::min(size.most_vertices, std::max(size.few_vertices, share));
+  vertices_.reserve(moving.size());
   for (const Index v : moving) {
-    std::vector<Index> connected = membership.connected_to(v, count(), most);
-    if (!connected.empty()) vertices_.push_back(std::move(connected));
+    if (membership.give_region(v, most, vertices_)) begins_.push_back(size_of(vertices_));
   }
 }
 
 Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
                      const std::vector<Vec2>& uvs) const {
-  const auto moves = [&](Index v) { return of_[v] == region; };
+  const Index first = begins_[region], end = begins_[region + 1];
+  const auto moves = [&](Index v) { return of_[v] >= first && of_[v] < end; };
   Patch patch;
   std::vector<Index> rim;  // vertices of the faces that stay
   PollSometimes poll;
-  for (const Index v : vertices_[region]) {
+  for (Index place = first; place < end; ++place) {
     poll();
+    const Index v = vertices_[place];
     patch.moves_boundary = patch.moves_boundary || mesh_.on_boundary[v];
     mesh_.for_each_outgoing(v, [&](Index h) {
       const Triangle& corners = mesh_.faces[h / 3];
@@ -161,13 +187,19 @@ Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
   }
   sort_interruptibly(patch.mesh_faces.begin(), patch.mesh_faces.end(), std::less<>());
   sort_unique(rim);
-  std::merge(vertices_[region].begin(), vertices_[region].end(), rim.begin(), rim.end(),
-             std::back_inserter(patch.mesh_vertices));
-  for (const Index v : patch.mesh_vertices) {
+  // Merges both; where those that move have come to.
+  std::vector<Index> places(static_cast<std::size_t>(end - first));
+  for (std::size_t i = 0, of_rim = 0; i < places.size() || of_rim < rim.size();) {
+    const bool is_rim =
+        i == places.size() || (of_rim < rim.size() && rim[of_rim] < vertices_[first + i]);
+    if (!is_rim) places[i] = size_of(patch.mesh_vertices);
+    const Index v = is_rim ? rim[of_rim++] : vertices_[first + i++];
+    patch.mesh_vertices.push_back(v);
     patch.uvs.push_back(uvs[v]);
-    patch.fixed.push_back(!moves(v));
+    patch.fixed.push_back(is_rim);
   }
   const auto local = [&](Index v) {
+    if (moves(v)) return places[of_[v] - first];
     const auto& all = patch.mesh_vertices;
     return static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
   };
@@ -185,11 +217,12 @@ Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
 std::vector<std::optional<Patch>> Regions::treat(
     const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
     const std::function<bool(Patch& patch, Index region)>& treat, const Work& work) const {
-  std::vector<Index> order(vertices_.size());
+  std::vector<Index> order(count());
   std::iota(order.begin(), order.end(), Index{0});
+  const auto size_of_region = [&](Index region) { return begins_[region + 1] - begins_[region]; };
   std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return vertices_[a].size() > vertices_[b].size(); });
-  std::vector<std::optional<Patch>> treated(vertices_.size());
+                   [&](Index a, Index b) { return size_of_region(a) > size_of_region(b); });
+  std::vector<std::optional<Patch>> treated(count());
   parallel_for(work, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
     const Index region = order[i];
     Patch own = patch(region, rest, uvs);

@@ -40,7 +40,7 @@ class Regions {
   Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
           const Work& work);
 
-  Index count() const { return size_of(vertices_); }
+  Index count() const { return size_of(begins_) - 1; }
 
   /// `rest` may be empty, and that of the patch then is.
   Patch patch(Index region, const std::vector<RestTriangle>& rest,
@@ -55,8 +55,9 @@ class Regions {
 
  private:
   const DiskMesh& mesh_;
-  std::vector<std::vector<Index>> vertices_;  ///< that move, of each, increasing
-  std::vector<Index> of_;                     ///< per vertex: its region, or below 0
+  std::vector<Index> vertices_;      ///< that move, of each region in turn, increasing
+  std::vector<Index> begins_ = {0};  ///< of each of these, and the end
+  std::vector<Index> of_;            ///< per vertex: its place there, or below 0
 };
 
 /// What relax_regions did.
