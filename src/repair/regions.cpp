@@ -83,8 +83,8 @@ class Membership {
     });
   }
 
-  /// Adds the region that a vertex belongs to, if it waits, to the list: increasing. What is beside
-  /// so many vertices of it stays, and parts them from the rest. Returns whether there was one.
+  /// Adds the region that a vertex belongs to, if it waits, to the list. What is beside so many
+  /// vertices of it stays, and parts them from the rest. Returns whether there was one.
   bool give_region(Index vertex, Index most, std::vector<Index>& list) {
     if (of_[vertex] != kWaiting) return false;
     PollSometimes poll;
@@ -100,9 +100,13 @@ class Membership {
         if (!is_full) list.push_back(u);
       });
     }
-    std::sort(list.begin() + static_cast<std::ptrdiff_t>(begin), list.end());
-    for (std::size_t i = begin; i < list.size(); ++i) of_[list[i]] = static_cast<Index>(i);
     return true;
+  }
+
+  /// Sorts a region, a part of that list, and notes where its vertices have come to.
+  void number(std::vector<Index>& list, Index begin, Index end) {
+    std::sort(list.begin() + begin, list.begin() + end);
+    for (Index place = begin; place < end; ++place) of_[list[place]] = place;
   }
 
  private:
@@ -160,6 +164,9 @@ Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const Re
   for (const Index v : moving) {
     if (membership.give_region(v, most, vertices_)) begins_.push_back(size_of(vertices_));
   }
+  parallel_for(work, count(), 1, [&](std::int64_t i, std::int64_t) {
+    membership.number(vertices_, begins_[i], begins_[i + 1]);
+  });
 }
 
 Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
