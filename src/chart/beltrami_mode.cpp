@@ -8,6 +8,7 @@
 #include "chart/coarser_start.h"
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
+#include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
@@ -45,6 +46,7 @@ ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited
   if (is_nested(mesh.face_count(), coarse_faces, options)) {
     ChartMap map = nested_mode(mesh, inherited, options, work);
     if (!map.uvs.empty()) return map;
+    require_whole_factor(mesh, options, work);
     fine.statistics.stages.push_back(given_up(map.statistics.stages));
   }
   simplify_fine(coarse_faces, inherited.level, work.part(0, kSimplified), fine);

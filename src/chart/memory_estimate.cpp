@@ -5,7 +5,9 @@
 #include "chart/memory_estimate.h"
 
 #include <algorithm>
+#include <string>
 
+#include "base/error.h"
 #include "base/types.h"
 #include "chart/fine_problem.h"
 #include "chart/memory.h"
@@ -71,6 +73,8 @@ double extra_bytes(const MeshCounts& n, Extra extra, int threads) {
   switch (extra) {
     case Extra::kLevelHessian:
       return nested_hessian_bytes(n, threads);
+    case Extra::kWholeFactor:
+      return metric_bytes(n, threads);
     case Extra::kNewtonSteps:
       return metric_factor_bytes(n, threads) + newton_bytes(n, threads);
     case Extra::kHarmonicMap:
@@ -89,13 +93,29 @@ std::uint64_t run_bytes(const MeshCounts& n, const ChartOptions& options, double
   return static_cast<std::uint64_t>(std::max(all, kLeast));
 }
 
+std::uint64_t run_bytes_with(Extra extra, const DiskMesh& mesh, const ChartOptions& options,
+                             const Work& work) {
+  const MeshCounts n = counts_of(mesh, false);
+  return run_bytes(n, options, extra_bytes(n, extra, work.threads()));
+}
+
 }  // namespace
 
 bool affords(const DiskMesh& mesh, const ChartOptions& options, Extra extra, const Work& work) {
-  if (work.memory_limit() == 0) return true;
-  const MeshCounts n = counts_of(mesh, false);
-  return run_bytes(n, options, extra_bytes(n, extra, work.threads())) <=
-         static_cast<std::uint64_t>(work.memory_limit());
+  return work.memory_limit() == 0 || run_bytes_with(extra, mesh, options, work) <=
+                                         static_cast<std::uint64_t>(work.memory_limit());
+}
+
+void require_whole_factor(const DiskMesh& mesh, const ChartOptions& options, const Work& work) {
+  if (affords(mesh, options, Extra::kWholeFactor, work)) return;
+  constexpr std::uint64_t kMebibyte = 1 << 20;
+  const std::uint64_t bytes = run_bytes_with(Extra::kWholeFactor, mesh, options, work);
+  throw Error(Fault::kOutOfMemory,
+              "the mesh cannot be flattened in levels, and at once is estimated to need " +
+                  std::to_string((bytes + kMebibyte - 1) / kMebibyte) +
+                  " MiB of memory, of which the option memory-limit allows " +
+                  std::to_string(static_cast<std::uint64_t>(work.memory_limit()) / kMebibyte) +
+                  " MiB: raise it, or flatten a mesh with fewer faces or less noise");
 }
 
 std::uint64_t estimate_memory(const DiskMesh& mesh, const ChartOptions& options, int threads) {

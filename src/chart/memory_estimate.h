@@ -14,6 +14,7 @@ namespace beltrami {
 enum class Extra {
   kHarmonicMap,   ///< beside the metric one, where that flips many faces
   kLevelHessian,  ///< of a level of several that is hard
+  kWholeFactor,   ///< of the disk or a large level, where the way in levels leads nowhere
   kNewtonSteps,   ///< after a polish that nearly singular faces block: several times the memory
   kGlobalFix,     ///< of the repair
 };
@@ -25,5 +26,9 @@ std::uint64_t estimate_memory(const DiskMesh& mesh, const ChartOptions& options,
 
 /// Whether the run stays within the memory limit of its work with this extra.
 bool affords(const DiskMesh& mesh, const ChartOptions& options, Extra extra, const Work& work);
+
+/// For a disk that cannot be had in levels. Error OUT_OF_MEMORY where the run does not afford
+/// Extra::kWholeFactor.
+void require_whole_factor(const DiskMesh& mesh, const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -92,6 +92,7 @@ struct Climb {
   double energy = 0;           ///< mean, of that level
   bool hard = false;           ///< a polish did not end stationary, or a level needed its factor
   Index most_for_hessian = 0;  ///< faces of a level
+  Index most_factored = 0;     ///< the same, for a factor of its own
   std::unique_ptr<VCycle> cycle = nullptr;  ///< of the levels up to that one
 };
 
@@ -196,6 +197,7 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
     const auto flips_of = [&](const std::vector<Vec2>& uvs) {
       return non_positive_faces(mesh.faces, uvs, inner).size();
     };
+    bool counted = false;
     const auto at_most = [&](double share) {
       return static_cast<double>(solved.flips) <= share * mesh.face_count();
     };
@@ -204,6 +206,7 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
         [&](int step) {
           if (step < kLeastSteps) return false;
           const std::size_t before = std::exchange(solved.flips, flips_of(map.uvs));
+          counted = true;
           const bool first = step == kLeastSteps;
           if (first) return at_most(kFewFlips);
           if (at_most(kFairlyFew)) return true;
@@ -214,8 +217,9 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
         residual, map.uvs);
     if (!anchored.empty()) {
       put_in_place(anchored, carried_map(level, cycle.points(), inner), map.uvs);
-      solved.flips = flips_of(map.uvs);
+      counted = false;
     }
+    if (!counted) solved.flips = flips_of(map.uvs);  // it may end before it asks
     if (at_most(kFairlyFew)) return;
     std::vector<Vec2> start = carried_map(level, cycle.points(), inner);
     solved.of_carried = flips_of(start);
@@ -329,6 +333,7 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   parallel_free(work, level.problem.rest);
   if (converged) return true;
   climb.hard = true;
+  if (work.out_of_time() || mesh.face_count() > climb.most_factored) return true;
   return to_dirichlet(options.energy, climb.energy) <=
          kHopelessly * to_dirichlet(options.energy, below);
 }
@@ -417,6 +422,7 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
     climb.hard = was_hard;
     climb.energy = energy;
   }
+  if (mesh.face_count() > climb.most_factored) return false;
   const bool injective = few && !pressed ? finish_few(mesh, goes_on, options, rest, climb)
                                          : climb_by_factor(mesh, coarse, options, rest, climb);
   if (!injective) return false;
@@ -443,6 +449,8 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
   const Work begin = work.part(0, kStarted), rest = work.part(kStarted, 1);
   Climb climb;
   const bool affords_it = affords(mesh, options, Extra::kLevelHessian, work);
+  climb.most_factored =
+      affords(mesh, options, Extra::kWholeFactor, work) ? mesh.face_count() : kMostFactored;
   climb.most_for_hessian = std::min(affords_it ? kMostFactored : kFewFaces, mesh.face_count() - 1);
   const Index faces = coarse_faces(coarsest.face_count(), options.coarse_faces);
   climb.map = beltrami_mode(coarsest, faces, {}, options, begin);

@@ -34,6 +34,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
@@ -178,7 +179,9 @@ bool relax_worst(const Setting& setting, State& state) {
 /// Relaxes regions around those of the faces that are singular first. Returns the mean energy then.
 double relax(const Setting& setting, std::vector<SingularStep> faces, State& state) {
   const DiskMesh& mesh = *setting.fine.mesh;
-  const auto is_first = [](const SingularStep& a, const SingularStep& b) {
+  PollSometimes poll;
+  const auto is_first = [&](const SingularStep& a, const SingularStep& b) {
+    poll();
     return a.length != b.length ? a.length < b.length : a.face < b.face;
   };
   const auto most = static_cast<std::size_t>(kMostRelaxed * mesh.face_count());

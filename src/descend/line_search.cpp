@@ -67,8 +67,14 @@ std::vector<SingularStep> singular_among(std::int64_t count, std::int64_t grain,
       if (length) found[begin / grain].push_back({f, *length});
     }
   });
+  std::size_t total = 0;
+  for (const auto& chunk : found) total += chunk.size();
   std::vector<SingularStep> all;
-  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
+  all.reserve(total);
+  for (const auto& chunk : found) {
+    poll_interrupt();
+    all.insert(all.end(), chunk.begin(), chunk.end());
+  }
   return all;
 }
 

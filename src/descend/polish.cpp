@@ -364,6 +364,16 @@ struct Settling {
   }
 };
 
+/// Of the map at the start; with contact, where it is asked for and the map has no infinite energy.
+template <class Density>
+double evaluate_start(Objective<Density>& objective, const Field& uvs, const PolishOptions& options,
+                      Field& gradient) {
+  const double start = objective.evaluate(uvs, gradient);
+  if (!options.contact || !std::isfinite(start)) return start;
+  objective.set_contact(options.contact);
+  return objective.evaluate(uvs, gradient);
+}
+
 template <class Density>
 PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                      const Precondition& precondition, Field& uvs, const PolishOptions& options,
@@ -374,13 +384,8 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
   const bool remembers = options.history > 0;
   Field &gradient = fields.gradient, &direction = fields.direction, &trial = fields.trial;
   Field& next_gradient = remembers ? fields.next_gradient : gradient;
-  double start = objective.evaluate(uvs, gradient);
-  if (options.contact && std::isfinite(start)) {
-    objective.set_contact(options.contact);
-    start = objective.evaluate(uvs, gradient);
-  }
-  result.energies.push_back(start);
-  if (!std::isfinite(start)) return result;
+  result.energies.push_back(evaluate_start(objective, uvs, options, gradient));
+  if (!std::isfinite(result.energies.back())) return result;
   History history(options.history, work);
   bool rigidly = true;  // whether faces may be held back alone
   Settling settling;

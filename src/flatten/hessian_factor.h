@@ -27,7 +27,8 @@ class HessianFactor {
   /// positive. Returns whether there is a factor: in floating point the matrix may not be definite.
   bool fit(Energy energy, const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs);
 
-  /// Frees what only the next fit() is faster with.
+  /// Frees what only the next fit() is faster with, and keeps a factor in single precision in 16
+  /// bits per entry. A small one, in double precision, stays as it is.
   void settle();
 
   /// Sets `x` to about its inverse times `rhs`; one entry per vertex. Linear, symmetric, definite.

@@ -120,7 +120,10 @@ void VCycle::set(const std::vector<SingleWeights>& weights, const std::vector<do
   for (const double spring : springs) single.push_back(static_cast<float>(spring));
   Level& finest = *levels_.back();
   finest.smoother.set(finest.mesh, weights, single);
-  if (!single.empty()) set_springs_below(levels_.size() - 1, single);
+  if (single.empty() && !has_springs_) return;
+  has_springs_ = !single.empty();
+  single.resize(finest.mesh.positions.size(), 0);
+  set_springs_below(levels_.size() - 1, single);
 }
 
 void VCycle::anchor(const std::vector<bool>& vertices) {
@@ -132,6 +135,7 @@ void VCycle::anchor(const std::vector<bool>& vertices) {
         static_cast<float>(kStiffSpring) * std::abs(finest.stiffness(static_cast<Index>(v)));
   }
   finest.set_springs(springs);
+  has_springs_ = true;
   set_springs_below(levels_.size() - 1, springs);
 }
 

@@ -35,7 +35,7 @@ class VCycle final : public StiffnessInverse {
   /// Hessian of the energy at this map of it, as long as there are no springs: what is left over
   /// there of a descent by stiffness, which is slow along motions of large parts, takes a few steps
   /// with it. It takes the place of that of a coarser level, which stays where this one cannot be
-  /// factorized.
+  /// factorized; if it cannot the second time, there is none. Returns whether there is one here.
   bool take_hessian(Energy energy, const std::vector<RestTriangle>& rest,
                     const std::vector<Vec2>& uvs) override;
   /// Whether that is of a level finer than the coarsest.
@@ -63,7 +63,8 @@ class VCycle final : public StiffnessInverse {
 
   /// Adds to `uvs` what conjugate gradients with the V-cycle of the stiffness make of the residual,
   /// on the finest level, and leaves what is left of it: up to `most` steps, until `enough`, which
-  /// is told how many were made, says so after one.
+  /// is told how many were made, says so after one. Ends without asking where rounding leaves no
+  /// direction.
   void improve(int most, const std::function<bool(int step)>& enough, SingleField& residual,
                std::vector<Vec2>& uvs);
 
@@ -85,6 +86,7 @@ class VCycle final : public StiffnessInverse {
   std::unique_ptr<HessianFactor> hessian_;
   std::size_t hessian_level_ = 0;               ///< 0 is the coarsest
   std::vector<std::unique_ptr<Level>> levels_;  ///< from the coarsest that has no factor
+  bool has_springs_ = false;                    ///< on the levels below the finest
   std::vector<Vec2> solve_rhs_, solve_x_;
 };
 

@@ -53,6 +53,7 @@ class Membership {
 
   /// Takes the vertex in. Returns whether it was outside and may move.
   bool take(Index vertex) {
+    poll_();
     if (of_[vertex] != kOutside) return false;
     const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
     of_[vertex] = hub ? kHeld : kWaiting;
@@ -86,14 +87,14 @@ class Membership {
   /// Adds the region that a vertex belongs to, if it waits, to the list. What is beside so many
   /// vertices of it stays, and parts them from the rest. Returns whether there was one.
   bool give_region(Index vertex, Index most, std::vector<Index>& list) {
+    poll_();
     if (of_[vertex] != kWaiting) return false;
-    PollSometimes poll;
     const std::size_t begin = list.size(), full = begin + static_cast<std::size_t>(most);
     of_[vertex] = kGiven;
     list.push_back(vertex);
     for (std::size_t i = begin; i < list.size(); ++i) {
       for_each_neighbour(mesh_, list[i], [&](Index u) {
-        poll();
+        poll_();
         if (of_[u] != kWaiting) return;
         const bool is_full = list.size() >= full;
         of_[u] = is_full ? kHeld : kGiven;
@@ -114,23 +115,25 @@ class Membership {
 
   const DiskMesh& mesh_;
   std::vector<Index>& of_;
+  PollSometimes poll_;
 };
 
-/// The vertices that are to move, each once.
-std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces, int rings,
-                          const Work& work, Membership& membership) {
+/// The vertices that are to move, each once; up to `rings` rings, which becomes what it reached.
+std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces, const Work& work,
+                          Membership& membership, int& rings) {
   std::vector<Index> found;
-  PollSometimes poll;
   for (const Index face : faces) {
     for (const Index v : mesh.faces[face]) {
-      poll();
       if (membership.take(v)) found.push_back(v);
     }
   }
   std::int64_t inner = 0;  // of those found, all of whose neighbours are
   for (int ring = 0; ring < rings; ++ring) {
     const std::int64_t count = size_of(found);
-    if (count > mesh.vertex_count() / kMostOf) break;
+    if (count > mesh.vertex_count() / kMostOf) {
+      rings = ring;
+      break;
+    }
     std::vector<std::vector<Index>> claimed((count - inner) / kGrain + 1);
     parallel_for(work, count - inner, kGrain, [&](std::int64_t begin, std::int64_t end) {
       const auto chunk = static_cast<Index>(begin / kGrain);
@@ -155,9 +158,9 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
 
 Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
                  const Work& work)
-    : mesh_(mesh) {
+    : mesh_(mesh), rings_(size.rings) {
   Membership membership(mesh, of_);
-  const std::vector<Index> moving = around(mesh, faces, size.rings, work, membership);
+  const std::vector<Index> moving = around(mesh, faces, work, membership, rings_);
   const Index share = size_of(moving) / kTogetherOfMoving;
   const Index most = std::min(size.most_vertices, std::max(size.few_vertices, share));
   vertices_.reserve(moving.size());

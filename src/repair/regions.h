@@ -31,15 +31,16 @@ struct RegionSize {
   Index few_vertices = most_vertices;
 };
 
-/// The vertices of the faces and those up to so many rings around move, or fewer rings where that
-/// would be more than a seventh of all vertices; what hangs together is one region, so that none
-/// moves a vertex of another. Hubs, vertices with more than 1000 faces, stay.
+/// The vertices of the faces and those up to so many rings around move; the last ring is the one
+/// with which they are more than a seventh of all vertices. What hangs together is one region, so
+/// that none moves a vertex of another. Hubs, vertices with more than 1000 faces, stay.
 class Regions {
  public:
   /// Takes time for the mesh. Keeps a reference to it.
   Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
           const Work& work);
 
+  int rings() const { return rings_; }  ///< that were reached
   Index count() const { return size_of(begins_) - 1; }
 
   /// `rest` may be empty, and that of the patch then is.
@@ -55,6 +56,7 @@ class Regions {
 
  private:
   const DiskMesh& mesh_;
+  int rings_ = 0;
   std::vector<Index> vertices_;      ///< that move, of each region in turn, increasing
   std::vector<Index> begins_ = {0};  ///< of each of these, and the end
   std::vector<Index> of_;            ///< per vertex: its place there, or below 0

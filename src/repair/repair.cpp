@@ -98,8 +98,12 @@ class Repair {
     PatchWork patches(mesh_, uvs_);
     const auto count = static_cast<double>(bad.size());
     if (bad.size() > kManyFlips && count <= kMostFlips * mesh_.face_count()) {
+      int reached = -1;  // rings
       for (const int rings : {kRegionRings, kWiderRings}) {
-        untangle_regions(bad, rings, patches);
+        const Regions regions(mesh_, bad, {rings}, work_);
+        if (regions.rings() <= reached) break;
+        reached = regions.rings();
+        untangle_regions(regions, patches);
         look_again(bad);
         if (bad.empty()) return;
       }
@@ -120,12 +124,11 @@ class Repair {
   }
 
   /// Of many faces most patches have others on their edges, which hold them.
-  void untangle_regions(const std::vector<Index>& bad, int rings, PatchWork& patches) {
+  void untangle_regions(const Regions& regions, PatchWork& patches) {
     const Work alone = work_.aside();
     const auto unfold = [&](Patch& patch, Index) {
       return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
     };
-    const Regions regions(mesh_, bad, {rings}, work_);
     for (std::optional<Patch>& unfolded : regions.treat(rest_, uvs_, unfold, work_)) {
       if (!unfolded || !patches.take(*unfolded)) continue;
       ++result_.patch_fixes;

@@ -19,8 +19,11 @@ constexpr int kUntangleSteps = 100;
 constexpr double kSoftness = 0.4;
 /// At least, so that the barrier of a nearly mended face does not overflow: with a tenth of it the
 /// last steps only take that face's energy down, by a factor of 0.6 each. Faces can come to rest
-/// flipped by less than that: it is halved with each step after which the worst one is as bad.
-constexpr double kLeastSoftness = 0.01;
+/// flipped by little beside it: from the third step on after which the worst one is as bad it is
+/// lowered with each. (Of 18,000 small patches that mends 37 more, and leaves none; earlier or
+/// faster it leaves up to 400.)
+constexpr double kLeastSoftness = 0.01, kLowered = 0.7;
+constexpr int kAtRest = 3;
 /// Steps after which the worst face is as bad as before, by this share: of 131 patches that were
 /// untangled one took longer.
 constexpr int kPatience = 15;
@@ -108,7 +111,8 @@ bool untangle(const std::vector<Triangle>& faces, const std::vector<RestTriangle
     if (step.length == 0) break;
     least = smallest_determinant(faces, rest, trial);
     if (least < kAsBad * best) {
-      least_softness *= 0.5;
+      const bool is_little = kSoftness * -least < least_softness;
+      if (is_little && i + 1 >= best_at + kAtRest) least_softness *= kLowered;
       continue;
     }
     best = least;

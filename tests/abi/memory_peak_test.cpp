@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abi/host.h"
+#include "support/disks.h"
 #include "support/meshes.h"
 
 namespace beltrami {
@@ -80,6 +81,28 @@ TEST(MemoryOfLimitedRun, StaysWithinItsLimit) {
   EXPECT_LE(peak.bytes(), static_cast<double>(limit));
   // Half of it is for a level that needs a factor of its own, which this mesh has not.
   EXPECT_GE(peak.bytes(), 0.4 * static_cast<double>(limit)) << "the estimate says nothing";
+}
+
+// Noise, which no coarser level knows: what would take a factor of the whole does without it or
+// ends for want of memory.
+TEST(MemoryOfLimitedRun, StaysWithinItsLimitOnNoise) {
+  for (const double height : {2.0, 4.0}) {
+    disks::Random random(5);
+    meshes::TriangleList mesh = meshes::grid(400, 400);
+    for (Vec3& p : mesh.positions) p *= 400;
+    for (Vec3& p : mesh.positions) p.z() = height * random.between(-1.7, 1.7);
+    malloc_trim(0);
+    const double before = memory_of_process("VmRSS");
+    const Context context = create();
+    ASSERT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
+    set_option(context, BELTRAMI_OPTION_MEMORY_LIMIT, 1);
+    const std::uint64_t limit = estimate(context);
+    set_option(context, BELTRAMI_OPTION_MEMORY_LIMIT, limit);
+    const PeakFrom peak(before);
+    const beltrami_status status = run(context);
+    EXPECT_TRUE(status >= BELTRAMI_OK || status == BELTRAMI_E_OUT_OF_MEMORY) << message(context);
+    EXPECT_LE(peak.bytes(), static_cast<double>(limit)) << height;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -406,6 +407,47 @@ TEST(Polish, TakesTheSameFirstStepWithAndWithoutRememberingSteps) {
   options.history = 0;
   EXPECT_EQ(polish_from(mesh, start, options).uvs, remembered);
   EXPECT_NE(remembered, start);
+}
+
+TEST(Polish, ContinuesTheStepOfTheCallBefore) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(40, 40));
+  const std::vector<Vec2> start = tutte_embedding(mesh, Work(1));
+  const auto energy_after = [&](int calls, bool continues, int threads) {
+    LastStep last;
+    PolishOptions options;
+    options.max_iterations = 1;
+    options.history = 0;
+    options.last = continues ? &last : nullptr;
+    Polished polished{{}, start};
+    double before = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < calls; ++i) {
+      polished = polish_from(mesh, polished.uvs, options, threads);
+      EXPECT_LE(polished.result.energies.front(), before);
+      before = polished.result.energies.back();
+      EXPECT_TRUE(non_positive_faces(mesh.faces, polished.uvs, Work(1)).empty());
+    }
+    return before;
+  };
+  EXPECT_EQ(energy_after(1, true, 1), energy_after(1, false, 1));
+  EXPECT_EQ(energy_after(6, true, 1), energy_after(6, true, 2));
+  EXPECT_LT(energy_after(12, true, 1), energy_after(12, false, 1));
+}
+
+TEST(Polish, WithoutADescentAlongTheLastStepGoesOnWithoutIt) {
+  const DiskMesh mesh = disks::disk(meshes::bumps(10, 10));
+  const std::vector<Vec2> start = tutte_embedding(mesh, Work(1));
+  PolishOptions options;
+  options.max_iterations = 1;
+  options.history = 0;
+  const std::vector<Vec2> plain = polish_from(mesh, start, options).uvs;
+  LastStep uphill{{}, 1};
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    uphill.step.push_back((start[v] - plain[v]).cast<float>());
+  }
+  options.last = &uphill;
+  EXPECT_EQ(polish_from(mesh, start, options).uvs, plain);
+  ASSERT_EQ(uphill.step.size(), start.size());
+  EXPECT_LE((uphill.step[50].cast<double>() - (plain[50] - start[50])).norm(), 1e-5);
 }
 
 TEST(Polish, HasTheSameBitsOnTwoThreads) {

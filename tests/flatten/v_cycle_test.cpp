@@ -253,6 +253,19 @@ TEST(VCycle, GivesTheHessianUpForSprings) {
   EXPECT_EQ(x, y);
 }
 
+TEST(VCycle, SpringsAreTakenOffOnEveryLevel) {
+  Cycle with(1), without(1);
+  std::vector<double> springs(with.fine.positions.size(), 1e6);
+  const auto rhs = doubled(random_field(with.fine.vertex_count(), 9));
+  std::vector<Vec2> x, y;
+  with.cycle.set(single(with.stiffness(with.fine)), springs);
+  for (Cycle* levels : {&with, &without}) {
+    levels->cycle.set(single(levels->stiffness(levels->fine)), {});
+    levels->cycle.precondition(rhs, levels == &with ? x : y);
+  }
+  EXPECT_EQ(x, y);
+}
+
 TEST(VCycle, SpringsHoldOnEveryLevel) {
   Cycle levels(1);
   std::vector<double> springs(levels.fine.positions.size(), 0);

@@ -433,6 +433,26 @@ TEST(NativeSolver, PreconditionsNearlyAsBeforeWithItsFactorAlone) {
   }
 }
 
+TEST(CompactFactor, TakesNextToNothingForNothing) {
+  // Whole numbers would be of a unit that has no inverse in single precision.
+  constexpr int kRows = 50;
+  for (const double beside : {-1e-30, -1e-36, -1e-42}) {
+    Triplets entries;
+    for (int i = 0; i < kRows; ++i) {
+      entries.emplace_back(i, i, 1);
+      if (i + 1 < kRows) entries.emplace_back(i + 1, i, beside);
+    }
+    SparseMatrix lower(kRows, kRows);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    const auto solver = make_native_solver({Precision::kSingle}, 0, Work(1));
+    solver->analyze(lower);
+    ASSERT_TRUE(solver->factorize(lower));
+    solver->keep_preconditioner();
+    const DenseMatrix ones = DenseMatrix::Ones(kRows, 1);
+    EXPECT_LE((solver->precondition(ones) - ones).norm(), 1e-6);
+  }
+}
+
 TEST(CompactFactor, IsDefiniteAndNearWhereTheMatrixIsNearlySingular) {
   // Of a Laplacian with next to nothing on the diagonal: what is constant costs 1e-6.
   Random random(23);

@@ -57,8 +57,8 @@ std::vector<Vec2> mirrored_block(const DiskMesh& mesh, Index n, Index from, Inde
 
 std::vector<Patch> cut_regions(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                                const std::vector<Vec2>& uvs, const std::vector<Index>& faces,
-                               const RegionSize& size) {
-  const Regions regions(mesh, faces, size, Work(1));
+                               const RegionSize& size, int threads = 1) {
+  const Regions regions(mesh, faces, size, Work(threads));
   std::vector<Patch> patches;
   for (Index i = 0; i < regions.count(); ++i) patches.push_back(regions.patch(i, rest, uvs));
   return patches;
@@ -119,6 +119,56 @@ TEST(Regions, ArePartedWhereTheyAreLargeAlongVerticesThatStay) {
     EXPECT_FALSE(staying.contains(v));
   }
   EXPECT_GT(moving.size(), moving_in_whole.size() / 2);
+}
+
+TEST(Regions, ArePartedIntoSharesOfWhatMoves) {
+  const DiskMesh mesh = disks::disk(meshes::grid(100, 100));
+  const RegionSize size{.rings = 14, .few_vertices = 20};
+  const auto largest = [&](const std::vector<Patch>& regions) {
+    std::ptrdiff_t most = 0, all = 0;
+    for (const Patch& region : regions) {
+      const auto moving = std::count(region.fixed.begin(), region.fixed.end(), false);
+      most = std::max(most, moving);
+      all += moving;
+    }
+    return static_cast<double>(most) / static_cast<double>(all);
+  };
+  const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  EXPECT_EQ(cut_regions(mesh, {}, uvs, {10100}, {14}).size(), 1u);
+  // What parts them counts among what would have moved.
+  EXPECT_LE(largest(cut_regions(mesh, {}, uvs, {10100}, size)), 1.0 / 8);
+  EXPECT_EQ(cut_regions(mesh, {}, uvs, {10100}, {14, 20000, 20000}).size(), 1u);
+}
+
+TEST(Regions, AreTheSameOnAnyNumberOfThreads) {
+  Random random(11);
+  const DiskMesh mesh = disks::disk(meshes::grid(200, 200));
+  const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  std::vector<Index> faces;
+  for (int i = 0; i < 600; ++i) faces.push_back(random.below(mesh.face_count()));
+  const std::vector<Patch> one = cut_regions(mesh, {}, uvs, faces, {3, 500});
+  EXPECT_GT(one.size(), 10u);
+  for (const int threads : {2, 5}) {
+    const std::vector<Patch> more = cut_regions(mesh, {}, uvs, faces, {3, 500}, threads);
+    ASSERT_EQ(more.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(more[i].mesh_vertices, one[i].mesh_vertices);
+      EXPECT_EQ(more[i].faces, one[i].faces);
+      EXPECT_EQ(more[i].fixed, one[i].fixed);
+    }
+  }
+}
+
+// With a face each, none of which takes long enough to look by itself.
+TEST(Regions, LookForARequestToCancelWhereThereAreMany) {
+  const DiskMesh mesh = disks::disk(meshes::grid(400, 400));
+  const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  const auto polls = [&](Index step) {
+    std::vector<Index> faces;
+    for (Index f = 0; f < mesh.face_count(); f += step) faces.push_back(f);
+    return count_polls([&] { Regions(mesh, faces, {0}, Work(1)); });
+  };
+  EXPECT_GE(polls(8), polls(8000) + 20000 * 3 * 6 / 4096 / 2);
 }
 
 TEST(Regions, OfTheWholeMeshHoldOneVertex) {

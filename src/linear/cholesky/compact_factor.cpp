@@ -11,6 +11,9 @@ namespace beltrami {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<std::int16_t>::max();
+/// Of a column, below which its entries are taken for zero: what they are multiplied with to get
+/// whole numbers would overflow.
+constexpr float kLeast = kLargest * std::numeric_limits<float>::min();
 constexpr std::int64_t kGrain = 64;  // supernodes
 
 std::int64_t entries_below_diagonal(std::int64_t height, std::int64_t width) {
@@ -40,6 +43,7 @@ CompactFactor::CompactFactor(const Symbolic& symbolic, const float* panels, cons
         diagonal_[at] = column[c];
         float largest = 0;
         for (int r = c + 1; r < height; ++r) largest = std::max(largest, std::abs(column[r]));
+        if (largest < kLeast) largest = 0;
         unit_[at] = largest / kLargest;
         const float inverse = largest > 0 ? kLargest / largest : 0;
         for (int r = c + 1; r < height; ++r) {
