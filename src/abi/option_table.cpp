@@ -231,7 +231,8 @@ const OptionEntry kOptions[] = {
         .name = "memory-limit",
         .summary = "Bytes of memory that a run is to stay within by its estimate: one that needs "
                    "more ends before it starts, and steps that only hard meshes need are left out "
-                   "where they would exceed it; 0 sets no limit.",
+                   "where they would exceed it, or end it if there is no map without them; 0 sets "
+                   "no limit.",
         .minimum = 0,
         .maximum = 1e14,
         .get = get<&Options::memory_limit>,

@@ -430,8 +430,9 @@ typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* st
  * the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
  * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it
  * is at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do
- * with; without a limit a run may take four times as much on hard meshes, where Newton steps end a
- * blocked polish, or the repair embeds the whole layout anew: with one it does without these.
+ * with. Without a limit a run may take several times as much on hard meshes, where Newton steps end
+ * a blocked polish, the repair embeds the whole layout anew, or noise takes a factor of the whole
+ * mesh (of ten million faces ten times): with one it does without these, or ends.
  * Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
@@ -441,7 +442,7 @@ BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context,
  * not at its default: flatten with another method than beltrami, delaunay with cm, tutte or
  * uv-prolongation, injectivity with tutte, gif or bff unless refined, refine-iterations without
  * refine), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
- * the option memory-limit), SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
+ * the option memory-limit, and later, if it has no room for what noise takes), SOLVER, INTERNAL (also if `progress` throws a C++ exception). */
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
 

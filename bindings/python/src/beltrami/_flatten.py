@@ -84,7 +84,7 @@ class Flattener:
     memory_limit : int, default 0
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
-        it; 0 sets no limit. A number from 0 to 1e+14.
+        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
 
     Raises
     ------
@@ -418,7 +418,7 @@ def parameterize(
     memory_limit : int, default 0
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
-        it; 0 sets no limit. A number from 0 to 1e+14.
+        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
 
     Returns
     -------

@@ -165,7 +165,7 @@ def unwrap_batch(
     memory_limit : int, default 0
         Bytes of memory that a run is to stay within by its estimate: one that needs more ends
         before it starts, and steps that only hard meshes need are left out where they would exceed
-        it; 0 sets no limit. A number from 0 to 1e+14.
+        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
     cut : {"minimal", "islands", "auto", "given"}, default "auto"
         Where seams go beside those that are given: auto (short ones that are searched for, along
         which the atlas has the target-energy), minimal (a short cut graph where a piece is no

@@ -295,13 +295,13 @@ options! {
 
     /// Bytes of memory that a run is to stay within by its estimate: one that needs more ends
     /// before it starts, and steps that only hard meshes need are left out where they would exceed
-    /// it; 0 sets no limit.
+    /// it, or end it if there is no map without them; 0 sets no limit.
     ///
     /// From 0 to 100000000000000.
     ///
     /// Default: 0.
     memory_limit(u64) of [Options UnwrapOptions] = 14 "memory-limit"
-        "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it; 0 sets no limit."
+        "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it, or end it if there is no map without them; 0 sets no limit."
         Int(&[]), 0..=100000000000000.0, default 0, calls 3;
 
     /// Where seams go beside those that are given: auto (short ones that are searched for, along
