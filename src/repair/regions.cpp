@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -32,6 +33,10 @@ constexpr std::int64_t kGrain = 256;
 /// Vertices that move in a region to be relaxed: that many, or a share of all, but no more than a
 /// share of what moves.
 constexpr Index kMostTogether = 500, kTogetherOf = 125, kTogetherOfMoving = 16;
+
+/// What several threads make of the time of one region: so many vertices keep each busy, and they
+/// are no more times as fast than that, or than a share of their number.
+constexpr double kForAThread = 400, kMostTimesAsFast = 3, kShareOfThreads = 0.8;
 
 /// Calls visit(u) for the neighbours of a vertex, on the boundary for some of them twice.
 template <class Visit>
@@ -154,6 +159,25 @@ std::vector<Index> around(const DiskMesh& mesh, const std::vector<Index>& faces,
   return found;
 }
 
+/// How many of the regions of these sizes, from the largest on, are to be treated one after the
+/// other by all threads, so that all of them take the shortest time.
+Index most_in_turn(const std::vector<double>& sizes, int threads) {
+  double rest = std::accumulate(sizes.begin(), sizes.end(), 0.0), in_turn = 0;
+  double best = std::numeric_limits<double>::infinity();
+  Index most = 0;
+  for (Index i = 0; i < size_of(sizes); ++i) {
+    const double all = in_turn + std::max(sizes[i], rest / threads);
+    if (all < best) {
+      best = all;
+      most = i;
+    }
+    const double together = std::min(kMostTimesAsFast, kShareOfThreads * threads);
+    in_turn += sizes[i] / std::clamp(sizes[i] / kForAThread, 1.0, std::max(1.0, together));
+    rest -= sizes[i];
+  }
+  return in_turn < best ? size_of(sizes) : most;
+}
+
 }  // namespace
 
 Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const RegionSize& size,
@@ -224,23 +248,30 @@ Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
   return patch;
 }
 
-std::vector<std::optional<Patch>> Regions::treat(
-    const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
-    const std::function<bool(Patch& patch, Index region)>& treat, const Work& work) const {
+std::vector<std::optional<Patch>> Regions::treat(const std::vector<RestTriangle>& rest,
+                                                 const std::vector<Vec2>& uvs,
+                                                 const Treatment& treatment,
+                                                 const Work& work) const {
   std::vector<Index> order(count());
   std::iota(order.begin(), order.end(), Index{0});
   const auto size_of_region = [&](Index region) { return begins_[region + 1] - begins_[region]; };
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return size_of_region(a) > size_of_region(b); });
   std::vector<std::optional<Patch>> treated(count());
-  parallel_for(work, size_of(order), 1, [&](std::int64_t i, std::int64_t) {
-    const Index region = order[i];
+  const auto treat_one = [&](Index region, const Work& on) {
     Patch own = patch(region, rest, uvs);
-    if (!treat(own, region)) return;
+    if (!treatment(own, region, on)) return;
     own.faces = {};
     own.rest = {};
     treated[region] = std::move(own);
-  });
+  };
+  std::vector<double> sizes;
+  for (const Index region : order) sizes.push_back(size_of_region(region));
+  const Index first = most_in_turn(sizes, work.threads());
+  const Work all = work.part(0, 0), alone = work.aside();
+  for (Index i = 0; i < first; ++i) treat_one(order[i], all);
+  parallel_for(work, size_of(order) - first, 1,
+               [&](std::int64_t i, std::int64_t) { treat_one(order[first + i], alone); });
   return treated;
 }
 
@@ -255,23 +286,22 @@ RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
   options.tolerance = kTolerance;
   options.max_iterations = kNewtonSteps;
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
-  const Work alone = work.aside();
   std::vector<double> gains(regions.count(), 0);
-  const auto minimise = [&](Patch& patch, Index region) {
+  const auto minimise = [&](Patch& patch, Index region, const Work& on) {
     const auto descend = [&] {
-      return minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, alone);
+      return minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, on);
     };
     NewtonResult done = descend();
     // Faces that are positive by exact predicates may have no positive determinant in floats.
     if (!std::isfinite(done.energies.front())) {
-      if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone)) return false;
+      if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, on)) return false;
       done = descend();
     }
     double area = 0;
     for (const RestTriangle& r : patch.rest) area += r.area();
     const double gain = area * (done.energies.front() - done.energies.back());
     if (std::isfinite(gain)) gains[region] = gain;
-    return non_positive_faces(patch.faces, patch.uvs, alone).empty();
+    return non_positive_faces(patch.faces, patch.uvs, on).empty();
   };
   std::vector<std::optional<Patch>> patches = regions.treat(rest, uvs, minimise, work);
   PatchWork taken(mesh, uvs);

@@ -47,12 +47,15 @@ class Regions {
   Patch patch(Index region, const std::vector<RestTriangle>& rest,
               const std::vector<Vec2>& uvs) const;
 
-  /// Calls treat(patch, region) for each, in parallel and the largest first, so that it does not
-  /// come last. Returns the patches for which that said true, without their faces and rest shapes:
-  /// those are there one at a time on each thread.
-  std::vector<std::optional<Patch>> treat(
-      const std::vector<RestTriangle>& rest, const std::vector<Vec2>& uvs,
-      const std::function<bool(Patch& patch, Index region)>& treat, const Work& work) const;
+  using Treatment = std::function<bool(Patch& patch, Index region, const Work& work)>;
+
+  /// Treats each: side by side and the largest first, so that it does not come last; before these
+  /// one after the other, on all threads, those that would be under way when all else is done.
+  /// Returns the patches for which that said true, without their faces and rest shapes: those are
+  /// there one at a time on each thread.
+  std::vector<std::optional<Patch>> treat(const std::vector<RestTriangle>& rest,
+                                          const std::vector<Vec2>& uvs, const Treatment& treatment,
+                                          const Work& work) const;
 
  private:
   const DiskMesh& mesh_;

@@ -125,9 +125,8 @@ class Repair {
 
   /// Of many faces most patches have others on their edges, which hold them.
   void untangle_regions(const Regions& regions, PatchWork& patches) {
-    const Work alone = work_.aside();
-    const auto unfold = [&](Patch& patch, Index) {
-      return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, alone);
+    const auto unfold = [](Patch& patch, Index, const Work& on) {
+      return untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, on);
     };
     for (std::optional<Patch>& unfolded : regions.treat(rest_, uvs_, unfold, work_)) {
       if (!unfolded || !patches.take(*unfolded)) continue;

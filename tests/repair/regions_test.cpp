@@ -247,6 +247,39 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
   EXPECT_TRUE(injective(mesh, one));
 }
 
+// One that all threads work on, and some beside it that they share.
+TEST(RelaxRegions, HaveTheSameBitsWhereOneIsLarge) {
+  Random random(4);
+  const DiskMesh mesh = disks::disk(meshes::grid(120, 120));
+  std::vector<Vec2> start = disks::flat_uvs(mesh);
+  for (Vec2& uv : start) uv += 1e-3 * random.vec2();
+  std::vector<Index> faces = {40, 200, 4000};
+  for (Index i = 0; i < 20; ++i) faces.push_back(2 * (120 * 80 + 50) + i);
+  const auto rest = disks::rest_of(mesh);
+  const auto relaxed_on = [&](int threads) {
+    std::vector<Vec2> uvs = start;
+    EXPECT_GE(relax_regions(kEnergy, mesh, rest, uvs, faces, 8, Work(threads)).changed, 3);
+    return uvs;
+  };
+  const std::vector<Vec2> one = relaxed_on(1);
+  EXPECT_NE(one, start);
+  for (const int threads : {2, 4, 16}) EXPECT_EQ(relaxed_on(threads), one);
+}
+
+TEST(Repair, UntanglesALargeRegionToTheSameBitsOnSeveralThreads) {
+  const Index n = 110;
+  const DiskMesh mesh = disks::disk(meshes::grid(n, n));
+  const std::vector<Vec2> start = mirrored_block(mesh, n, 46, 64);
+  const auto repaired_on = [&](int threads) {
+    std::vector<Vec2> uvs = start;
+    const RepairOptions options{.global_fix = false};
+    EXPECT_EQ(repair(mesh, disks::rest_of(mesh), uvs, options, Work(threads)).flips_after, 0);
+    return uvs;
+  };
+  const std::vector<Vec2> one = repaired_on(1);
+  for (const int threads : {2, 8}) EXPECT_EQ(repaired_on(threads), one);
+}
+
 // Every patch within the block has others on its edges that hold it.
 TEST(Repair, UntanglesABlockOfManyFacesAsAWhole) {
   const Index n = 70;
