@@ -6,7 +6,9 @@
 #include <array>
 #include <vector>
 
+#include "base/types.h"
 #include "exact/certificate.h"
+#include "mesh/disk_mesh.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 
@@ -61,8 +63,8 @@ TEST(Untangle, TightensWhereFacesComeToRestFlipped) {
                                                .1,  -.18, .29, .14,  .07,  -.04, .18,  -.02};
   Tangle tangle(3);
   for (std::size_t v = 0; v < kHeights.size(); ++v) {
-    tangle.mesh.positions[v] = {static_cast<double>(v % 4), static_cast<double>(v / 4),
-                                kHeights[v]};
+    const std::size_t row = v / 4;
+    tangle.mesh.positions[v] = {static_cast<double>(v % 4), static_cast<double>(row), kHeights[v]};
   }
   tangle.uvs = {{-.16, .26},  {.92, .25},   {1.6, -.01},  {2.79, .55}, {-.1, 1.58}, {-.51, -.58},
                 {.55, -1.15}, {2.96, 1.32}, {-.08, 1.47}, {-.24, .23}, {.44, 2.06}, {2.61, 2.58},

@@ -589,7 +589,8 @@ extern "C" {
  not at its default: flatten with another method than beltrami, delaunay with cm, tutte or
  uv-prolongation, injectivity with tutte, gif or bff unless refined, refine-iterations without
  refine), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
- the option memory-limit, and later, if it has no room for what noise takes), SOLVER, INTERNAL (also if `progress` throws a C++ exception).*/
+ the option memory-limit, and later, if it has no room for what noise takes), SOLVER,
+ INTERNAL (also if `progress` throws a C++ exception).*/
     pub fn beltrami_run(
         context: *mut beltrami_context,
         progress: beltrami_progress,
