@@ -9,6 +9,7 @@
 #include "chart/coarser_start.h"
 #include "chart/descent.h"
 #include "chart/fine_problem.h"
+#include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "chart/refine.h"
 #include "descend/grid_drawing.h"
@@ -133,6 +134,11 @@ Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const Inherit
   const Index asked_for = coarse_faces(mesh.face_count(), options.coarse_faces);
   std::vector<Way> ways = {{method(asked_for)}};
   if (options.method == Method::kGif) return try_in_turn(mesh, frame, ways, options, work);
+  const bool in_levels =
+      options.method == Method::kBeltrami && is_nested(mesh.face_count(), asked_for, options);
+  if (in_levels && !affords(mesh, options, Extra::kWholeFactor, work)) {
+    return try_in_turn(mesh, frame, ways, options, work);  // all others take one
+  }
   if (options.method == Method::kBeltrami) {
     for (const Index other : other_coarse_faces(mesh, asked_for)) {
       ways.push_back({method(other), true});

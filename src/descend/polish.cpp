@@ -29,6 +29,7 @@ constexpr std::size_t kManyHeld = 100;
 constexpr double kAsMany = 0.9;
 constexpr double kMostContinued = 0.9;  // of the step of the call before
 constexpr double kArmijo = 1e-4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxHalvings = 30;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
@@ -226,21 +227,22 @@ class History {
 };
 
 /// Turns the preconditioned direction into a conjugate one, unless the last step leads uphill now.
-/// Returns whether it did.
-bool continue_step(const Field& gradient, Field& direction, LastStep& last, const Work& work) {
+/// Returns what it predicts without: that a step before goes on is no sign of how far the minimum
+/// is. Infinite where it stays as it is.
+double continue_step(const Field& gradient, Field& direction, LastStep& last, const Work& work) {
   const double before = std::exchange(last.predicted, -dot(gradient, direction, work));
   const bool is_there = last.step.size() == direction.size() && before > 0;
-  if (!is_there || !(last.predicted > 0)) return false;
+  if (!is_there || !(last.predicted > 0)) return kInfinity;
   const double slope = sum_over(
       work, gradient, [&](std::size_t i) { return gradient[i].dot(last.step[i].cast<double>()); });
-  if (!(slope < 0)) return false;
+  if (!(slope < 0)) return kInfinity;
   const double share = std::min(kMostContinued, last.predicted / before);
   parallel_for(work, size_of(direction), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       direction[i] += share * last.step[i].cast<double>();
     }
   });
-  return true;
+  return last.predicted;
 }
 
 void keep_step(double length, const Field& direction, LastStep& last, const Work& work) {
@@ -318,6 +320,14 @@ double hold_back(const DiskMesh& mesh, const Field& uvs, bool rigidly, double ne
   return length;
 }
 
+/// A step of that length, or shorter where parts of the boundary would touch; `contact` may be
+/// null.
+double before_touch(const BoundaryContact* contact, const Field& uvs, const Field& direction,
+                    double length) {
+  if (!contact) return length;
+  return kSingularShare * contact->first_touch(uvs, direction, length / kSingularShare);
+}
+
 /// The buffers of a descent.
 struct Fields {
   Field gradient, direction;
@@ -346,7 +356,7 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
     const bool low = after < before && after <= before + kArmijo * length * slope;
     if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
   }
-  return std::numeric_limits<double>::infinity();
+  return kInfinity;
 }
 
 /// Whether the gains tell of an end: the last step was a full one with little gain, or the last
@@ -393,26 +403,29 @@ PolishResult descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest
     work.report(static_cast<double>(result.iterations()) / options.max_iterations);
     const double before = result.energies.back(), scale = comparable_energy<Density>(before);
     history.find_direction(gradient, precondition, trial, direction);
-    const bool continues = options.last && continue_step(gradient, direction, *options.last, work);
+    const double alone =
+        options.last ? continue_step(gradient, direction, *options.last, work) : kInfinity;
+    const bool continues = alone < kInfinity;
     if (options.enough > 0) {
-      result.predicted = -dot(gradient, direction, work);
+      result.predicted = std::min(alone, -dot(gradient, direction, work));
       result.converged = result.predicted >= 0 && 0.5 * result.predicted < options.enough * scale;
       if (result.converged) break;
     }
     double length = hold_back(mesh, uvs, rigidly, options.near, direction, result, work);
     const double slope = dot(gradient, direction, work);
-    result.predicted = -slope;
+    result.predicted = std::min(alone, -slope);
     result.converged = settling.settled && result.predicted >= 0 &&
                        0.5 * result.predicted <= options.stationary * scale;
     if (result.converged) break;
     if (length < (result.iterations() > 0 ? kFullStep : options.shortest_first)) {
+      if (continues) {
+        options.last->step.clear();
+        continue;
+      }
       result.blocked = true;
       break;
     }
-    if (options.contact) {
-      const double limit = length / kSingularShare;
-      length = kSingularShare * options.contact->first_touch(uvs, direction, limit);
-    }
+    length = before_touch(options.contact, uvs, direction, length);
     // The only step needs no other gradient, unless it is tried again.
     const bool is_only = options.max_iterations == 1 && !options.contact;
     const double after = search_line(objective, uvs, before, slope, options, fields,

@@ -247,18 +247,17 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
   EXPECT_TRUE(injective(mesh, one));
 }
 
-// One that all threads work on, and some beside it that they share.
-TEST(RelaxRegions, HaveTheSameBitsWhereOneIsLarge) {
+TEST(RelaxRegions, HaveTheSameBitsWhereAllThreadsWorkOnOne) {
   Random random(4);
   const DiskMesh mesh = disks::disk(meshes::grid(120, 120));
   std::vector<Vec2> start = disks::flat_uvs(mesh);
   for (Vec2& uv : start) uv += 1e-3 * random.vec2();
-  std::vector<Index> faces = {40, 200, 4000};
+  std::vector<Index> faces;
   for (Index i = 0; i < 20; ++i) faces.push_back(2 * (120 * 80 + 50) + i);
   const auto rest = disks::rest_of(mesh);
   const auto relaxed_on = [&](int threads) {
     std::vector<Vec2> uvs = start;
-    EXPECT_GE(relax_regions(kEnergy, mesh, rest, uvs, faces, 8, Work(threads)).changed, 3);
+    EXPECT_EQ(relax_regions(kEnergy, mesh, rest, uvs, faces, 8, Work(threads)).changed, 1);
     return uvs;
   };
   const std::vector<Vec2> one = relaxed_on(1);
@@ -267,13 +266,15 @@ TEST(RelaxRegions, HaveTheSameBitsWhereOneIsLarge) {
 }
 
 TEST(Repair, UntanglesALargeRegionToTheSameBitsOnSeveralThreads) {
-  const Index n = 110;
+  const Index n = 150;
   const DiskMesh mesh = disks::disk(meshes::grid(n, n));
-  const std::vector<Vec2> start = mirrored_block(mesh, n, 46, 64);
+  const std::vector<Vec2> start = mirrored_block(mesh, n, 66, 84);
   const auto repaired_on = [&](int threads) {
     std::vector<Vec2> uvs = start;
     const RepairOptions options{.global_fix = false};
-    EXPECT_EQ(repair(mesh, disks::rest_of(mesh), uvs, options, Work(threads)).flips_after, 0);
+    const RepairResult result = repair(mesh, disks::rest_of(mesh), uvs, options, Work(threads));
+    EXPECT_EQ(result.patch_fixes, 1);
+    EXPECT_EQ(result.flips_after, 0);
     return uvs;
   };
   const std::vector<Vec2> one = repaired_on(1);
