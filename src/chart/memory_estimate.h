@@ -10,7 +10,7 @@
 namespace beltrami {
 
 /// What a run does on hard meshes only, beyond its estimate, and does without where its memory
-/// limit is too low for it.
+/// limit is too low for it; or ends, where there is no map without (require_whole_factor).
 enum class Extra {
   kHarmonicMap,   ///< beside the metric one, where that flips many faces
   kLevelHessian,  ///< of a level of several that is hard

@@ -20,8 +20,8 @@ constexpr double kSoftness = 0.4;
 /// At least, so that the barrier of a nearly mended face does not overflow: with a tenth of it the
 /// last steps only take that face's energy down, by a factor of 0.6 each. Faces can come to rest
 /// flipped by little beside it: from the third step on after which the worst one is as bad it is
-/// lowered with each. (Of 18,000 small patches that mends 37 more, and leaves none; earlier or
-/// faster it leaves up to 400.)
+/// lowered with each. (Of 18,000 small patches that mends 37 more, and loses none; earlier or
+/// faster it loses up to 400.)
 constexpr double kLeastSoftness = 0.01, kLowered = 0.7;
 constexpr int kAtRest = 3;
 /// Steps after which the worst face is as bad as before, by this share: of 131 patches that were
