@@ -14,6 +14,7 @@
 #include "atlas/pack_maps.h"
 #include "atlas/pins.h"
 #include "atlas/place.h"
+#include "atlas/rescue.h"
 #include "atlas/split_necks.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
@@ -31,6 +32,10 @@ constexpr std::int64_t kGrain = 16384;
 constexpr Index kWorthArranging = 50'000;
 // Where the stages end in the progress.
 constexpr double kAdmitted = 0.04, kMapped = 0.9, kPlaced = 0.95;
+
+/// What cannot be rounded where it was placed is split, and all is placed anew, so often: a chart
+/// that was halved so often is a crumb.
+constexpr int kMostRescues = 6;
 
 /// Texels per unit of a surface of unit area that stand for any fewer.
 constexpr double kLeastDensity = 1e-100;
@@ -67,19 +72,6 @@ void arrange_surface(Admitted& admitted, const Work& work) {
     reversed[f] = admitted.reversed[order.faces[f]];
   }
   admitted.reversed = std::move(reversed);
-}
-
-/// Scales the surface by the power of two that brings it to about unit area, and returns its
-/// exponent.
-int bring_to_unit(Surface& surface, const Work& work) {
-  std::vector<Vec3> moved = surface.positions;
-  const int exponent = normalise(moved, surface.faces, work).exponent;
-  parallel_for(work, surface.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t v = begin; v < end; ++v) {
-      for (double& x : surface.positions[v]) x = std::ldexp(x, exponent);
-    }
-  });
-  return exponent;
 }
 
 /// The maps as UVs of the input's corners.
@@ -246,26 +238,27 @@ void deliver(const Numbers& numbers, int exponent, Atlas& atlas) {
   atlas.seam_length = std::ldexp(atlas.seam_length, -exponent);
 }
 
-/// The charts' outcomes, energies and counts, and the UVs of all corners.
-void assemble(const AtlasInput& input, const Admitted& admitted, const OpenedSurface& opened,
-              const std::vector<PinAside>& pins_aside, const std::vector<MappedChart>& maps,
-              const std::vector<double>& scales, double page_scale, const Work& work,
-              Atlas& atlas) {
+/// The charts' outcomes, energies and counts, and the UVs of all corners. `maps`: as they lie on
+/// their pages, scaled by `scales` and `page_scale`.
+void assemble(const AtlasInput& input, const Admitted& admitted, const MappedSurface& mapped,
+              const std::vector<MappedChart>& maps, const std::vector<double>& scales,
+              double page_scale, const Work& work, Atlas& atlas) {
   atlas.admitted = admitted.counts;
-  atlas.filled_holes = opened.filled_holes;
+  atlas.filled_holes = mapped.filled_holes;
+  atlas.missed = mapped.missed;
   Collector collector(input.faces, admitted, atlas);
   for (std::size_t c = 0; c < maps.size(); ++c) {
-    collector.add(opened.charts[c], maps[c].uvs);
+    collector.add(mapped.charts[c], maps[c].uvs);
     ChartInfo& chart = atlas.charts.back();
     chart.outcome = maps[c].outcome;
     chart.error = maps[c].error;
     chart.density = scales[c] * maps[c].scale;
     chart.pinned = maps[c].pinned();
   }
-  collector.put_aside(pins_aside);
+  collector.put_aside(mapped.pins_aside);
   collector.share();
-  atlas.energy = measure_charts(opened.charts, maps, page_scale, atlas.charts, work);
-  atlas.seam_length = seam_length(opened.charts, admitted.input_vertex);
+  atlas.energy = measure_charts(mapped.charts, maps, page_scale, atlas.charts, work);
+  atlas.seam_length = seam_length(mapped.charts, admitted.input_vertex);
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
   atlas.seam_over_root_area = atlas.seam_length > 0 ? atlas.seam_length / std::sqrt(area) : 0;
@@ -309,6 +302,20 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
   return scale > 0 ? scale : 1;
 }
 
+/// Splits the charts that are sound, but not in the numbers of the places that they were given.
+/// Whether there is one.
+bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOptions& options,
+            const std::vector<MappedChart>& placed, const Work& work, MappedSurface& mapped) {
+  if (!input.pins.empty() || most_charts(options, admitted) > 0) return false;
+  if (placed.size() != mapped.maps.size()) return false;  // they were split for their pages
+  std::vector<Index> which;
+  for (Index c = 0; c < size_of(placed); ++c) {
+    if (placed[c].outcome > Outcome::kNotConverged) which.push_back(c);
+  }
+  return split_charts(admitted, {options.admit.polygons, options.diagonals}, which, options.chart,
+                      work.untimed(), mapped.charts, mapped.maps);
+}
+
 }  // namespace
 
 std::vector<Triangle> oriented_faces(const Atlas& atlas) {
@@ -345,24 +352,29 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     arrange_surface(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
   });
-  Mapped mapped =
+  MappedSurface mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
-  OpenedSurface& opened = mapped.opened;
-  std::vector<MappedChart>& maps = mapped.maps;
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
-    separate_pieces(admitted, most_charts(options, admitted), opened.charts, maps, inner.aside());
-    std::vector<double> scales = scale_by_density(input.densities, admitted, opened.charts, maps);
+    separate_pieces(admitted, most_charts(options, admitted), mapped.charts, mapped.maps,
+                    inner.aside());
     double page_scale = 1;
-    if (options.pack && input.pins.empty()) {
-      page_scale =
-          pack_onto_pages(admitted, exponent, options, {opened.charts, maps, scales}, inner, atlas);
-      numbers.exponent = 0;
-    } else {
-      numbers.exponent =
-          place_maps(opened.charts, exponent, options.unit_square, options.float32, maps, inner);
+    std::vector<MappedChart> placed;
+    std::vector<double> scales;
+    for (int round = 0;; ++round) {
+      placed = mapped.maps;
+      scales = scale_by_density(input.densities, admitted, mapped.charts, placed);
+      if (options.pack && input.pins.empty()) {
+        page_scale = pack_onto_pages(admitted, exponent, options, {mapped.charts, placed, scales},
+                                     inner, atlas);
+        numbers.exponent = 0;
+      } else {
+        numbers.exponent = place_maps(mapped.charts, exponent, options.unit_square, options.float32,
+                                      placed, inner);
+      }
+      if (round == kMostRescues || !rescue(input, admitted, options, placed, inner, mapped)) break;
     }
-    assemble(input, admitted, opened, mapped.pins.aside, maps, scales, page_scale, inner, atlas);
+    assemble(input, admitted, mapped, placed, scales, page_scale, inner, atlas);
   });
   stage("certify", kPlaced, 1,
         [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });

@@ -74,12 +74,23 @@ struct ChartInfo {
 
 /// Symmetric Dirichlet energy, at least 2, over the faces weighted by area, at one scale for all:
 /// the input's unit, or where densities are given the chart's, whatever the scale of the pages.
-/// Faces that are flipped or have no area in the plane are left out; NaN where none is left.
+/// Faces that are flipped or have no area in the plane are left out; NaN where none is left. The
+/// worst faces, of no area to speak of, have no say: see kSliverShare.
 struct AtlasEnergy {
   double symmetric_dirichlet = 0;  ///< mean
   double p99 = 0;                  ///< exceeded on no more than 1% of the area
   double max = 0;
-  Index left_out = 0;  ///< faces
+  Index left_out = 0;                                  ///< faces
+  Index slivers = 0;                                   ///< faces that have no say
+  double mean_with_slivers = 0, max_with_slivers = 0;  ///< what it would be with them
+};
+
+/// A component of the surface, as it is parted by the cuts that are given, whose maps have more
+/// energy than was asked for.
+struct MissedTarget {
+  Index first_face = 0;  ///< of the input, the least one
+  Index faces = 0;
+  double symmetric_dirichlet = 0, p99 = 0;  ///< as those of the atlas, of its own area
 };
 
 /// Charts come by their least face, UV vertices by their chart. Faces that were set aside are in no
@@ -100,6 +111,7 @@ struct Atlas {
   Index filled_holes = 0;
   double area = 0;  ///< of the surface, in the input's unit squared
   AtlasEnergy energy;
+  std::vector<MissedTarget> missed;  ///< by their least face; none without a target
   double seam_length = 0;  ///< in the input's unit, each seam once, and no border of the surface
   double seam_over_root_area = 0;
   double utilisation = 0;               ///< area of the UVs over that of their bounding box, or of

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "base/interrupt.h"
@@ -15,33 +14,10 @@
 namespace beltrami {
 namespace {
 
-constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTopShare = 0.01;  // of the area, beyond the percentile
-
-struct Weighted {
-  double energy, area;
-};
-
-/// Weighted energies of some faces.
-struct Sums {
-  double area = 0;              // of all faces
-  double left = 0, energy = 0;  // of the faces not left out: area, and energy times area
-  double max = kNoEnergy;
-
-  void add(const Weighted& face) {
-    area += face.area;
-    if (!std::isfinite(face.energy)) return;
-    left += face.area;
-    energy += face.area * face.energy;
-    max = std::fmax(max, face.energy);
-  }
-  double mean() const { return left > 0 ? energy / left : kNoEnergy; }
-};
-
-std::vector<Weighted> face_energies(const AtlasChart& part, const std::vector<Vec2>& uvs,
-                                    double density) {
+std::vector<WeighedEnergy> face_energies(const AtlasChart& part, const std::vector<Vec2>& uvs,
+                                         double density) {
   const DiskMesh& mesh = part.chart.mesh;
-  std::vector<Weighted> energies;
+  std::vector<WeighedEnergy> energies;
   energies.reserve(part.real_faces);
   PollSometimes poll;
   for (Index f = 0; f < part.real_faces; ++f) {
@@ -55,51 +31,40 @@ std::vector<Weighted> face_energies(const AtlasChart& part, const std::vector<Ve
   return energies;
 }
 
-/// The least energy that no more than 1% of the area exceeds. Precondition: finite energies.
-double percentile(std::vector<Weighted>& faces) {
-  double area = 0;
-  for (const Weighted& face : faces) area += face.area;
-  sort_interruptibly(faces.begin(), faces.end(), [](const Weighted& a, const Weighted& b) {
-    return std::tie(a.energy, a.area) > std::tie(b.energy, b.area);
-  });
-  double beyond = 0;
-  for (const Weighted& face : faces) {
-    beyond += face.area;
-    if (beyond > kTopShare * area) return face.energy;
-  }
-  return kNoEnergy;
-}
-
 }  // namespace
 
 AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
                            const std::vector<MappedChart>& maps, double scale,
                            std::vector<ChartInfo>& charts, const Work& work) {
-  std::vector<std::vector<Weighted>> energies(parts.size());
+  std::vector<std::vector<WeighedEnergy>> energies(parts.size());
   parallel_for(work, size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
     energies[c] = face_energies(parts[c], maps[c].uvs, charts[c].density * scale);
   });
   AtlasEnergy atlas;
-  Sums all;
-  std::vector<Weighted> finite;
+  std::vector<WeighedEnergy> all;
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    Sums own;
-    for (const Weighted& face : energies[c]) {
-      own.add(face);
-      all.add(face);
+    std::vector<WeighedEnergy> own;
+    charts[c].area = 0;
+    for (const WeighedEnergy& face : energies[c]) {
+      charts[c].area += face.area;
       if (std::isfinite(face.energy)) {
-        finite.push_back(face);
+        own.push_back(face);
       } else {
         ++atlas.left_out;
       }
     }
-    charts[c].area = own.area;
-    charts[c].symmetric_dirichlet = own.mean();
-    charts[c].max = own.max;
+    all.insert(all.end(), own.begin(), own.end());
+    const EnergySummary summary = summarise(std::move(own));
+    charts[c].symmetric_dirichlet = summary.mean;
+    charts[c].max = summary.max;
   }
-  atlas.symmetric_dirichlet = all.mean();
-  atlas.max = all.max;
-  atlas.p99 = percentile(finite);
+  const EnergySummary summary = summarise(std::move(all));
+  atlas.symmetric_dirichlet = summary.mean;
+  atlas.max = summary.max;
+  atlas.p99 = summary.p99;
+  atlas.slivers = summary.slivers;
+  atlas.mean_with_slivers = summary.mean_of_all;
+  atlas.max_with_slivers = summary.max_of_all;
   return atlas;
 }
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "admit/fill.h"
 #include "base/error.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
 #include "chart/fine_problem.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
@@ -21,7 +24,7 @@ namespace beltrami {
 namespace {
 
 // Where the stages end in the progress.
-constexpr double kParted = 0.2, kFilled = 0.3, kOpened = 0.7;
+constexpr double kParted = 0.7, kSearched = 0.6;
 
 /// A chart inherits a level of so many times the faces of its coarse mesh: how the surface spread
 /// its faces over charts is not how their own meshes will.
@@ -99,19 +102,6 @@ SeamHints hints_for(const FilledSurface& filled, const std::vector<Index>& input
   return hints;
 }
 
-/// A surface that has been arranged has its faces in another order than the input.
-void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts) {
-  std::vector<std::pair<Index, Index>> order;
-  for (Index c = 0; c < size_of(charts); ++c) {
-    order.emplace_back(first_input_face(charts[c], admitted), c);
-  }
-  if (std::is_sorted(order.begin(), order.end())) return;
-  std::sort(order.begin(), order.end());
-  std::vector<AtlasChart> sorted;
-  for (const auto& [face, c] : order) sorted.push_back(std::move(charts[c]));
-  charts.swap(sorted);
-}
-
 /// Per chart, what collapses of the surface leave to be done: per vertex the next one on its way,
 /// or itself. Of each chart so many are done again that it keeps more faces than its coarse mesh is
 /// to have. Empty for charts that would gain little, and in all where there is no history.
@@ -147,6 +137,77 @@ std::vector<std::vector<Index>> inherited_collapses(const Surface& surface,
   return collapsed;
 }
 
+/// What a cut makes of a piece; `level`: on which its seams were found, or null; `maps`: by which
+/// they were judged, or none.
+OpenedSurface charts_of(const SurfacePiece& piece, CutSurface cut, const SearchLevel* level,
+                        std::vector<std::vector<Vec2>> maps) {
+  if (!cut.non_disks.empty()) {
+    throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
+  }
+  OpenedSurface opened;
+  std::vector<std::vector<Index>> collapsed;
+  if (level != nullptr) collapsed = inherited_collapses(piece.surface, cut.charts, level->history);
+  for (std::size_t c = 0; c < cut.charts.size(); ++c) {
+    Chart& chart = cut.charts[c];
+    const auto first_virtual =
+        std::lower_bound(chart.input_face.begin(), chart.input_face.end(), piece.real_faces);
+    const auto real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
+    for (Index& v : chart.input_vertex) v = piece.vertex[v];
+    for (Index& f : chart.input_face) f = piece.face[f];
+    opened.charts.push_back({std::move(chart), real_faces});
+    if (!collapsed.empty()) opened.charts.back().collapsed_into = std::move(collapsed[c]);
+    if (!maps.empty()) opened.charts.back().local_map = std::move(maps[c]);
+  }
+  return opened;
+}
+
+/// The numbers that vertices and faces of a whole have in its components.
+class Numbering {
+ public:
+  explicit Numbering(const SurfacePiece& whole)
+      : whole_(whole),
+        vertex_(whole.surface.positions.size(), kNone),
+        face_(whole.surface.faces.size(), kNone) {}
+
+  Index vertex(Index of_whole) const { return vertex_[of_whole]; }
+
+  void add_face(Index f, SurfacePiece& piece) {
+    face_[f] = size_of(piece.face);
+    if (f < whole_.real_faces) ++piece.real_faces;
+    piece.face.push_back(whole_.face[f]);
+    piece.surface.faces.push_back(whole_.surface.faces[f]);
+    for (int k = 0; k < 3; ++k) {
+      piece.surface.twin.push_back(whole_.surface.twin[3 * f + k]);
+      if (!whole_.locked.empty()) piece.locked.push_back(whole_.locked[3 * f + k]);
+    }
+    if (!whole_.hints.labels.empty()) piece.hints.labels.push_back(whole_.hints.labels[f]);
+  }
+
+  void add_vertex(Index v, SurfacePiece& piece) {
+    vertex_[v] = size_of(piece.vertex);
+    piece.vertex.push_back(whole_.vertex[v]);
+    piece.surface.positions.push_back(whole_.surface.positions[v]);
+    piece.surface.outgoing.push_back(whole_.surface.outgoing[v]);
+    piece.surface.on_boundary.push_back(whole_.surface.on_boundary[v]);
+    if (whole_.hints.vertex_paint.empty()) return;
+    piece.hints.vertex_paint.push_back(whole_.hints.vertex_paint[v]);
+  }
+
+  /// Once all of its vertices and faces have been added.
+  void connect(SurfacePiece& piece) const {
+    for (Triangle& face : piece.surface.faces) {
+      for (Index& v : face) v = vertex_[v];
+    }
+    const auto own = [&](Index h) { return h == kNone ? kNone : 3 * face_[h / 3] + h % 3; };
+    for (Index& h : piece.surface.twin) h = own(h);
+    for (Index& h : piece.surface.outgoing) h = own(h);
+  }
+
+ private:
+  const SurfacePiece& whole_;
+  std::vector<Index> vertex_, face_;
+};
+
 }  // namespace
 
 bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h,
@@ -169,10 +230,15 @@ Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
   return first;
 }
 
-OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           const PolygonParts& polygons, const std::optional<SeamTarget>& target,
-                           const SeamWeights& weights, const InputHints& hints,
-                           const BegunSearch& begun, const Work& work) {
+int bring_to_unit(Surface& surface, const Work& work) {
+  std::vector<Vec3> moved = surface.positions;
+  const int exponent = normalise(moved, surface.faces, work).exponent;
+  scale_by_power(exponent, surface.positions);
+  return exponent;
+}
+
+ReadySurface make_ready(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
+                        const PolygonParts& polygons, const InputHints& hints, const Work& work) {
   SplitSurface parted;
   Topology topology;
   if (cuts.none()) {
@@ -182,54 +248,83 @@ OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, doub
     parted = part(admitted, cuts, polygons, work.part(0, kParted));
     topology = topology_of(parted.surface, work);
   }
-  const auto input = [&](Index v) { return parted.vertex.empty() ? v : parted.vertex[v]; };
-  const FilledSurface filled =
-      fill_holes(std::move(parted.surface), topology, fill_limit, work.part(kParted, kFilled));
+  FilledSurface filled =
+      fill_holes(std::move(parted.surface), topology, fill_limit, work.part(kParted, 1));
   if (filled.filled_loops > 0) topology = topology_of(filled.surface, work);
+  ReadySurface ready;
+  ready.filled_holes = filled.filled_loops;
+  SurfacePiece& whole = ready.whole;
+  whole.real_faces = filled.real_faces;
+  whole.topology = std::move(topology);
+  whole.locked = locked_edges(filled, admitted, polygons);
+  std::vector<Index> input(filled.real_vertices);
+  whole.vertex.assign(filled.surface.positions.size(), kNone);
+  for (Index v = 0; v < filled.real_vertices; ++v) {
+    whole.vertex[v] = parted.vertex.empty() ? v : parted.vertex[v];
+    input[v] = admitted.input_vertex[whole.vertex[v]];
+  }
+  whole.face.resize(filled.surface.faces.size());
+  std::iota(whole.face.begin(), whole.face.end(), 0);
+  whole.hints = hints_for(filled, input, admitted, hints);
+  whole.surface = std::move(filled.surface);
+  return ready;
+}
 
-  const EdgeMarks locked = locked_edges(filled, admitted, polygons);
-  OpenedSurface opened;
-  CutSurface cut;
-  SearchedSeams found;
-  if (target) {
-    std::vector<Index> vertices(filled.real_vertices);
-    for (Index v = 0; v < filled.real_vertices; ++v) vertices[v] = admitted.input_vertex[input(v)];
-    found = search_seams(filled.surface, filled.real_faces, topology, locked, *target, weights,
-                         hints_for(filled, vertices, admitted, hints), begun,
-                         work.part(kFilled, kOpened));
-    opened.predicted_energy = found.energy;
-    opened.search = std::move(found.search);
-    cut = cut_into_charts(filled.surface, found.seams, work.part(kOpened, 1));
-    if (!cut.non_disks.empty()) {
-      found.maps.clear();
-      cut = cut_into_charts(filled.surface,
-                            opened_further(filled.surface, found.seams, locked, work), work);
-    }
-  } else {
-    const EdgeMarks marks =
-        open_minimal(filled.surface, topology, locked, work.part(kFilled, kOpened));
-    cut = cut_into_charts(filled.surface, marks, work.part(kOpened, 1));
+std::vector<SurfacePiece> components_of(SurfacePiece whole, const Work& work) {
+  const auto count = size_of(whole.topology.components);
+  std::vector<SurfacePiece> pieces(count);
+  if (count == 1) {
+    pieces[0] = std::move(whole);
+    return pieces;
   }
+  Numbering numbering(whole);
+  PollSometimes poll;
+  for (Index f = 0; f < whole.surface.face_count(); ++f) {
+    poll();
+    numbering.add_face(f, pieces[whole.topology.component_of_face[f]]);
+  }
+  for (Index v = 0; v < whole.surface.vertex_count(); ++v) {
+    poll();
+    const Index h = whole.surface.outgoing[v];
+    if (h != kNone) numbering.add_vertex(v, pieces[whole.topology.component_of_face[h / 3]]);
+  }
+  for (const PaintedEdge& edge : whole.hints.edge_paint) {
+    const Index face = whole.surface.outgoing[edge.ends[0]] / 3;
+    pieces[whole.topology.component_of_face[face]].hints.edge_paint.push_back(
+        {{numbering.vertex(edge.ends[0]), numbering.vertex(edge.ends[1])}, edge.factor});
+  }
+  parallel_for(work, count, 1, [&](std::int64_t c, std::int64_t) {
+    SurfacePiece& piece = pieces[c];
+    numbering.connect(piece);
+    piece.topology = topology_of(piece.surface, work.aside());
+    piece.hints.hard_angle = whole.hints.hard_angle;
+    piece.exponent = whole.exponent + bring_to_unit(piece.surface, work.aside());
+  });
+  return pieces;
+}
+
+OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
+                            const SeamWeights& weights, const BegunSearch& begun,
+                            const Work& work) {
+  const Surface& surface = piece.surface;
+  SearchedSeams found = search_seams(surface, piece.real_faces, piece.topology, piece.locked,
+                                     target, weights, piece.hints, begun, work.part(0, kSearched));
+  CutSurface cut = cut_into_charts(surface, found.seams, work.part(kSearched, 1));
   if (!cut.non_disks.empty()) {
-    throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
+    found.maps.clear();
+    cut = cut_into_charts(surface, opened_further(surface, found.seams, piece.locked, work), work);
   }
-  opened.filled_holes = filled.filled_loops;
-  std::vector<std::vector<Index>> collapsed;
-  if (opened.search.level) {
-    collapsed = inherited_collapses(filled.surface, cut.charts, opened.search.level->history);
-  }
-  for (std::size_t c = 0; c < cut.charts.size(); ++c) {
-    Chart& chart = cut.charts[c];
-    const auto first_virtual =
-        std::lower_bound(chart.input_face.begin(), chart.input_face.end(), filled.real_faces);
-    const auto real_faces = static_cast<Index>(first_virtual - chart.input_face.begin());
-    for (Index& v : chart.input_vertex) v = v < filled.real_vertices ? input(v) : kNone;
-    opened.charts.push_back({std::move(chart), real_faces});
-    if (!collapsed.empty()) opened.charts.back().collapsed_into = std::move(collapsed[c]);
-    if (!found.maps.empty()) opened.charts.back().local_map = std::move(found.maps[c]);
-  }
-  sort_by_first_face(admitted, opened.charts);
+  OpenedSurface opened = charts_of(piece, std::move(cut), found.search.level.get(), found.maps);
+  opened.predicted_energy = found.energy;
+  opened.search = std::move(found.search);
   return opened;
+}
+
+OpenedSurface open_short(const SurfacePiece& piece, const Work& work) {
+  const EdgeMarks marks =
+      open_minimal(piece.surface, piece.topology, piece.locked, work.part(0, kSearched));
+  return charts_of(piece, cut_into_charts(piece.surface, marks, work.part(kSearched, 1)), nullptr,
+                   {});
 }
 
 }  // namespace beltrami

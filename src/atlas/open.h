@@ -1,7 +1,8 @@
-// An admitted surface -> charts: parted where the input asks for it, holes filled, opened where it
-// must be.
+// An admitted surface -> what is to be opened -> charts: parted where the input asks for it, holes
+// filled, and cut along the seams that are found for each piece.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "cut/seam_costs.h"
 #include "cut/search.h"
 #include "mesh/chart.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 
@@ -40,13 +42,6 @@ struct InputHints {
 /// The least of its faces, of the input.
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted);
 
-struct OpenedSurface {
-  std::vector<AtlasChart> charts;  ///< by their least face of the input
-  Index filled_holes = 0;
-  double predicted_energy = 2;  ///< of seams that were searched
-  BegunSearch search;           ///< of these
-};
-
 /// Which faces of the input are parts of polygons, and where.
 struct PolygonParts {
   std::span<const Index> polygon;           ///< per face, or none
@@ -58,13 +53,61 @@ struct PolygonParts {
 /// meets another side of the same. Precondition: polygons are given.
 bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin);
 
-/// Cuts along what is given, fills the holes whose boundary is no longer than `fill_limit` times
-/// the root of their component's area, and cuts what there is then along the seams that are
-/// searched for `target`, or without one what is no disk along a short cut graph. `begun`: as
-/// search_seams has it, of the same. No cut divides a polygon, if there is a way.
-OpenedSurface open_surface(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
-                           const PolygonParts& polygons, const std::optional<SeamTarget>& target,
-                           const SeamWeights& weights, const InputHints& hints,
-                           const BegunSearch& begun, const Work& work);
+/// Scales the surface by the power of two that brings it to about unit area, and returns its
+/// exponent.
+int bring_to_unit(Surface& surface, const Work& work);
+
+/// Multiplies by 2^exponent.
+template <class Vector>
+void scale_by_power(int exponent, std::vector<Vector>& places) {
+  if (exponent == 0) return;
+  for (Vector& place : places) {
+    for (double& x : place) x = std::ldexp(x, exponent);
+  }
+}
+
+/// A surface whose seams are to be found, with what is known of it; of vertices and faces of the
+/// admitted one, or a piece of such.
+struct SurfacePiece {
+  Surface surface;       ///< its last vertices and faces are virtual
+  Index real_faces = 0;  ///< the first ones
+  Topology topology;
+  EdgeMarks locked;           ///< edges that are not to be cut, if there is a way; or none
+  SeamHints hints;            ///< of its vertices and faces
+  std::vector<Index> vertex;  ///< per vertex that of the admitted surface, kNone: a virtual one
+  std::vector<Index> face;    ///< per face that of the admitted surface, then virtual ones,
+                              ///< increasing
+  int exponent = 0;           ///< it was scaled by that power of two
+};
+
+/// The whole of the admitted surface.
+struct ReadySurface {
+  SurfacePiece whole;
+  Index filled_holes = 0;
+};
+
+/// Cuts along what is given, and fills the holes whose boundary is no longer than `fill_limit`
+/// times the root of their component's area.
+ReadySurface make_ready(const Admitted& admitted, const GivenCuts& cuts, double fill_limit,
+                        const PolygonParts& polygons, const InputHints& hints, const Work& work);
+
+/// The components of a piece, by their least face, each scaled to about unit area. Its vertices and
+/// faces are in the order in which the whole has them.
+std::vector<SurfacePiece> components_of(SurfacePiece whole, const Work& work);
+
+struct OpenedSurface {
+  std::vector<AtlasChart> charts;  ///< of the admitted surface, in the unit of the piece, by their
+                                   ///< least face of it
+  double predicted_energy = 2;     ///< of seams that were searched
+  BegunSearch search;              ///< of these
+};
+
+/// Cuts a piece along the seams that are searched for `target`. `begun`: as search_seams has it, of
+/// the same piece. No cut divides a polygon, if there is a way.
+OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
+                            const SeamWeights& weights, const BegunSearch& begun, const Work& work);
+
+/// Cuts what is no disk of a piece along a short cut graph.
+OpenedSurface open_short(const SurfacePiece& piece, const Work& work);
 
 }  // namespace beltrami

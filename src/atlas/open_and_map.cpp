@@ -1,11 +1,19 @@
 #include "atlas/open_and_map.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <numeric>
 #include <optional>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
+#include "atlas/rescue.h"
+#include "base/parallel.h"
+#include "base/resources.h"
 #include "base/types.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
@@ -14,8 +22,11 @@ namespace beltrami {
 namespace {
 
 // Where these end in the progress.
-constexpr double kCut = 0.15;      // of opening and mapping
-constexpr double kFirstTry = 0.6;  // at a target that may be missed
+constexpr double kReady = 0.03;     // of all
+constexpr double kMapped = 0.95;    // of a piece; what is left is to rescue charts
+constexpr double kCut = 0.15;       // of opening and mapping
+constexpr double kFirstTry = 0.6;   // at a target that may be missed
+constexpr double kSearched = 0.95;  // then a short cut is tried
 
 /// Missed by more, a target is worth further tries, so many in all, of large surfaces fewer;
 constexpr double kMissed = 1e-6;
@@ -53,25 +64,47 @@ void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& a
       "place without folding a face");
 }
 
-/// One try, at one target; `begun` as open_surface has it.
-Mapped open_and_map_for(const AtlasInput& input, const Admitted& admitted, int exponent,
-                        const std::optional<SeamTarget>& target, const AtlasOptions& options,
-                        const BegunSearch& begun, const Work& work,
-                        std::vector<StageStatistics>& stages) {
+/// Charts of a piece and their maps.
+struct Mapped {
+  OpenedSurface opened;
+  AssignedPins pins;
+  std::vector<MappedChart> maps;
+  AtlasEnergy energy;
+  Index broken = 0;  ///< maps that are not injective
+};
+
+/// What all pieces are mapped with.
+struct Task {
+  const AtlasInput& input;
+  const Admitted& admitted;
+  const AtlasOptions& options;
+  const int exponent;  ///< of the admitted surface
+};
+
+void measure(const Work& work, Mapped& mapped) {
+  std::vector<ChartInfo> charts(mapped.opened.charts.size());
+  mapped.energy = measure_charts(mapped.opened.charts, mapped.maps, 1, charts, work);
+  mapped.broken = static_cast<Index>(std::count_if(
+      mapped.maps.begin(), mapped.maps.end(),
+      [](const MappedChart& map) { return map.error || map.outcome > Outcome::kNotConverged; }));
+}
+
+/// One try: charts as `open(work)` makes them, and their maps.
+template <class Open>
+Mapped open_and_map_once(const Task& task, const Open& open, bool is_timed, const Work& work,
+                         std::vector<StageStatistics>& stages) {
   Mapped mapped;
-  OpenedSurface& opened = mapped.opened;
-  run_stage("cut", work.part(0, kCut), stages, [&](StageStatistics&, const Work& inner) {
-    opened = open_surface(admitted, input.cuts, options.fill_limit,
-                          {options.admit.polygons, options.diagonals}, target, options.weights,
-                          input.hints, begun, inner);
-  });
-  mapped.pins = assign_pins(input.pins, input.faces, admitted, opened.charts, exponent);
-  require_no_conflict(opened.charts, mapped.pins, input.pins);
+  run_stage("cut", work.part(0, kCut), stages,
+            [&](StageStatistics&, const Work& inner) { mapped.opened = open(inner); });
+  const AtlasInput& input = task.input;
+  std::vector<AtlasChart>& charts = mapped.opened.charts;
+  mapped.pins = assign_pins(input.pins, input.faces, task.admitted, charts, task.exponent);
+  require_no_conflict(charts, mapped.pins, input.pins);
   run_stage("flatten", work.part(kCut, 1), stages, [&](StageStatistics&, const Work& inner) {
-    mapped.maps = map_charts(opened.charts, mapped.pins, options.chart, inner);
+    mapped.maps =
+        map_charts(charts, mapped.pins, task.options.chart, is_timed ? inner : inner.untimed());
     require_met(mapped.maps, input.pins);
-    std::vector<ChartInfo> charts(opened.charts.size());
-    mapped.energy = measure_charts(opened.charts, mapped.maps, 1, charts, inner);
+    measure(inner, mapped);
   });
   return mapped;
 }
@@ -87,7 +120,7 @@ double excess_of(const AtlasEnergy& energy, const SeamTarget& target) {
 }
 
 bool misses(const Mapped& mapped, const SeamTarget& target) {
-  return misses(mapped.energy.symmetric_dirichlet, target.energy) ||
+  return mapped.broken > 0 || misses(mapped.energy.symmetric_dirichlet, target.energy) ||
          misses(mapped.energy.p99, target.p99);
 }
 
@@ -158,39 +191,182 @@ std::optional<SeamTarget> aimed_again(const SeamTarget& target, const SeamTarget
 /// `vertex`: as seam_length has it.
 bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
                const std::vector<Index>& vertex) {
+  if (a.broken != b.broken) return a.broken < b.broken;
   if (misses(a, target) || misses(b, target)) {
     return excess_of(a.energy, target) < excess_of(b.energy, target);
   }
   return seam_length(a.opened.charts, vertex) < seam_length(b.opened.charts, vertex);
 }
 
-}  // namespace
-
-Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
-                    const AtlasOptions& options, const Work& work,
-                    std::vector<StageStatistics>& stages) {
-  const auto run = [&](const std::optional<SeamTarget>& target, const BegunSearch& begun,
-                       const Work& part) {
-    return open_and_map_for(input, admitted, exponent, target, options, begun, part, stages);
-  };
-  if (!options.target) return run(options.target, {}, work);
-  const SeamTarget& target = *options.target;
-  const Index faces = admitted.surface.face_count();
+/// A few tries at the target, and a short cut where all of them miss it.
+Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                      const Work& work, std::vector<StageStatistics>& stages) {
+  const Index faces = piece.surface.face_count();
+  const std::vector<Index>& vertex = task.admitted.input_vertex;
   std::optional<SeamTarget> aim = target;
   BegunSearch begun;
   std::optional<Mapped> best;
   Tries tries;
   const int most = faces <= kThoroughFaces ? kTries : kFewTries;
-  for (int i = 0; i < most && aim && !(best && work.out_of_time()); ++i) {
-    const double from = i == 0 ? 0 : kFirstTry + (1 - kFirstTry) * (i - 1) / (most - 1);
-    const double to = kFirstTry + (1 - kFirstTry) * i / (most - 1);
-    Mapped mapped = run(aim, begun, work.part(from, to));
-    begun = mapped.opened.search;
+  for (int i = 0; i < most && aim && !work.out_of_time(); ++i) {
+    const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
+    const double to = kFirstTry + (kSearched - kFirstTry) * i / (most - 1);
+    const auto open = [&](const Work& inner) {
+      return open_searched(piece, *aim, task.options.weights, begun, inner);
+    };
+    Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
+    begun = std::move(mapped.opened.search);
     tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
     aim = aimed_again(target, *aim, mapped, tries, faces);
-    if (!best || is_better(mapped, *best, target, admitted.input_vertex)) best = std::move(mapped);
+    if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
   }
-  return std::move(*best);
+  if (best && !misses(*best, target)) return *std::move(best);
+  const auto open = [&](const Work& inner) { return open_short(piece, inner); };
+  Mapped shorter = open_and_map_once(task, open, false, work.part(kSearched, 1), stages);
+  return best && !is_better(shorter, *best, target, vertex) ? *std::move(best) : std::move(shorter);
+}
+
+/// Splits what cannot be mapped within reason, round after round, until all can.
+void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& stages,
+            Mapped& mapped) {
+  const AtlasOptions& options = task.options;
+  if (!task.input.pins.empty() || (options.target && options.target->max_charts > 0)) return;
+  const PolygonParts polygons{options.admit.polygons, options.diagonals};
+  run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
+    bool is_any = false;
+    while (split_hopeless(task.admitted, polygons, options.chart, inner.untimed(),
+                          mapped.opened.charts, mapped.maps)) {
+      is_any = true;
+    }
+    if (is_any) measure(inner, mapped);
+  });
+}
+
+Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,
+                 std::vector<StageStatistics>& stages) {
+  const Work own = work.part(0, kMapped);
+  Mapped mapped;
+  if (task.options.target) {
+    mapped = map_for_target(task, piece, *task.options.target, own, stages);
+  } else {
+    const auto open = [&](const Work& inner) { return open_short(piece, inner); };
+    mapped = open_and_map_once(task, open, true, own, stages);
+  }
+  rescue(task, work.part(kMapped, 1), stages, mapped);
+  return mapped;
+}
+
+/// Whether something is asked that pieces cannot be held to one by one.
+bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options) {
+  if (!options.target) return true;  // nothing is
+  return !input.pins.empty() || options.target->max_charts > 0 || options.target->seam_budget > 0 ||
+         options.weights.symmetry > 0;
+}
+
+/// Large pieces one after the other on all threads, the rest side by side. `run(piece, work)`.
+template <class Run>
+void for_each_piece(const std::vector<SurfacePiece>& pieces, const Work& work, const Run& run) {
+  const auto faces = [&](Index p) -> std::int64_t { return pieces[p].surface.face_count(); };
+  std::vector<Index> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return faces(a) > faces(b); });
+  std::int64_t all = 0, done = 0;
+  for (const Index p : order) all += faces(p);
+  const auto share = [&](std::int64_t of) {
+    return static_cast<double>(of) / static_cast<double>(all);
+  };
+  std::int64_t large = 0;
+  // Others would wait for a piece of more than a thread's share.
+  for (; large < size_of(order); ++large) {
+    const Index p = order[large];
+    if (faces(p) * work.threads() <= all - done) break;
+    run(p, work.part(share(done), share(done + faces(p))));
+    done += faces(p);
+  }
+  std::atomic<std::int64_t> mapped{done};
+  const std::thread::id caller = std::this_thread::get_id();
+  parallel_for(work, size_of(order) - large, 1, [&](std::int64_t i, std::int64_t) {
+    const Index p = order[large + i];
+    run(p, work.aside());
+    mapped += faces(p);
+    if (std::this_thread::get_id() == caller) work.report(share(mapped));
+  });
+}
+
+/// The stages of pieces that ran side by side, one of each name, in all the time that they took.
+void add_up(const std::vector<std::vector<StageStatistics>>& of_pieces, double seconds,
+            double cpu_seconds, std::vector<StageStatistics>& stages) {
+  std::vector<StageStatistics> sums = {{"cut"}, {"flatten"}};
+  double all = 0;
+  for (const auto& own : of_pieces) {
+    for (const StageStatistics& stage : own) {
+      sums[std::string_view(stage.name) == "cut" ? 0 : 1].seconds += stage.seconds;
+      all += stage.seconds;
+    }
+  }
+  for (StageStatistics& sum : sums) {
+    const double share = all > 0 ? sum.seconds / all : 0;
+    sum.seconds = share * seconds;
+    sum.cpu_seconds = share * cpu_seconds;
+    stages.push_back(sum);
+  }
+}
+
+/// The charts of a piece, in the unit of the whole.
+void collect(const SurfacePiece& piece, const std::optional<SeamTarget>& target, Mapped mapped,
+             const Admitted& admitted, MappedSurface& all) {
+  if (target && misses(mapped, *target)) {
+    Index first = first_input_face(mapped.opened.charts.front(), admitted);
+    for (const AtlasChart& chart : mapped.opened.charts) {
+      first = std::min(first, first_input_face(chart, admitted));
+    }
+    all.missed.push_back(
+        {first, piece.real_faces, mapped.energy.symmetric_dirichlet, mapped.energy.p99});
+  }
+  for (std::size_t c = 0; c < mapped.maps.size(); ++c) {
+    AtlasChart& chart = mapped.opened.charts[c];
+    scale_by_power(-piece.exponent, chart.chart.mesh.positions);
+    scale_by_power(-piece.exponent, mapped.maps[c].uvs);
+    chart.collapsed_into = {};
+    chart.local_map = {};
+    all.charts.push_back(std::move(chart));
+    all.maps.push_back(std::move(mapped.maps[c]));
+  }
+}
+
+}  // namespace
+
+MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
+                           const AtlasOptions& options, const Work& work,
+                           std::vector<StageStatistics>& stages) {
+  const Task task{input, admitted, options, exponent};
+  MappedSurface all;
+  std::vector<SurfacePiece> pieces;
+  run_stage("cut", work.part(0, kReady), stages, [&](StageStatistics&, const Work& inner) {
+    ReadySurface ready =
+        make_ready(admitted, input.cuts, options.fill_limit,
+                   {options.admit.polygons, options.diagonals}, input.hints, inner);
+    all.filled_holes = ready.filled_holes;
+    if (is_asked_of_whole(input, options)) {
+      pieces.push_back(std::move(ready.whole));
+    } else {
+      pieces = components_of(std::move(ready.whole), inner);
+    }
+  });
+  std::vector<Mapped> mapped(pieces.size());
+  std::vector<std::vector<StageStatistics>> spent(pieces.size());
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  for_each_piece(pieces, work.part(kReady, 1), [&](Index p, const Work& own) {
+    mapped[p] = map_piece(task, pieces[p], own, spent[p]);
+  });
+  add_up(spent, wall_seconds() - wall, cpu_seconds() - cpu, stages);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    if (!mapped[p].pins.aside.empty()) all.pins_aside = std::move(mapped[p].pins.aside);
+    collect(pieces[p], options.target, std::move(mapped[p]), admitted, all);
+  }
+  sort_by_first_face(admitted, all.charts, all.maps);
+  return all;
 }
 
 }  // namespace beltrami

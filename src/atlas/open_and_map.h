@@ -13,19 +13,24 @@
 
 namespace beltrami {
 
-/// Charts and their maps.
-struct Mapped {
-  OpenedSurface opened;
-  AssignedPins pins;
+/// Charts and their maps, by their least face of the input.
+struct MappedSurface {
+  std::vector<AtlasChart> charts;
   std::vector<MappedChart> maps;
-  AtlasEnergy energy;
+  std::vector<PinAside> pins_aside;
+  std::vector<MissedTarget> missed;
+  Index filled_holes = 0;
 };
 
 /// Opens the surface, which was scaled by 2^exponent, and flattens its charts, as the stages "cut"
-/// and "flatten"; with a target again, a few times, while the maps miss it or leave much of what it
-/// allows unused. Throws Error PINS where pins cannot be met together.
-Mapped open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
-                    const AtlasOptions& options, const Work& work,
-                    std::vector<StageStatistics>& stages);
+/// and "flatten". With a target each component by itself and a few times, while the maps miss it or
+/// leave much of what it allows unused: as one where pins, a number of charts, a length of seams or
+/// symmetry is asked of the whole. No component ends worse than a short cut graph leaves it. The
+/// limit of time ends the search for seams; the maps along them are finished. Charts that the input
+/// did not ask for and that cannot be mapped within reason are split until they can. Throws Error
+/// PINS where pins cannot be met together.
+MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
+                           const AtlasOptions& options, const Work& work,
+                           std::vector<StageStatistics>& stages);
 
 }  // namespace beltrami

@@ -48,7 +48,8 @@ std::int64_t Work::memory_limit() const {
 }
 
 bool Work::out_of_time() const {
-  return run_->limits.seconds > 0 && wall_seconds() - run_->started > run_->limits.seconds;
+  return !untimed_ && run_->limits.seconds > 0 &&
+         wall_seconds() - run_->started > run_->limits.seconds;
 }
 
 void Work::report(double fraction) const {
@@ -72,6 +73,12 @@ Work Work::part(double from, double to) const {
 Work Work::aside() const {
   Work inner = *this;
   inner.aside_ = true;
+  return inner;
+}
+
+Work Work::untimed() const {
+  Work inner = *this;
+  inner.untimed_ = true;
   return inner;
 }
 

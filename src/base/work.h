@@ -54,6 +54,9 @@ class Work {
   /// progress. report() still throws where the run is to end.
   Work aside() const;
 
+  /// The same share without the limit of time: for what must be finished whenever it begins.
+  Work untimed() const;
+
   /// The same share under the name that progress is reported with. `name` outlives the run.
   Work named(const char* name) const;
 
@@ -62,7 +65,7 @@ class Work {
   std::shared_ptr<Run> run_;
   double from_ = 0, to_ = 1;
   const char* name_ = "";
-  bool aside_ = false;
+  bool aside_ = false, untimed_ = false;
 };
 
 }  // namespace beltrami

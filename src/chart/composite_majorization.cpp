@@ -19,6 +19,7 @@
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
+#include "repair/touching.h"
 
 namespace beltrami {
 namespace {
@@ -38,8 +39,9 @@ std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec
   NewtonOptions newton = newton_options(options);
   newton.proxy_steps = 0;
   Descent done = descend_led(mesh, rest, start, newton, work);
-  const bool is_simple =
-      !keeps_boundary_simple(options) || find_crossings(mesh.boundary, done.uvs).empty();
+  const bool is_simple = !keeps_boundary_simple(options) ||
+                         find_crossings(mesh.boundary, done.uvs).empty() ||
+                         open_touching_sides(mesh, work, done.uvs);
   if (!is_simple || is_hopeless(done, options)) return std::nullopt;
   return done;
 }

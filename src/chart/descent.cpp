@@ -12,6 +12,7 @@
 #include "descend/tutte.h"
 #include "energy/energy.h"
 #include "mesh/boundary.h"
+#include "repair/touching.h"
 
 namespace beltrami {
 namespace {
@@ -105,7 +106,8 @@ Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   if (!contact.is_pressed(uvs) || !contact.is_simple(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact.is_simple(map); };
     Led free = descend_with_lead(mesh, rest, newton, work, uvs);
-    if (!free.newton.refused || free.newton.admitted.empty()) return ended(free, 0, std::move(uvs));
+    const bool is_refused = free.newton.refused && !free.newton.admitted.empty();
+    if (!is_refused || open_touching_sides(mesh, work, uvs)) return ended(free, 0, std::move(uvs));
     iterations = free.iterations;
     newton.admissible = nullptr;
     newton.max_iterations -= free.newton.iterations();

@@ -21,6 +21,7 @@
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
+#include "repair/touching.h"
 
 namespace beltrami {
 namespace {
@@ -142,7 +143,8 @@ ChartMap metric_mode(const FineProblem& fine, const ChartOptions& options, const
   ChartMap polished = polish_map(fine, pressed ? &contact : nullptr, PolishLength::kWhole, options,
                                  rest, *laplacian, solved.uvs);
   bool in_contact = pressed;
-  if (global && !pressed && !contact.is_simple(polished.uvs)) {
+  if (global && !pressed && !contact.is_simple(polished.uvs) &&
+      !open_touching_sides(mesh, rest, polished.uvs)) {
     in_contact = true;
     const StageStatistics free = given_up(polished.statistics.stages);
     polished = polish_map(fine, &contact, PolishLength::kWhole, options, rest, *laplacian,

@@ -36,6 +36,7 @@
 #include "prolong/interpolation.h"
 #include "repair/regions.h"
 #include "repair/repair.h"
+#include "repair/touching.h"
 #include "simplify/levels.h"
 #include "simplify/simplify.h"
 
@@ -257,7 +258,8 @@ bool polish_level(const Level& level, bool simple, PolishLength length, bool pre
                       work, *climb.cycle, std::move(start));
   };
   ChartMap polished = polished_from(std::move(climb.map.uvs), pressed ? &level.contact : nullptr);
-  if (simple && !pressed && !level.contact.is_simple(polished.uvs)) {
+  if (simple && !pressed && !level.contact.is_simple(polished.uvs) &&
+      !open_touching_sides(*level.problem.mesh, work, polished.uvs)) {
     climb.map.statistics.stages.push_back(given_up(polished.statistics.stages));
     parallel_free(work, polished.uvs);
     if (!begin_again()) return false;

@@ -18,6 +18,7 @@
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
+#include "repair/touching.h"
 
 namespace beltrami {
 namespace {
@@ -63,25 +64,10 @@ std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injecti
   return std::move(done.uvs);
 }
 
-/// The energy that is exceeded on 1% of the area.
-double percentile_of(std::vector<Vec2> energies_and_areas) {
-  std::sort(energies_and_areas.begin(), energies_and_areas.end(), [](const Vec2& a, const Vec2& b) {
-    return std::tie(a.x(), a.y()) > std::tie(b.x(), b.y());
-  });
-  double area = 0, beyond = 0;
-  for (const Vec2& face : energies_and_areas) area += face.y();
-  for (const Vec2& face : energies_and_areas) {
-    beyond += face.y();
-    if (beyond > 0.01 * area) return face.x();
-  }
-  return 2;
-}
-
 /// Takes energies, their mean and the percentile from the maps.
 void measure(Index real_faces, LocalMaps& maps) {
   maps.energies.assign(maps.cut.chart_of_face.size(), kNoEnergy);
-  std::vector<Vec2> measured;  // energies and areas
-  Vec2 sum = Vec2::Zero();     // of energy times area, and of area
+  std::vector<WeighedEnergy> measured;
   for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
     const Chart& chart = maps.cut.charts[c];
     for (Index f = 0; f < chart.mesh.face_count(); ++f) {
@@ -92,12 +78,12 @@ void measure(Index real_faces, LocalMaps& maps) {
       const FaceDistortion face = measure_face({p[i], p[j], p[k]}, {w[i], w[j], w[k]});
       if (!std::isfinite(face.symmetric_dirichlet)) continue;
       maps.energies[chart.input_face[f]] = face.symmetric_dirichlet;
-      sum += Vec2(face.symmetric_dirichlet * face.area, face.area);
-      measured.emplace_back(face.symmetric_dirichlet, face.area);
+      measured.push_back({face.symmetric_dirichlet, face.area});
     }
   }
-  maps.energy = sum.y() > 0 ? sum.x() / sum.y() : 2;
-  maps.p99 = percentile_of(std::move(measured));
+  const EnergySummary summary = summarise(std::move(measured));
+  maps.energy = std::isnan(summary.mean) ? 2 : summary.mean;
+  maps.p99 = std::isnan(summary.p99) ? 2 : summary.p99;
 }
 
 }  // namespace
@@ -137,9 +123,10 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
   if (crossing.empty()) return maps;
   parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
     const std::size_t c = crossing[i];
-    std::vector<Vec2> uvs =
-        map_chart(maps.cut.charts[c], {}, Injectivity::kGlobal, tolerance, work.aside());
-    if (is_simple(maps.cut.charts[c].mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
+    const Chart& chart = maps.cut.charts[c];
+    if (open_touching_sides(chart.mesh, work.aside(), maps.uvs[c])) return;
+    std::vector<Vec2> uvs = map_chart(chart, {}, Injectivity::kGlobal, tolerance, work.aside());
+    if (is_simple(chart.mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
   });
   measure(real_faces, maps);
   return maps;

@@ -18,8 +18,8 @@ struct LocalMaps {
   std::vector<std::vector<Vec2>> uvs;  ///< per chart, one per vertex, in the unit of the surface
   std::vector<double> energies;  ///< per face of the surface: symmetric Dirichlet, NaN if virtual,
                                  ///< without area or folded
-  double energy = 2;             ///< their mean by area
-  double p99 = 2;                ///< that exceeded on 1% of the area
+  double energy = 2;             ///< their mean by area, slivers having no say (kSliverShare)
+  double p99 = 2;                ///< that exceeded on 1% of the area, likewise
 };
 
 /// Flattens every chart of the surface cut along `seams`, by composite majorization to `tolerance`.

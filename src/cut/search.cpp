@@ -71,6 +71,7 @@ std::vector<Attempt> attempts(const Work& work, const std::vector<Item>& items, 
   return made;
 }
 
+/// The best; without seams where none has a finite energy.
 Attempt best_of(std::vector<Attempt> made) {
   Attempt best;
   for (Attempt& attempt : made) {
@@ -113,7 +114,7 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
     return sketches[a].promised() < sketches[b].promised();
   });
   order.resize(is_thorough ? kFinished : 1);
-  return best_of(attempts(work.part(0.3, 1), order, [&](std::size_t i, const Work& part) {
+  const auto finish = [&](std::size_t i, const Work& part) {
     AnchoredSeams carried =
         carry_to_finer(rough, level.surface, level.cost, level.locked, sketches[i].seams, part);
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
@@ -122,7 +123,8 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
     if (!is_open) carried = opened(level, part);
     return LevelSearch(level, std::move(carried), starts[i], target, is_thorough, part)
         .run(is_open);
-  }));
+  };
+  return best_of(attempts(work.part(0.3, 1), order, finish));
 }
 
 double sum_of(const Surface& surface, const EdgeMarks& marks, const std::vector<double>& cost) {
@@ -160,6 +162,7 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
     return LevelSearch(level, std::move(half), Start(), target, is_thorough, part, &mirror)
         .run(true);
   }));
+  if (best.seams.seams.empty()) return false;
   const Surface& surface = level.surface;
   if (best.excess > std::max(1.0, found.excess)) return false;
   if (sum_of(surface, best.seams.seams, cost) > most * sum_of(surface, seams, cost)) return false;
@@ -183,6 +186,7 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
 Attempt search_anew(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
   Attempt found = search_level(level, is_thorough, target, weights, mirror, work.part(0, 0.8));
+  if (found.seams.seams.empty()) found.seams = opened(level, work);
   if (is_thorough) {
     const Index rounds =
         std::clamp(kFacesToVary / level.surface.face_count(), kLeastRounds, kMostRounds);
@@ -227,6 +231,7 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
     LevelSearch again(*begun.level, begun.seams, Start(), target, is_thorough, work.part(0.3, 0.9),
                       begun.mirror.get());
     found = is_thorough ? again.run_calibrated(0) : again.run(true);
+    if (found.seams.seams.empty()) found.seams = begun.seams;
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
     if (!begun.level || weights.symmetry > 0) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 
@@ -12,6 +14,8 @@ namespace beltrami {
 namespace {
 
 constexpr std::int64_t kGrain = 8192;
+
+constexpr double kTopShare = 0.01;  // of the area, beyond the percentile
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -98,6 +102,43 @@ FaceDistortion measure(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& 
 
 FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w) {
   return measure(p, w, 0);
+}
+
+EnergySummary summarise(std::vector<WeighedEnergy> faces) {
+  EnergySummary summary{kNaN, kNaN, kNaN, 0, kNaN, kNaN};
+  double area = 0, sum = 0;
+  for (const WeighedEnergy& face : faces) {
+    area += face.area;
+    sum += face.area * face.energy;
+  }
+  if (!(area > 0)) return summary;
+  sort_interruptibly(faces.begin(), faces.end(),
+                     [](const WeighedEnergy& a, const WeighedEnergy& b) {
+                       return std::tie(a.energy, a.area) > std::tie(b.energy, b.area);
+                     });
+  summary.mean = summary.mean_of_all = sum / area;
+  summary.max_of_all = faces.front().energy;
+  std::size_t first = 0;  // that has a say
+  double beyond = 0;
+  while (first + 1 < faces.size() && beyond + faces[first].area < kSliverShare * area) {
+    beyond += faces[first++].area;
+  }
+  summary.slivers = static_cast<Index>(first);
+  if (first > 0) {
+    area = sum = 0;
+    for (std::size_t f = first; f < faces.size(); ++f) {
+      area += faces[f].area;
+      sum += faces[f].area * faces[f].energy;
+    }
+    summary.mean = sum / area;
+  }
+  summary.max = faces[first].energy;
+  beyond = 0;
+  for (std::size_t f = first; f < faces.size() && std::isnan(summary.p99); ++f) {
+    beyond += faces[f].area;
+    if (beyond > kTopShare * area) summary.p99 = faces[f].energy;
+  }
+  return summary;
 }
 
 Distortion measure_distortion(const std::vector<Vec3>& positions,

@@ -21,6 +21,25 @@ struct FaceDistortion {
 /// Distortion of the face with corners `p` in space and `w` in the plane, at the scale of both.
 FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w);
 
+/// A face: its energy and its area in space.
+struct WeighedEnergy {
+  double energy, area;
+};
+
+/// The worst faces that together have less than this share of the area have no say in what a map is
+/// worth: a sliver without visible area can have any energy, and no cut takes it away.
+inline constexpr double kSliverShare = 1e-6;
+
+/// What energies come to, weighted by area. All are NaN where there is none.
+struct EnergySummary {
+  double mean, p99, max;  ///< without slivers; p99 is exceeded on no more than 1% of the area
+  Index slivers = 0;      ///< faces that have no say, see kSliverShare
+  double mean_of_all, max_of_all;  ///< with them
+};
+
+/// Sums finite energies up. Takes the list to sort it.
+EnergySummary summarise(std::vector<WeighedEnergy> faces);
+
 /// Means over the faces weighted by 3D area. A face is left out if it has no 3D area, or if its
 /// energy is not finite (flipped or degenerate in the plane).
 struct Distortion {

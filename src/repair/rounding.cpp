@@ -21,6 +21,7 @@
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"
 #include "repair/patch.h"
+#include "repair/touching.h"
 #include "repair/untangle.h"
 #include "ring/ring_faces.h"
 #include "ring/triangulate_ring.h"
@@ -34,6 +35,8 @@ constexpr int kReach = 2;  // of these to each side
 constexpr std::array<int, 4> kPatchRings = {1, 2, 4, 8};
 constexpr std::size_t kMostPatches = 2000;
 constexpr int kCrossingRounds = 4;
+/// Units in the last place by which sides that touch are parted.
+constexpr std::array<int, 6> kSideSpacings = {1, 2, 4, 8, 16, 32};
 constexpr std::int64_t kGrain = 16384;
 
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
@@ -232,6 +235,34 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
 }
 
+/// Parts sides that rounding has laid on each other, by the least of some multiples of the spacing
+/// of the numbers, and mends what that folds. Whether the map is injective then; else the result is
+/// left as it is.
+bool part_sides(const DiskMesh& mesh, const std::vector<bool>& held, const Numbers& numbers,
+                const Work& work, Rounded& result) {
+  double greatest = 0;
+  for (const Index v : mesh.boundary) {
+    greatest = std::max(greatest, result.uvs[v].cwiseAbs().maxCoeff());
+  }
+  const double spacing = numbers.spacing(greatest);
+  for (const int multiple : kSideSpacings) {
+    auto moved = with_sides_apart(mesh.boundary, result.uvs, multiple * spacing,
+                                  [&](const Vec2& place) { return numbers.nearest(place); });
+    if (!moved) continue;
+    for (std::size_t v = 0; v < held.size(); ++v) {
+      if (held[v] && (*moved)[v] != result.uvs[v]) return false;
+    }
+    auto bad = non_positive_faces(mesh.faces, *moved, work);
+    if (!bad.empty()) Rounding(mesh, held, numbers, *moved, work).mend(std::move(bad));
+    const Certificate certificate = certify(mesh.faces, mesh.boundary, *moved, work);
+    if (!certificate.injective()) continue;
+    result.uvs.swap(*moved);
+    result.certificate = certificate;
+    return true;
+  }
+  return false;
+}
+
 template <class Real>
 double nearest_of(double x) {
   const double greatest = std::numeric_limits<Real>::max();
@@ -315,7 +346,8 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     Rounding(mesh, held, numbers, result.uvs, work).mend(std::move(bad));
     judge();
   }
-  if (exact.injective() && !result.certificate.injective()) {
+  if (exact.injective() && !result.certificate.injective() &&
+      !part_sides(mesh, held, numbers, work, result)) {
     mend_with_ring(mesh, uvs, held, numbers, work, result);
   }
   for (std::size_t v = 0; v < placed.size(); ++v) result.moved += result.uvs[v] != nearest[v];

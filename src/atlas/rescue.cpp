@@ -1,0 +1,169 @@
+#include "atlas/rescue.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "atlas/chart_parts.h"
+#include "atlas/measure.h"
+#include "base/interrupt.h"
+#include "base/types.h"
+#include "cut/cut_into_charts.h"
+#include "cut/edge_marks.h"
+#include "cut/open_minimal.h"
+#include "mesh/chart.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+namespace {
+
+/// A mean energy above that is of no use to anybody: lengths are off by more than four times in the
+/// mean. What a few cuts leave of ordinary surfaces is below 3.
+constexpr double kBeyondReason = 10;
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Per face its distance from one, over the centres of the edges; what may not be parted is one.
+std::vector<double> distances_from(const DiskMesh& mesh, const EdgeMarks& locked, Index from) {
+  const auto centre = [&](Index f) -> Vec3 {
+    const auto [i, j, k] = mesh.faces[f];
+    return (mesh.positions[i] + mesh.positions[j] + mesh.positions[k]) / 3;
+  };
+  std::vector<double> distance(mesh.faces.size(), kFar);
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  distance[from] = 0;
+  front.emplace(0, from);
+  PollSometimes poll;
+  while (!front.empty()) {
+    poll();
+    const auto [at, face] = front.top();
+    front.pop();
+    if (at > distance[face]) continue;
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      if (mesh.twin[h] == kNone) continue;
+      const Index other = mesh.twin[h] / 3;
+      const double way =
+          at + (!locked.empty() && locked[h] ? 0 : (centre(other) - centre(face)).norm());
+      if (!(way < distance[other])) continue;
+      distance[other] = way;
+      front.emplace(way, other);
+    }
+  }
+  return distance;
+}
+
+Index farthest(const std::vector<double>& distance) {
+  return static_cast<Index>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+}
+
+/// The edges of a chart inside polygons.
+EdgeMarks locked_in(const Admitted& admitted, const PolygonParts& polygons,
+                    const AtlasChart& chart) {
+  if (polygons.polygon.empty()) return {};
+  const DiskMesh& mesh = chart.chart.mesh;
+  EdgeMarks locked(mesh.twin.size(), false);
+  const auto on_surface = [&](Index h) { return 3 * chart.chart.input_face[h / 3] + h % 3; };
+  for (Index h = 0; h < 3 * chart.real_faces; ++h) {
+    const Index twin = mesh.twin[h];
+    if (twin == kNone || twin / 3 >= chart.real_faces) continue;
+    locked[h] = is_inside_polygon(admitted, polygons, on_surface(h), on_surface(twin));
+  }
+  return locked;
+}
+
+/// Marks that part the faces which are nearer to one end of the chart from those nearer to the
+/// other. Without regard to polygons where that parts nothing.
+EdgeMarks marks_between_halves(const DiskMesh& mesh, const EdgeMarks& locked, const Work& work) {
+  const std::vector<double> somewhere = distances_from(mesh, locked, 0);
+  const Index one = farthest(somewhere);
+  const std::vector<double> from_one = distances_from(mesh, locked, one);
+  const Index other = farthest(from_one);
+  const std::vector<double> from_other = distances_from(mesh, locked, other);
+  const auto is_near_one = [&](Index f) { return from_one[f] < from_other[f]; };
+  EdgeMarks marks(mesh.twin.size(), false);
+  bool is_any = false;
+  for (Index h = 0; h < size_of(mesh.twin); ++h) {
+    const Index twin = mesh.twin[h];
+    if (twin == kNone || is_near_one(h / 3) == is_near_one(twin / 3)) continue;
+    marks[h] = is_any = true;
+  }
+  if (is_any) return opened_further(mesh, std::move(marks), locked, work);
+  if (!locked.empty()) return marks_between_halves(mesh, {}, work);
+  for (Index h = 0; h < size_of(mesh.twin); ++h) marks[h] = mesh.twin[h] != kNone;
+  return marks;
+}
+
+}  // namespace
+
+bool is_hopeless(const AtlasChart& chart, const MappedChart& map, const Work& work) {
+  if (map.error || map.outcome > Outcome::kNotConverged) return true;
+  std::vector<ChartInfo> info(1);
+  const AtlasEnergy energy = measure_charts({chart}, {map}, 1, info, work);
+  return energy.symmetric_dirichlet > kBeyondReason;
+}
+
+void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts,
+                        std::vector<MappedChart>& maps) {
+  std::vector<std::pair<Index, Index>> order;
+  for (Index c = 0; c < size_of(charts); ++c) {
+    order.emplace_back(first_input_face(charts[c], admitted), c);
+  }
+  if (std::is_sorted(order.begin(), order.end())) return;
+  std::sort(order.begin(), order.end());
+  std::vector<AtlasChart> sorted;
+  std::vector<MappedChart> sorted_maps;
+  for (const auto& [face, c] : order) {
+    sorted.push_back(std::move(charts[c]));
+    sorted_maps.push_back(std::move(maps[c]));
+  }
+  charts.swap(sorted);
+  maps.swap(sorted_maps);
+}
+
+bool split_charts(const Admitted& admitted, const PolygonParts& polygons,
+                  const std::vector<Index>& which, const ChartOptions& options, const Work& work,
+                  std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
+  std::vector<AtlasChart> parts;
+  std::vector<bool> goes(charts.size(), false);
+  for (const Index c : which) {
+    if (charts[c].real_faces < 2) continue;
+    const EdgeMarks locked = locked_in(admitted, polygons, charts[c]);
+    const EdgeMarks marks = marks_between_halves(charts[c].chart.mesh, locked, work);
+    const MappedChart nowhere{
+        .uvs = std::vector<Vec2>(charts[c].chart.mesh.positions.size(), Vec2::Zero())};
+    std::vector<ChartPart> own = parts_along(charts[c], nowhere, marks, work);
+    if (own.empty()) continue;
+    goes[c] = true;
+    for (ChartPart& part : own) parts.push_back(std::move(part.chart));
+  }
+  if (parts.empty()) return false;
+  std::vector<MappedChart> mapped = map_charts(parts, {}, options, work);
+  std::vector<AtlasChart> kept;
+  std::vector<MappedChart> kept_maps;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    if (goes[c]) continue;
+    kept.push_back(std::move(charts[c]));
+    kept_maps.push_back(std::move(maps[c]));
+  }
+  std::move(parts.begin(), parts.end(), std::back_inserter(kept));
+  std::move(mapped.begin(), mapped.end(), std::back_inserter(kept_maps));
+  charts.swap(kept);
+  maps.swap(kept_maps);
+  sort_by_first_face(admitted, charts, maps);
+  return true;
+}
+
+bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons,
+                    const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
+                    std::vector<MappedChart>& maps) {
+  std::vector<Index> which;
+  for (Index c = 0; c < size_of(charts); ++c) {
+    if (is_hopeless(charts[c], maps[c], work)) which.push_back(c);
+  }
+  return split_charts(admitted, polygons, which, options, work, charts, maps);
+}
+
+}  // namespace beltrami

@@ -1,0 +1,35 @@
+// Charts that cannot be mapped within reason, split until they can: two triangles always can.
+#pragma once
+
+#include <vector>
+
+#include "admit/admit.h"
+#include "atlas/map_charts.h"
+#include "atlas/open.h"
+#include "base/work.h"
+#include "chart/options.h"
+
+namespace beltrami {
+
+/// Whether a chart has a map that is of no use: none, one that is not injective, or one whose mean
+/// energy is above kBeyondReason.
+bool is_hopeless(const AtlasChart& chart, const MappedChart& map, const Work& work);
+
+/// Splits each of the charts `which` (increasing) in two halves of about the same size, or more
+/// where these are no disks, and maps the parts. Charts come out by their least face of the input.
+/// Returns whether there was one with more than one face. No seam runs inside a polygon, if there
+/// is a way. Preconditions: no pins.
+bool split_charts(const Admitted& admitted, const PolygonParts& polygons,
+                  const std::vector<Index>& which, const ChartOptions& options, const Work& work,
+                  std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
+
+/// The same for all charts that are hopeless.
+bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons,
+                    const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
+                    std::vector<MappedChart>& maps);
+
+/// Sorts charts and their maps.
+void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts,
+                        std::vector<MappedChart>& maps);
+
+}  // namespace beltrami
