@@ -47,7 +47,8 @@ struct AtlasOptions {
   double fill_limit = 0.5;
   std::optional<SeamTarget> target = {};  ///< seams are searched for it; none: short ones open what
                                           ///< is no disk
-  SeamWeights weights = {};               ///< of that search
+  SearchEffort effort = {};               ///< of that search
+  SeamWeights weights = {};               ///< likewise
   ChartOptions chart = {};                ///< of every chart, but for what follows
   /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
   /// pins: they lie side by side in that unit.

@@ -304,11 +304,12 @@ std::vector<SurfacePiece> components_of(SurfacePiece whole, const Work& work) {
 }
 
 OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
-                            const SeamWeights& weights, const BegunSearch& begun,
-                            const Work& work) {
+                            const SearchEffort& effort, const SeamWeights& weights,
+                            const BegunSearch& begun, const Work& work) {
   const Surface& surface = piece.surface;
-  SearchedSeams found = search_seams(surface, piece.real_faces, piece.topology, piece.locked,
-                                     target, weights, piece.hints, begun, work.part(0, kSearched));
+  SearchedSeams found =
+      search_seams(surface, piece.real_faces, piece.topology, piece.locked, target, effort, weights,
+                   piece.hints, begun, work.part(0, kSearched));
   CutSurface cut = cut_into_charts(surface, found.seams, work.part(kSearched, 1));
   if (!cut.non_disks.empty()) {
     found.maps.clear();

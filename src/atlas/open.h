@@ -105,7 +105,8 @@ struct OpenedSurface {
 /// Cuts a piece along the seams that are searched for `target`. `begun`: as search_seams has it, of
 /// the same piece. No cut divides a polygon, if there is a way.
 OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
-                            const SeamWeights& weights, const BegunSearch& begun, const Work& work);
+                            const SearchEffort& effort, const SeamWeights& weights,
+                            const BegunSearch& begun, const Work& work);
 
 /// Cuts what is no disk of a piece along a short cut graph.
 OpenedSurface open_short(const SurfacePiece& piece, const Work& work);

@@ -212,7 +212,7 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
     const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
     const double to = kFirstTry + (kSearched - kFirstTry) * i / (most - 1);
     const auto open = [&](const Work& inner) {
-      return open_searched(piece, *aim, task.options.weights, begun, inner);
+      return open_searched(piece, *aim, task.options.effort, task.options.weights, begun, inner);
     };
     Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);

@@ -126,7 +126,8 @@ double LevelSearch::cost_with_turns() const {
 /// Short and straight seams miss some of what the others ran to: they are taken where they are
 /// shorter with what has to be added to them, exactly so much or what is worth most.
 void LevelSearch::shorten_seams(double model_energy, bool exactly) {
-  if (mirror_ != nullptr) return;  // each side on its own they would not stay alike
+  // Each side on its own they would not stay alike.
+  if (mirror_ != nullptr || work_.out_of_time()) return;
   const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
   const double cost = cost_with_turns(), energy = std::max(model_energy, search_.energy());
@@ -226,8 +227,9 @@ double LevelSearch::missed_by(const LocalMaps& maps) const {
 /// Maps along the seams that there are, and what they are worth, overlaps parted where they are
 /// near what is asked for. Whether they are.
 bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
-  maps = map(maps.uvs.empty() ? nullptr : &maps);
   attempt = Attempt();
+  if (work_.out_of_time()) return false;  // maps that are cut short say nothing
+  maps = map(maps.uvs.empty() ? nullptr : &maps);
   attempt.excess = missed_by(maps);
   if (attempt.excess > kWorthParting && !is_last) return false;
   LocalMaps apart;
@@ -306,7 +308,7 @@ Attempt LevelSearch::run(bool is_sketched) {
 Attempt LevelSearch::run_calibrated(int calibrations) {
   LocalMaps maps;
   Attempt found;
-  judge(true, maps, found);
+  if (!judge(true, maps, found)) return found;
   calibrate(maps);
   const double energy = aim(found.excess);
   if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()));
@@ -408,6 +410,7 @@ void LevelSearch::improve(int rounds, Attempt& best) {
   search_.take(best.seams.seams, best.seams.anchors);
   Attempt attempt = run_calibrated(1);
   if (attempt.is_better_than(best)) best = std::move(attempt);
+  if (rounds == 0) return;
   join_charts(best);
   vary(rounds, best);
 }

@@ -55,8 +55,8 @@ class LevelSearch {
   /// `calibrations` times more on the way.
   Attempt run_calibrated(int calibrations);
 
-  /// What is found from `best` with a calibrated model, with charts joined elsewhere, and with
-  /// branches put elsewhere in so many rounds, where that is better.
+  /// What is found from `best` with a calibrated model, and unless there are no `rounds` with
+  /// charts joined elsewhere, and with branches put elsewhere in so many, where that is better.
   void improve(int rounds, Attempt& best);
 
  private:

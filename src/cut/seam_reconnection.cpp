@@ -119,6 +119,7 @@ bool SeamSearch::reconnect_all(bool around_handles) {
   bool gained = false;
   for (const std::vector<Index>& arc : arcs(true)) {
     poll_interrupt();
+    if (work_.out_of_time()) return false;
     gained = reconnect(arc, around_handles) || gained;
   }
   return gained;

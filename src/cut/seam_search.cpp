@@ -51,6 +51,7 @@ SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vect
                        std::vector<bool> anchors, const Mirror* mirror)
     : surface_(surface),
       cost_(cost),
+      work_(work),
       mirror_(mirror),
       degree_(surface.positions.size()),
       model_(surface, real_faces, work),
@@ -235,7 +236,7 @@ void SeamSearch::add_mirrored(const SeamPath& path) {
 bool SeamSearch::extend(double target, bool exactly) {
   while (model_.energy() > target) {
     poll_interrupt();
-    if (!extend_once(target, exactly)) return false;
+    if (work_.out_of_time() || !extend_once(target, exactly)) return false;
   }
   return true;
 }
@@ -300,7 +301,7 @@ void SeamSearch::shrink(double target) {
     for (Branch& end : ends_of(std::move(branch))) push(std::move(end));
   };
   for (Index v = 0; v < surface_.vertex_count(); ++v) push_ends(v);
-  while (!heap.empty()) {
+  while (!heap.empty() && !work_.out_of_time()) {
     poll_interrupt();
     std::pop_heap(heap.begin(), heap.end(), is_worth_more);
     Branch branch = std::move(heap.back());
@@ -444,7 +445,9 @@ void SeamSearch::exchange(double target) {
     const double price = kSeamPrice * cost / (target - 2);
     bool moved = false;
     for (Index v = 0; v < surface_.vertex_count(); ++v) {
-      if (degree_[v] == 1 && !surface_.on_boundary[v]) moved = move_branch(v, price) || moved;
+      if (degree_[v] != 1 || surface_.on_boundary[v]) continue;
+      if (work_.out_of_time()) break;
+      moved = move_branch(v, price) || moved;
     }
     if (!moved) return;
     reconnect();

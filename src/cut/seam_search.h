@@ -124,6 +124,7 @@ class SeamSearch {
 
   const Surface& surface_;
   const std::vector<double>& cost_;
+  const Work work_;       ///< when its time is up all loops end with what they have
   const Mirror* mirror_;  ///< or null
   EdgeMarks seams_;
   std::vector<Index> degree_;  ///< per vertex: seams at it

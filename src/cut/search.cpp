@@ -25,21 +25,13 @@
 namespace beltrami {
 namespace {
 
-/// Seams are decided on so many faces: finer ones add little to what is to be seen of a shape.
-constexpr Index kCoarseFaces = 10'000;
-/// What is to be joined by long seams is seen on so many.
-constexpr Index kRoughFaces = 3000;
 /// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
 /// few long ones, and the better is taken.
 constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
-/// With care, a surface is searched from so many starts with either, of which so many are finished,
-/// and the best improved: seams are 3% shorter. A small one, on which a start costs little, is
-/// searched from more.
-constexpr int kStarts = 3, kStartsOfSmall = 6;
-constexpr std::size_t kFinished = 3;
+/// A start costs little on a surface of no more faces.
 constexpr Index kSmall = 2000;
-/// What was found is varied in rounds that go over so many faces in all, within these bounds.
-constexpr Index kFacesToVary = 120'000, kLeastRounds = 2, kMostRounds = 40;
+/// What was found is varied in rounds within these bounds.
+constexpr Index kLeastRounds = 2, kMostRounds = 40;
 /// Up to so many faces, seams that were carried are finished by maps of the surface itself.
 constexpr Index kFinishedFaces = 30'000;
 /// What is within so much of the root of the area when mirrored is symmetric.
@@ -85,27 +77,31 @@ Attempt search_directly(const SearchLevel& level, const std::vector<Start>& star
                         bool is_thorough, const SeamTarget& target, const Work& work) {
   const AnchoredSeams open = opened(level, work);
   return best_of(attempts(work, starts, [&](const Start& start, const Work& part) {
+    if (part.out_of_time()) return Attempt();
     return LevelSearch(level, open, start, target, is_thorough, part).run(false);
   }));
 }
 
 /// Where the level has many faces, first on one of fewer; `is_thorough`: from more starts, of which
-/// more are finished; `mirror`: whose plane seams are drawn to, or null.
+/// more are finished; `mirror`: whose plane seams are drawn to, or null. Without seams where the
+/// time was up before any were judged.
 Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
-                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
+                     const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
+                     const Work& work) {
   std::vector<Start> starts;
-  const int count = level.surface.face_count() <= kSmall ? kStartsOfSmall : kStarts;
+  const int count = level.surface.face_count() <= kSmall ? effort.starts_of_small : effort.starts;
   for (int number = 0; number < (is_thorough ? count : 1); ++number) {
     for (const double least_cost : {kManyPaths, kFewPaths}) starts.push_back({least_cost, number});
   }
   SearchLevel rough =
       coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
-                    kRoughFaces, weights, level.hints, work);
+                    effort.rough_faces, weights, level.hints, work);
   if (rough.fine_vertex.empty()) return search_directly(level, starts, is_thorough, target, work);
   if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
   const AnchoredSeams open = opened(rough, work);
   const std::vector<Attempt> sketches =
       attempts(work.part(0, 0.3), starts, [&](const Start& start, const Work& part) {
+        if (part.out_of_time()) return Attempt();
         return LevelSearch(rough, open, start, target, is_thorough, part).sketch();
       });
   std::vector<std::size_t> order(starts.size());
@@ -113,8 +109,9 @@ Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarge
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return sketches[a].promised() < sketches[b].promised();
   });
-  order.resize(is_thorough ? kFinished : 1);
+  order.resize(is_thorough ? std::min(effort.finished, order.size()) : 1);
   const auto finish = [&](std::size_t i, const Work& part) {
+    if (part.out_of_time() || sketches[i].seams.seams.empty()) return Attempt();
     AnchoredSeams carried =
         carry_to_finer(rough, level.surface, level.cost, level.locked, sketches[i].seams, part);
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
@@ -184,14 +181,16 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
 
 /// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
 Attempt search_anew(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
-                    const SeamWeights& weights, const Mirror* mirror, const Work& work) {
-  Attempt found = search_level(level, is_thorough, target, weights, mirror, work.part(0, 0.8));
+                    const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
+                    const Work& work) {
+  Attempt found =
+      search_level(level, is_thorough, target, effort, weights, mirror, work.part(0, 0.8));
   if (found.seams.seams.empty()) found.seams = opened(level, work);
   if (is_thorough) {
     const Index rounds =
-        std::clamp(kFacesToVary / level.surface.face_count(), kLeastRounds, kMostRounds);
+        std::clamp(effort.faces_to_vary / level.surface.face_count(), kLeastRounds, kMostRounds);
     LevelSearch(level, found.seams, Start(), target, true, work.part(0.8, 1))
-        .improve(rounds, found);
+        .improve(effort.faces_to_vary > 0 ? rounds : 0, found);
   }
   return found;
 }
@@ -220,8 +219,8 @@ void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
 
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
-                           const SeamWeights& weights, const SeamHints& hints,
-                           const BegunSearch& begun, const Work& work) {
+                           const SearchEffort& effort, const SeamWeights& weights,
+                           const SeamHints& hints, const BegunSearch& begun, const Work& work) {
   SearchedSeams searched;
   BegunSearch& search = searched.search;
   search = {begun.level, {}, begun.mirror};
@@ -235,13 +234,13 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
     if (!begun.level || weights.symmetry > 0) {
-      SearchLevel level = coarser_level(surface, real_faces, topology, locked, kCoarseFaces,
+      SearchLevel level = coarser_level(surface, real_faces, topology, locked, effort.coarse_faces,
                                         weights, hints, work.part(0, 0.3));
       cost = level.cost;
       if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
     }
-    found = search_anew(*search.level, is_thorough, target, weights, search.mirror.get(),
+    found = search_anew(*search.level, is_thorough, target, effort, weights, search.mirror.get(),
                         work.part(0.3, 0.85));
     if (search.mirror && !make_symmetric(*search.level, *search.mirror, is_thorough, target, cost,
                                          1 + weights.symmetry, work.part(0.85, 0.88), found)) {
@@ -249,8 +248,8 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       SearchLevel level = *search.level;
       level.cost = std::move(cost);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
-      found =
-          search_anew(*search.level, is_thorough, target, weights, nullptr, work.part(0.88, 0.9));
+      found = search_anew(*search.level, is_thorough, target, effort, weights, nullptr,
+                          work.part(0.88, 0.9));
     }
   }
   searched.energy = found.energy;
@@ -266,8 +265,8 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
   AnchoredSeams carried =
       carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
-  if (surface.face_count() <= kFinishedFaces && any_of(carried.seams) && !search.mirror &&
-      cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
+  if (surface.face_count() <= kFinishedFaces && !work.out_of_time() && any_of(carried.seams) &&
+      !search.mirror && cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
     auto whole = std::make_shared<const SearchLevel>(coarser_level(
         surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));
     found = LevelSearch(*whole, carried, Start(), target, true, work.aside()).run_calibrated(0);

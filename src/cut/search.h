@@ -23,6 +23,19 @@ struct SeamTarget {
   double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
 };
 
+/// How much is looked at for short seams.
+struct SearchEffort {
+  Index coarse_faces = 10'000;  ///< seams are decided on so many: finer ones add little to what is
+                                ///< to be seen of a shape
+  Index rough_faces = 3000;     ///< what is to be joined by long seams is seen on so many
+  /// A surface is searched from so many starts with each cost of a path, one on which a start costs
+  /// little from more; so many of them are finished, and the best improved.
+  int starts = 1, starts_of_small = 2;
+  std::size_t finished = 1;
+  Index faces_to_vary = 0;  ///< what was found is varied, and charts joined again on trial, in
+                            ///< rounds that go over so many faces in all; 0: not at all
+};
+
 /// Surfaces of no more faces are searched with care; on larger ones a search is to take less than
 /// half of the flattening.
 inline constexpr Index kThoroughFaces = 100'000;
@@ -49,11 +62,12 @@ struct SearchedSeams {
 /// coarse surface, by a model of the maps and then by maps, and carried to the fine one.
 /// `real_faces`: those after them are virtual, they weigh and cost nothing. `locked`: edges that
 /// are not to be cut where there is a way, or none. `begun`: the search of the same for another
-/// target, from whose seams this one goes on, if there are any. Preconditions: `topology` is the
+/// target, from whose seams this one goes on, if there are any. When the time of the work is up the
+/// search ends with the best seams so far. Preconditions: `topology` is the
 /// surface's; hints are of its vertices and faces; area about 1. Throws Error SOLVER.
 SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topology& topology,
                            const EdgeMarks& locked, const SeamTarget& target,
-                           const SeamWeights& weights, const SeamHints& hints,
-                           const BegunSearch& begun, const Work& work);
+                           const SearchEffort& effort, const SeamWeights& weights,
+                           const SeamHints& hints, const BegunSearch& begun, const Work& work);
 
 }  // namespace beltrami
