@@ -14,6 +14,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "chart/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
