@@ -16,9 +16,12 @@ all=$BELTRAMI_BUILT/src/beltrami_static.o
 folder=${object%%.dir/*}.dir
 case $folder in
   */beltrami_entry_points.dir | */beltrami_stages.dir) ;;
-  *) exec "$@" ;;
+  *) all='' ;;
 esac
-if [ ! -f "$all" ]; then exec "$@"; fi
+if [ ! -f "$all" ]; then
+  if command -v ccache >/dev/null; then set -- ccache "$@"; fi
+  exec "$@"
+fi
 if [ "${folder##*/}" = beltrami_entry_points.dir ] && mkdir "$folder/handed-out" 2>/dev/null; then
   cp "$all" "$object"
 else
