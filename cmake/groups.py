@@ -174,7 +174,7 @@ def groups_to_compile(names: list[str], kept: list[list[str]]) -> list[list[str]
 
     for source in left.values():
         join(source, [g for g in groups if sources[g.members[0]].room == source.room])
-    for group in [group for group in groups if len(group.members) == 1]:
+    for group in [g for g in groups if len(g.members) == 1 and g.members[0] in left]:
         groups.remove(group)
         join(sources[group.members[0]], groups)
     return [group.members for group in groups]
