@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"
 #include "records.h"

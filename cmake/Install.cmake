@@ -86,6 +86,14 @@ if(TARGET beltrami_program)
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
+# All of it, and nothing else: what has to be built before it can be installed.
+add_custom_target(beltrami_installed)
+foreach(target beltrami beltrami_static beltrami_program)
+  if(TARGET ${target})
+    add_dependencies(beltrami_installed ${target})
+  endif()
+endforeach()
+
 # The other components need the runtime one, so these come with all of them.
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc/beltrami)
 install(FILES LICENSE DESTINATION ${doc_dir} COMPONENT runtime)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Tests the Rust crates beside a library that CMake has built, with its program:
-#   bindings/rust/test.sh BUILD_FOLDER [--write]
-# With --write it tests nothing, but writes anew what is generated from the header and the options.
+#   bindings/rust/test.sh BUILD_FOLDER [all|short|--write]
+# short are the tests and one program with the crates. With --write it tests nothing, but writes anew what is
+# generated from the header and the options.
 set -euo pipefail
 BUILD=$(realpath "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -127,24 +128,17 @@ with_installed() (
   "$@"
 )
 
-# Runs a command that compiles what is packaged. The stages are taken from the build, being of the
-# same sources: what is compiled are the entry points, which include most of their headers.
-with_built_objects() (
-  mkdir -p "$PLACE/built/CMakeFiles"
-  ln -sfn "$BUILD/src/CMakeFiles/beltrami_stages.dir" "$PLACE/built/CMakeFiles/beltrami_stages.dir"
-  export BELTRAMI_BUILT=$PLACE/built
-  export CMAKE_CXX_COMPILER_LAUNCHER=$ROOT/tests/install/reuse_object.sh
-  "$@"
-)
-
-# Every way to the library, each with the packages and the consumer only.
-consumers() {
+# A program that has the packages and the library that CMake has built, and nothing else.
+one_consumer() {
   cp -r tests/consumer "$PLACE"
   "$BUILD/program/beltrami" flatten "$MESH" "$PLACE/reference.obj" >/dev/null
   say "a program with the packages: BELTRAMI_LIB_DIR, shared"
   with_library consumer shared
   links_the_shared_library shared || fail "it is not the shared library"
+}
 
+# Every other way to the library.
+consumers() {
   say "a program with the packages: BELTRAMI_LIB_DIR, static"
   BELTRAMI_STATIC=1 with_library consumer static
   if links_the_shared_library static; then fail "it is not the static library"; fi
@@ -160,7 +154,7 @@ consumers() {
   if links_the_shared_library installed-static; then fail "it is not the static library"; fi
 
   say "a program with the packages: vendored"
-  with_built_objects consumer vendored --features vendored
+  consumer vendored --features vendored
   if links_the_shared_library vendored; then fail "it is not the static library"; fi
 
   say "a program with the packages: no library"
@@ -175,7 +169,7 @@ solvers() {
   local feature
   for feature in cholmod supernodal; do
     say "a program with the packages: $feature"
-    with_built_objects build_consumer "$feature" --features "$feature"
+    build_consumer "$feature" --features "$feature"
     "$TARGET/consumer-$feature/debug/consumer" "$MESH" | tee "$PLACE/$feature.txt"
   done
   grep -q 'solver cholmod-simplicial,.*no GPL code' "$PLACE/cholmod.txt"
@@ -192,11 +186,16 @@ mkdir -p "$PLACE"
 cargo fetch --locked --quiet # from here on nothing needs the network
 unit_tests
 generated_sources
-memory
-views_by_miri
-examples
-documentation
+if [[ ${2:-all} == all ]]; then
+  memory
+  views_by_miri
+  examples
+  documentation
+fi
 package
-consumers
-solvers
+one_consumer
+if [[ ${2:-all} == all ]]; then
+  consumers
+  solvers
+fi
 say "all tests passed"

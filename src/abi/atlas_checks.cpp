@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/atlas_certificate.h"
 

@@ -16,6 +16,7 @@
 #include "abi/status.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {

@@ -7,6 +7,7 @@
 #include "abi/reports.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"

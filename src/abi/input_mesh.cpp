@@ -4,7 +4,7 @@
 
 #include "abi/buffers.h"
 #include "base/error.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/locality.h"
 #include "mesh/surface.h"
 

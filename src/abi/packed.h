@@ -10,6 +10,7 @@
 #include "atlas/pack_uvs.h"
 #include "atlas/pages.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"

@@ -15,6 +15,7 @@
 #include "atlas/pages.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

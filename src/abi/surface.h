@@ -9,6 +9,7 @@
 #include "admit/triangulate.h"
 #include "atlas/atlas.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {

@@ -8,6 +8,7 @@
 
 #include "atlas/atlas.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {

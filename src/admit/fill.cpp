@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/interrupt.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

@@ -1,5 +1,6 @@
 #include "admit/triangulate.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

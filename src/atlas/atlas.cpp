@@ -1,5 +1,6 @@
 #include "atlas/atlas.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>

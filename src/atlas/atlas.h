@@ -2,6 +2,7 @@
 // judged together. The place that knows the order of the stages.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"

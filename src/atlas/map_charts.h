@@ -8,6 +8,7 @@
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "chart/options.h"

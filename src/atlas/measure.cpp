@@ -7,6 +7,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "energy/measure.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"

@@ -10,6 +10,7 @@
 
 #include "admit/admit.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"

@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
 

@@ -6,7 +6,7 @@
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/pages.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "pack/pack.h"
 

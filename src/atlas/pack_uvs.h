@@ -5,6 +5,7 @@
 
 #include "atlas/pages.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"

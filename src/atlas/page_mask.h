@@ -6,6 +6,7 @@
 
 #include "atlas/pages.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

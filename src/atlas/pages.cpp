@@ -1,5 +1,6 @@
 #include "atlas/pages.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

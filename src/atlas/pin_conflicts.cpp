@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "base/vectors.h"
 #include "exact/box_tree.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"

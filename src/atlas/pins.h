@@ -8,6 +8,7 @@
 #include "atlas/open.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -1,5 +1,6 @@
 #include "atlas/place.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +8,7 @@
 #include "atlas/rows.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

@@ -10,6 +10,7 @@
 #include "atlas/measure.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/types.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"

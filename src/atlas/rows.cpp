@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/types.h"
+
 namespace beltrami {
 namespace {
 

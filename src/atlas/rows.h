@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -11,6 +11,7 @@
 #include "atlas/pack_maps.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "cut/necks.h"

@@ -1,8 +1,6 @@
-// The plain types that every stage shares.
+// The plain types that every stage shares. Points are in base/vectors.h: Eigen is not for all.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -15,8 +13,6 @@ namespace beltrami {
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
 
-using Vec2 = Eigen::Vector2d;
-using Vec3 = Eigen::Vector3d;
 using Complex = std::complex<double>;
 
 /// |z| without the care that std::abs takes of numbers near the ends of the range, at a fifth of

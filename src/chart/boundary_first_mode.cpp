@@ -1,5 +1,6 @@
 // Boundary first flattening in the prolonged metric, or in that of the surface.
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/fine_problem.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/resources.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "energy/measure.h"
 
 namespace beltrami {

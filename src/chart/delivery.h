@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"

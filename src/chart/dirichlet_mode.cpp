@@ -1,5 +1,5 @@
 // The harmonic map in the prolonged Beltrami coefficients (paper section 3.4).
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/fine_problem.h"

@@ -1,5 +1,6 @@
 #include "chart/hold.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

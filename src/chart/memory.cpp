@@ -7,6 +7,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "flatten/reduced/meta_vertices.h"
 #include "flatten/reduced/reduced.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/anchors.h"
 #include "chart/chart_map.h"

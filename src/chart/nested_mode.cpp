@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/anchors.h"
 #include "chart/chart_map.h"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/descent.h"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "chart/descent.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"

@@ -1,5 +1,5 @@
 // Tutte's embedding as a method of its own, and as what is left where no other map is injective.
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/memory.h"

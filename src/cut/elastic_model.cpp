@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/vectors.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "flatten/laplacian.h"
 #include "linear/mesh_matrix.h"

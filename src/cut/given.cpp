@@ -1,5 +1,6 @@
 #include "cut/given.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/mirrored_seams.h"

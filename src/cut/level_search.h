@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/local_maps.h"
 #include "cut/mirror.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"

@@ -1,10 +1,12 @@
 #include "cut/mirrored_seams.h"
 
+#include <Eigen/Geometry>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "base/interrupt.h"
+#include "base/vectors.h"
 #include "cut/across.h"
 #include "cut/cut_into_charts.h"
 #include "cut/open_minimal.h"

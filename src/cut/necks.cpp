@@ -1,5 +1,6 @@
 #include "cut/necks.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

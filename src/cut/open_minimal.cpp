@@ -15,6 +15,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/split_fans.h"
 
 namespace beltrami {

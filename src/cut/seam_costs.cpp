@@ -1,5 +1,6 @@
 #include "cut/seam_costs.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "base/vectors.h"
 #include "cut/visibility.h"
 
 namespace beltrami {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "base/vectors.h"
 #include "cut/mirrored_seams.h"
 #include "cut/path_beside.h"
 #include "mesh/disk_mesh.h"

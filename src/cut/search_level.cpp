@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "cut/seam_costs.h"
 #include "cut/straighten.h"
 #include "simplify/simplify.h"

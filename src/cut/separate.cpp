@@ -13,6 +13,7 @@
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "cut/join_loops.h"
 #include "cut/max_flow.h"
 #include "mesh/disk_mesh.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "cut/layers.h"
 #include "cut/max_flow.h"
 #include "mesh/disk_mesh.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
 #include "mesh/disk_mesh.h"

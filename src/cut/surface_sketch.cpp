@@ -1,5 +1,6 @@
 #include "cut/surface_sketch.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "cut/turning.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <functional>

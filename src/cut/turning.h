@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "cut/edge_marks.h"
 #include "cut/seam_patch.h"
 #include "mesh/surface.h"

@@ -1,5 +1,6 @@
 #include "cut/visibility.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "descend/assembly.h"
 
 namespace beltrami {

@@ -1,7 +1,10 @@
 #include "descend/flat_start.h"
 
+#include <Eigen/Geometry>
 #include <queue>
 #include <utility>
+
+#include "base/types.h"
 
 namespace beltrami {
 namespace {

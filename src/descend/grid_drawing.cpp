@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/types.h"
+
 namespace beltrami {
 namespace {
 

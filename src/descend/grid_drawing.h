@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/contact.h"
 #include "descend/newton_loop.h"

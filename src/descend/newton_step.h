@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/assembly.h"
 #include "descend/contact.h"

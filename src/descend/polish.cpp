@@ -8,6 +8,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "descend/line_search.h"
 #include "energy/density.h"
 #include "mesh/disk_mesh.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "energy/energy.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/certificate.h"
 #include "exact/overlaps.h"

@@ -1,6 +1,7 @@
 // A binary tree of bounding boxes over items in a given order.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "base/interrupt.h"

@@ -8,7 +8,7 @@
 #include "base/bucket_sort.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/line_order.h"
 #include "exact/orientation.h"

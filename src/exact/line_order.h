@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "exact/orientation.h"
 
 namespace beltrami {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -5,7 +5,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/box_tree.h"
 #include "exact/line_order.h"

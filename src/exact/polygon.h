@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "exact/orientation.h"
 
 namespace beltrami {

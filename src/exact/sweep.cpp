@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/interrupt.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "exact/line_order.h"
 
 namespace beltrami {

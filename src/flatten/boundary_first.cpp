@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "linear/spd_solver.h"

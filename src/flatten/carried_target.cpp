@@ -5,6 +5,7 @@
 
 #include "base/lanes.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "flatten/principal_stiffness.h"
 #include "mesh/vertex_sums.h"
 

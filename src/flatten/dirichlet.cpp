@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/types.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "energy/energy.h"
 #include "flatten/laplacian.h"
 #include "mesh/rest_shape.h"

@@ -1,8 +1,10 @@
 #include "flatten/uv_prolongation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "base/types.h"
 #include "prolong/closest_point.h"
 
 namespace beltrami {

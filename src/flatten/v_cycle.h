@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "energy/energy.h"
 #include "flatten/hessian_factor.h"

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 
 namespace beltrami {
 namespace {

@@ -1,5 +1,6 @@
 #include "mesh/locality.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {

@@ -9,6 +9,7 @@
 #include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/face_block.h"
 #include "mesh/face_chunks.h"

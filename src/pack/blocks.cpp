@@ -1,5 +1,6 @@
 #include "pack/blocks.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

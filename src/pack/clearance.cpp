@@ -1,5 +1,6 @@
 #include "pack/clearance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

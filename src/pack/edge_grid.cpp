@@ -1,5 +1,6 @@
 #include "pack/edge_grid.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "pack/grow.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "pack/blocks.h"
 #include "pack/clearance.h"
 #include "pack/edge_grid.h"

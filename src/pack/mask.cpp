@@ -1,5 +1,6 @@
 #include "pack/mask.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/types.h"
 #include "pack/pack.h"
 
 namespace beltrami {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "pack/outline.h"
 
 namespace beltrami {

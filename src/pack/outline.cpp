@@ -1,5 +1,6 @@
 #include "pack/outline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 

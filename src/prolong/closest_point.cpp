@@ -1,5 +1,6 @@
 #include "prolong/closest_point.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numeric>

@@ -1,5 +1,6 @@
 #include "prolong/derivative.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/parallel.h"

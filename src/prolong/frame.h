@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -1,9 +1,11 @@
 #include "prolong/interpolation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "mesh/boundary.h"
 #include "prolong/closest_point.h"
 #include "prolong/surface_walk.h"

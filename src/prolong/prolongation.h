@@ -6,6 +6,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "prolong/closest_point.h"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/interrupt.h"
+#include "base/types.h"
 #include "exact/crossings.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"

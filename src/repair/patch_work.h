@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "exact/edge_tree.h"
 #include "mesh/disk_mesh.h"
 #include "repair/patch.h"

@@ -10,6 +10,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"

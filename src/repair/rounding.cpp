@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/sort_unique.h"
+#include "base/types.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
 #include "mesh/boundary.h"

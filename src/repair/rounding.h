@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"

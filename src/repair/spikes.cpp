@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/sort_unique.h"
+#include "base/types.h"
 #include "descend/vertex_sweep.h"
 #include "mesh/face_block.h"
 #include "repair/regions.h"

@@ -1,5 +1,6 @@
 #include "ring/ring_faces.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

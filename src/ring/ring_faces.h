@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/rest_shape.h"
 
 namespace beltrami {

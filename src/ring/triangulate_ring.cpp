@@ -11,6 +11,7 @@
 // constrained Delaunay triangulations").
 #include "ring/triangulate_ring.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/scratch.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"

@@ -1,7 +1,7 @@
 // The error quadric of Garland & Heckbert 1997, kept in the frame of its own vertex.
 #pragma once
 
-#include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

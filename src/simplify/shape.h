@@ -1,9 +1,11 @@
 // How much worse a collapse may leave the faces around it.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 

@@ -12,7 +12,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
 #include "simplify/blocks.h"

@@ -7,6 +7,7 @@
 // blocks of vertices go side by side, then pairs of them along their borders.
 #include "simplify/sweep.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/scratch.h"
+#include "base/vectors.h"
 #include "simplify/back_ends.h"
 #include "simplify/blocks.h"
 #include "simplify/history.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "abi/host.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 
 namespace beltrami {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "abi/host.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 
 namespace beltrami {

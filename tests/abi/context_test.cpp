@@ -4,7 +4,7 @@
 #include <set>
 
 #include "abi/host.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 
 extern "C" int beltrami_c_client_works(void);

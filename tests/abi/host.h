@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 
 namespace beltrami::host {

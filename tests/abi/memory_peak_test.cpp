@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "abi/host.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

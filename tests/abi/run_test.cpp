@@ -5,6 +5,7 @@
 
 #include "abi/host.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

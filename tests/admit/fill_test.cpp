@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"

@@ -16,6 +16,7 @@
 #include "atlas/atlas.h"
 #include "atlas/seams.h"
 #include "base/disjoint_sets.h"
+#include "base/vectors.h"
 #include "cut/search.h"
 #include "pack/pack.h"
 #include "support/atlases.h"

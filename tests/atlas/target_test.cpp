@@ -7,6 +7,7 @@
 
 #include "atlas/atlas.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "chart/options.h"

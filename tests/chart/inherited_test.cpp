@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "chart/options.h"

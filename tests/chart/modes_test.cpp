@@ -8,7 +8,7 @@
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"

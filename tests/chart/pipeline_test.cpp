@@ -19,6 +19,7 @@
 
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/options.h"

@@ -10,7 +10,6 @@
 
 #include "support/random_disks.h"
 
-#include "base/types.h"
 #include "chart/flattening.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"

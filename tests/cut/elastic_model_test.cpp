@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/portable_math.h"
+#include "base/vectors.h"
 #include "cut/edge_marks.h"
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"

@@ -2,6 +2,7 @@
 #include "cut/local_maps.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <utility>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/surface_sketch.h"
 #include "mesh/surface.h"

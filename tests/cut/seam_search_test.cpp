@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/vectors.h"
 #include "cut/cut_into_charts.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"

@@ -16,6 +16,7 @@
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"

@@ -2,6 +2,7 @@
 #include "cut/visibility.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/surface_sketch.h"
 #include "mesh/surface.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/assembly.h"
 #include "energy/density.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/portable_math.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/newton_loop.h"
 #include "descend/newton_step.h"

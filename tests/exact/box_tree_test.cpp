@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

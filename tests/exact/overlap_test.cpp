@@ -1,5 +1,6 @@
 // Whole runs on disks that cover themselves at their free minimum, and on strips of no height.
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "chart/options.h"

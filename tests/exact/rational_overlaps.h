@@ -4,12 +4,14 @@
 
 #include <CGAL/Quotient.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "exact/exact_number.h"
 
 namespace beltrami {

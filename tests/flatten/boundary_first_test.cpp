@@ -3,6 +3,7 @@
 #include "flatten/boundary_first.h"
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 
 #include <gtest/gtest.h>
 

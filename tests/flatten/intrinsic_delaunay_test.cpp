@@ -1,6 +1,7 @@
 // Intrinsic flips against plane geometry, where everything can be checked.
 #include "flatten/intrinsic_delaunay.h"
 #include "base/portable_math.h"
+#include "base/vectors.h"
 
 #include <gtest/gtest.h>
 

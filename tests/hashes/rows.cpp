@@ -14,6 +14,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "chart/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
@@ -270,13 +271,18 @@ std::vector<std::string> random_rows() {
     Hash hash;
     for (int seed = block; seed < block + kBlock; ++seed) {
       const ChartOptions options = disks::random_options(seed);
-      run(disks::random_disk(seed),
-          {{BELTRAMI_OPTION_COARSE_FACES, options.coarse_faces},
-           {BELTRAMI_OPTION_FLATTEN, static_cast<std::int64_t>(options.flatten)},
-           {BELTRAMI_OPTION_ENERGY, static_cast<std::int64_t>(options.energy)},
-           {BELTRAMI_OPTION_DELAUNAY, options.delaunay},
-           {BELTRAMI_OPTION_UNIT_SQUARE, options.unit_square}},
-          1 + seed % 2, hash);
+      const std::string outcome =
+          run(disks::random_disk(seed),
+              {{BELTRAMI_OPTION_COARSE_FACES, options.coarse_faces},
+               {BELTRAMI_OPTION_FLATTEN, static_cast<std::int64_t>(options.flatten)},
+               {BELTRAMI_OPTION_ENERGY, static_cast<std::int64_t>(options.energy)},
+               {BELTRAMI_OPTION_DELAUNAY, options.delaunay},
+               {BELTRAMI_OPTION_UNIT_SQUARE, options.unit_square}},
+              1 + seed % 2, hash);
+      // No hash may be written of a map that breaks the promise.
+      if (outcome.find("  0+0+0  ") == std::string::npos ||
+          outcome.find("nan") != std::string::npos)
+        throw std::runtime_error("random disk " + std::to_string(seed) + ": " + outcome);
     }
     all.add(hash.value());
     rows.push_back("disks " + std::to_string(block) + " to " + std::to_string(block + kBlock - 1) +

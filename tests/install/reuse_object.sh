@@ -1,6 +1,7 @@
 #!/bin/sh
-# A compiler launcher: hands out an object that the build folder $BELTRAMI_BUILT has already, so
-# that a test of the build's wiring does not compile the library again.
+# A compiler launcher: hands out the library that the build folder $BELTRAMI_BUILT has already, so that a
+# test of a build's wiring does not compile it again. The objects of its static library are linked into
+# one: the first of the entry points is that one, and all others are empty.
 #   reuse_object.sh COMPILER ARGS... -o OBJECT ...
 set -eu
 previous='' object='' dependencies=''
@@ -11,10 +12,19 @@ for word in "$@"; do
   esac
   previous=$word
 done
-built=$BELTRAMI_BUILT/${object#beltrami/}
-if [ -n "$object" ] && [ -f "$built" ]; then
-  cp "$built" "$object"
-  if [ -n "$dependencies" ]; then echo "$object:" >"$dependencies"; fi
-else
+all=$BELTRAMI_BUILT/src/beltrami_static.o
+folder=${object%%.dir/*}.dir
+case $folder in
+  */beltrami_entry_points.dir | */beltrami_stages.dir) ;;
+  *) all='' ;;
+esac
+if [ ! -f "$all" ]; then
+  if command -v ccache >/dev/null; then set -- ccache "$@"; fi
   exec "$@"
 fi
+if [ "${folder##*/}" = beltrami_entry_points.dir ] && mkdir "$folder/handed-out" 2>/dev/null; then
+  cp "$all" "$object"
+else
+  echo | "$1" -x c++ -c - -o "$object"
+fi
+if [ -n "$dependencies" ]; then echo "$object:" >"$dependencies"; fi

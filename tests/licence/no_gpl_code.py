@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-OBJECTS = re.compile(r"src/CMakeFiles/beltrami_\w+\.dir/\S+\.o:")
+OBJECTS = re.compile(r"src/CMakeFiles/beltrami_\w+\.dir/\S+\.(o|gch):")  # a precompiled header has most of them
 # What a library without GPL code may need at run time: what every C++ program needs.
 ALLOWED = re.compile(r"lib(stdc\+\+|m|gcc_s|c|pthread)\.so\.\d+|ld-linux\S*")
 # And what it may need where it says "simplifier openmesh", and nowhere else.

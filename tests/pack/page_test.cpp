@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/types.h"
+#include "base/vectors.h"
 #include "pack/mask.h"
 #include "pack/outline.h"
 #include "pack/pack.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/lanes.h"
+#include "base/vectors.h"
 #include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
 #include "simplify/simplify.h"

@@ -1,5 +1,6 @@
 // Metrics of maps, transport between tangent planes, closest points and prolongation.
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

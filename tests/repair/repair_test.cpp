@@ -9,6 +9,7 @@
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "energy/energy.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/types.h"
 #include "exact/certificate.h"
 #include "support/disks.h"
 #include "support/meshes.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/types.h"
 #include "base/work.h"
 #include "descend/tutte.h"
 #include "energy/energy.h"

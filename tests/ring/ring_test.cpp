@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"

@@ -10,6 +10,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "descend/newton.h"
 #include "descend/polish.h"

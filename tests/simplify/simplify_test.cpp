@@ -3,6 +3,7 @@
 #include "simplify/simplify.h"
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/vectors.h"
 
 #include <gtest/gtest.h>
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

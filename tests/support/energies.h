@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "chart/flattening.h"
 #include "energy/energy.h"
 #include "energy/exponential_dirichlet.h"

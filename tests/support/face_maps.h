@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "descend/assembly.h"
 #include "mesh/rest_shape.h"
 

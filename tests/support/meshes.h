@@ -9,6 +9,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 
 namespace beltrami::meshes {
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/options.h"
 #include "energy/energy.h"

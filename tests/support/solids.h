@@ -9,6 +9,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 

@@ -12,6 +12,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 
 namespace beltrami::meshes {

@@ -1,14 +1,15 @@
 """Runs clang-tidy and the check of includes on every source of a build, and knows what is clean.
 
-    lint.py BUILD ROOT CACHE
+    lint.py BUILD ROOT CACHE [COMMIT]
 
 Both read the sources in groups (groups.py). Where anything is found, those of the group that it may
 be about are looked at one by one.
 
 BUILD has compile_commands.json. A source is looked at again only if it, a header of the project
 that it includes, its command, the configuration or a tool has changed: CACHE keeps an empty file
-by the hash of all that for each that was clean. Prints how far it is and what is found, as it is
-found; exits with 1 if there is any.
+by the hash of all that for each that was clean. With COMMIT only those are looked at that have
+changed since, and for a header that has, one source that includes it. Prints how far it is and what
+is found, as it is found; exits with 1 if there is any.
 """
 
 from __future__ import annotations
@@ -60,6 +61,42 @@ def key_of(source: Path, words: list[str], project: Project, tools: str) -> str:
     for path in sorted(read_with(source, project)):
         digest.update(f"{path}\n".encode() + (project.root / path).read_bytes())
     return digest.hexdigest()
+
+
+def changed_since(commit: str, root: Path) -> set[Path] | None:
+    """Return the files that differ from those of a commit, None where that cannot be told."""
+    changed: set[Path] = set()
+    for words in (
+        ["diff", "--name-only", commit, "--"],
+        ["ls-files", "--others", "--exclude-standard"],
+    ):
+        done = subprocess.run(["git", "-C", root, *words], capture_output=True, text=True)
+        if done.returncode:
+            return None
+        changed.update(map(Path, done.stdout.splitlines()))
+    return changed
+
+
+def touched_by(changed: set[Path], sources: list[Path], project: Project) -> set[Path]:
+    """Return the changed sources, and for each other changed file a source that reads it."""
+    touched = changed & set(sources)
+    covered = {file for source in touched for file in read_with(source, project)}
+    for header in sorted(changed - covered):
+        readers = [source for source in sources if header in read_with(source, project)]
+        touched.update(sorted(readers, key=lambda source: source.stem != header.stem)[:1])
+    return touched
+
+
+def within(
+    commands: dict[str, list[str]], changed: set[Path] | None, project: Project
+) -> dict[str, list[str]]:
+    """Return those of the sources that what has changed is about; all, where that is not known."""
+    if changed is None:
+        print("lint: this is no clone that has the last clean commit: all sources are looked at")
+        return commands
+    files = {name: project.file(name) for name in commands}
+    touched = touched_by(changed, [file for file in files.values() if file], project)
+    return {name: words for name, words in commands.items() if files[name] in touched}
 
 
 def tidy(name: str, words: list[str]) -> list[str]:
@@ -115,7 +152,7 @@ def verdicts_on(
 
 def main() -> int:
     """Print what is found in the sources that are not known to be clean."""
-    build, root, cache = (Path(argument).resolve() for argument in sys.argv[1:])
+    build, root, cache = (Path(argument).resolve() for argument in sys.argv[1:4])
     configuration = [root / ".clang-tidy", *root.glob("*/.clang-tidy")]
     here = Path(__file__).parent
     tools = "".join(
@@ -132,6 +169,8 @@ def main() -> int:
             mark = cache / key_of(source, words, project, tools)
             if not mark.exists():
                 commands[name], marks[name] = words, mark
+    if len(sys.argv) > 4:
+        commands = within(commands, changed_since(sys.argv[4], root), project)
     os.chdir(build)  # the flags are relative to it
     units = cache / "groups"
     units.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,6 @@
 #include "flatten/reduced/meta_vertices.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "base/portable_math.h"
+#include "base/vectors.h"
 #include "mesh/boundary.h"
 
 namespace beltrami {

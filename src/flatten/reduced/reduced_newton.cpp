@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/types.h"
 #include "descend/assembly.h"
 #include "descend/line_search.h"
 #include "descend/newton_loop.h"

@@ -9,6 +9,8 @@
 #include <queue>
 #include <utility>
 
+#include "base/vectors.h"
+
 namespace beltrami {
 namespace {
 
