@@ -115,7 +115,7 @@ class PackRun {
     throw_if_interrupted();
     bar_.show(0, "read");
     StageClock clock(report_, "read");
-    MeshFile& file = mesh.file = read_mesh(mesh.input, Content::kAll);
+    MeshFile& file = mesh.file = read_mesh(mesh.input, Content::kAll, arguments_.reach);
     require_whole(file);
     if (file.uvs.empty() && file.corner_uvs.of_corner.empty()) {
       throw Failure(mesh.input + ": has no UVs to pack: unwrap it first");

@@ -101,7 +101,8 @@ class Unwrapping {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
-    file_ = read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface);
+    file_ =
+        read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface, arguments_.reach);
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
       for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {

@@ -1,7 +1,6 @@
 #include "files/gltf/document.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "files/gltf/little.h"
@@ -101,20 +100,15 @@ void refuse_compression(const Document& document) {
   }
 }
 
-std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri) {
-  const std::optional<std::string> relative = decode_path(uri);
-  if (!relative) {
-    buffer.fail(
-        "its uri is neither data in base 64 nor a file beside this one: export the file "
-        "as .glb");
-  }
-  const std::string file =
-      (std::filesystem::path(document.path).parent_path() / *relative).string();
-  document.files.push_back(file);
-  return read_file(file);
+std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri,
+                          Reach reach) {
+  const NamedFile file = follow_uri(document.path, uri, reach);
+  if (file.path.empty()) buffer.fail("its uri '" + one_line(uri) + "' " + file.refusal);
+  document.files.push_back(file.path);
+  return read_file(file.path);
 }
 
-void read_buffers(Document& document, const std::optional<std::string_view>& chunk) {
+void read_buffers(Document& document, const std::optional<std::string_view>& chunk, Reach reach) {
   for (std::uint64_t i = 0; i < document.count("buffers"); ++i) {
     const Item buffer = document.entry("buffers", i);
     const std::string uri = buffer.text("uri");
@@ -130,7 +124,7 @@ void read_buffers(Document& document, const std::optional<std::string_view>& chu
       bytes = std::move(*data);
     } else {
       storage = Storage::kFile;
-      bytes = bytes_of_file(document, buffer, uri);
+      bytes = bytes_of_file(document, buffer, uri, reach);
     }
     const std::uint64_t length = buffer.required("byteLength");
     if (length > bytes.size()) {
@@ -173,7 +167,7 @@ std::uint64_t Document::count(const char* list) const {
   return all ? all->size() : 0;
 }
 
-Document read_document(std::string_view bytes, const std::string& path) {
+Document read_document(std::string_view bytes, const std::string& path, Reach reach) {
   if (bytes.empty()) throw Failure(path + ": the file is empty");
   Document document;
   document.path = path;
@@ -187,7 +181,7 @@ Document read_document(std::string_view bytes, const std::string& path) {
   document.json = parse(container.json, path);
   require_version(document);
   refuse_compression(document);
-  read_buffers(document, container.chunk);
+  read_buffers(document, container.chunk, reach);
   for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) buffer_view(document, i);
   return document;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/gltf/item.h"
+#include "files/inside_folder.h"
 
 namespace beltrami::cli::gltf {
 
@@ -34,10 +35,11 @@ struct BufferView {
   std::uint64_t stride = 0;  ///< 0 where items stand side by side
 };
 
-/// Takes `bytes` apart, the whole file at `path`, and reads its buffers. Throws Failure for what is
+/// Takes `bytes` apart, the whole file at `path`, and reads its buffers, files within `reach` among
+/// them. Throws Failure for what is
 /// not glTF 2.0 or is cut short, and for mesh data that an extension compresses.
 /// Every buffer view lies within its buffer.
-Document read_document(std::string_view bytes, const std::string& path);
+Document read_document(std::string_view bytes, const std::string& path, Reach reach);
 
 /// Throws Failure where there is none of this number.
 BufferView buffer_view(const Document& document, std::uint64_t number);

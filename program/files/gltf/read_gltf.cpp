@@ -228,9 +228,9 @@ class Reader {
 }  // namespace
 }  // namespace gltf
 
-MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content) {
+MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content, Reach reach) {
   const auto model = std::make_shared<gltf::Model>();
-  model->document = gltf::read_document(bytes, path);
+  model->document = gltf::read_document(bytes, path, reach);
   MeshFile file;
   gltf::Reader(file, *model).read(content != Content::kUvs);
   file.not_kept = model->document.not_kept;
