@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,10 +17,13 @@ enum class Storage { kChunk, kFile, kEmbedded };
 
 struct Document {
   std::string path;
-  Json json;                          ///< an object; embedded buffers are without their URIs
-  std::vector<std::string> buffers;   ///< each as long as its byteLength at least
-  Storage storage = Storage::kChunk;  ///< of the first buffer
-  std::vector<std::string> files;     ///< the paths of buffers in files
+  Json json;                         ///< an object; embedded buffers are without their URIs
+  std::vector<std::string> buffers;  ///< each as long as its byteLength at least, or empty where
+                                     ///< an earlier one is of the same file
+  std::vector<std::uint64_t> first_of_file;  ///< per buffer: that one, or itself
+  Storage storage = Storage::kChunk;         ///< of the first buffer
+  /// The paths of buffers in files, with the first buffer of each.
+  std::map<std::string, std::uint64_t> files;
   std::vector<std::string> not_kept;  ///< what was passed over, in words
 
   Item root() const { return {json, "", path}; }
@@ -29,7 +33,7 @@ struct Document {
   std::uint64_t count(const char* list) const;
 };
 
-/// A part of a buffer.
+/// A part of a buffer that has its bytes.
 struct BufferView {
   std::uint64_t buffer = 0, offset = 0, length = 0;
   std::uint64_t stride = 0;  ///< 0 where items stand side by side
