@@ -10,6 +10,7 @@
 
 #include "commands/command.h"
 #include "commands/options.h"
+#include "files/inside_folder.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -82,6 +83,13 @@ constexpr const char* kTransfer =
     "  beltrami unwrap painted.obj better.obj\n"
     "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
 
+void add_reach(CLI::App& command, Reach& reach) {
+  command.add_flag_callback(
+      "--allow-outside", [&reach] { reach = Reach::kAnywhere; },
+      "Follow names inside a mesh (buffers of glTF, materials of OBJ) out of its folder;\n"
+      "without it a file of a stranger has none read but those beside it");
+}
+
 void add_masks(CLI::App& command, std::string& masks) {
   command
       .add_option("--masks", masks,
@@ -122,6 +130,7 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the pages")
       ->type_name("FILE.png");
+  add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kPack) + "\n\n" + kPages + "\n\n" + kExitCodes);
   return command;
@@ -144,6 +153,7 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->add_option("--margin", arguments.margin, "Texels of gutters to fill [0 to 1024; default 2]")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
+  add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kTransfer) +
                   "\n\nExit codes: 0 done, 2 unusable arguments or files, 4 out of memory or an\n"
@@ -208,6 +218,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
+  add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kPages + "\n\n" + kKept +
                   "\n\n" + kExitCodes);
@@ -226,6 +237,7 @@ CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& optio
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
+  add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string("IN is one disk; unwrap takes any mesh.\n\n") + kKept + "\n\n" +
                   kExitCodes);
@@ -244,6 +256,7 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
+  add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(kExitCodes);
   return command;

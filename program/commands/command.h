@@ -10,6 +10,7 @@
 
 #include "commands/options.h"
 #include "commands/report.h"
+#include "files/inside_folder.h"
 #include "files/mesh_file.h"
 #include "files/surface.h"
 
@@ -17,8 +18,9 @@ namespace beltrami::cli {
 
 struct FlattenArguments {
   std::string input, output;
-  std::string report, picture;  ///< paths, or "" for none
-  bool weld = false;            ///< vertices at one place count as one
+  std::string report, picture;      ///< paths, or "" for none
+  Reach reach = Reach::kItsFolder;  ///< of names inside the mesh
+  bool weld = false;                ///< vertices at one place count as one
   bool quiet = false;
 };
 
@@ -32,7 +34,8 @@ struct UnwrapArguments {
   std::string report, picture;  ///< paths, or "" for none
   std::string masks;            ///< folder and name of the masks of pages, or ""
   std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
-  bool triangulate = false;     ///< write the triangles that were computed on
+  Reach reach = Reach::kItsFolder;
+  bool triangulate = false;  ///< write the triangles that were computed on
   bool quiet = false;
 };
 
@@ -44,6 +47,7 @@ struct PackArguments {
   std::uint64_t kept = 0;            ///< the charts of so many inputs stay where they are
   bool keep_scales = false;          ///< charts keep their sizes to each other
   std::uint32_t uv_set = 0;          ///< of glTF
+  Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };
 
@@ -51,6 +55,7 @@ struct TransferArguments {
   std::string old_mesh, new_mesh, texture, output;
   int resolution = 0;  ///< of the output; 0: of the texture
   int margin = 2;      ///< texels of gutters
+  Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };
 
@@ -60,6 +65,7 @@ struct CheckArguments {
   bool float32 = false;         ///< judge the UVs rounded to single precision
   bool weld = false;            ///< vertices at one place and with one UV count as one
   bool mirrored = false;        ///< charts that are mirrored as a whole are no fault
+  Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };
 

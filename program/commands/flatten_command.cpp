@@ -64,7 +64,7 @@ class Flattening {
   void read() {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
-    file_ = read_mesh(arguments_.input, Content::kSurface);
+    file_ = read_mesh(arguments_.input, Content::kSurface, arguments_.reach);
     require_whole(file_);
     surface_.emplace(file_, arguments_.weld);
     report_.set_input(file_, *surface_);

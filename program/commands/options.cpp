@@ -190,6 +190,14 @@ void Options::apply_to(beltrami_context* context) {
   }
 }
 
+void Options::set(std::int32_t key, std::int64_t value) {
+  for (Option& option : options_) {
+    if (option.info.key != key) continue;
+    option.given = true;
+    option.integer = value;
+  }
+}
+
 OptionValues Options::values() const {
   OptionValues values;
   for (const Option& option : options_) {

@@ -48,6 +48,8 @@ class Options {
   /// others have there: a preset sets several. Throws Failure with the library's words if it
   /// refuses a value.
   void apply_to(beltrami_context* context);
+  /// Has the integer option `key` as if it had been given so.
+  void set(std::int32_t key, std::int64_t value);
   /// Values by name, e.g. {"method": "cm", "unit-square": false}.
   OptionValues values() const;
   /// Halves the number of threads. Returns false where it is 1, or the user's wish.

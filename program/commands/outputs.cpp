@@ -1,11 +1,18 @@
 #include "commands/outputs.h"
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <set>
 #include <string_view>
+#include <utility>
 
 #include "commands/command.h"
 #include "files/gltf_file.h"
 #include "files/point_numbers.h"
+#include "files/polygons.h"
 #include "files/surface_view.h"
+#include "files/uv_numbers.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -34,26 +41,54 @@ void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single)
   file.single_uvs = single;
 }
 
-beltrami_status judge_stored_uvs(MeshFile& file, const std::string& path,
-                                 beltrami_atlas_certificate& found) {
-  const std::vector<double> uvs = file.corner_uvs.values;
-  for (std::size_t i = 0; i < uvs.size(); i += 2) {
-    const auto [u, v] = stored_uv(uvs[i], uvs[i + 1]);
-    file.corner_uvs.values[i] = double{u};
-    file.corner_uvs.values[i + 1] = -double{v};
+namespace {
+
+/// Of triangles: the corners of the first with these three UVs, in any order.
+std::vector<std::uint32_t> corners_of_first_copies(const MeshFile& file) {
+  std::set<std::array<std::uint32_t, 3>> known;
+  std::vector<std::uint32_t> kept;
+  const std::vector<std::uint32_t>& uvs = file.corner_uvs.of_corner;
+  for (std::uint32_t c = 0; c < uvs.size(); c += 3) {
+    std::array<std::uint32_t, 3> key = {uvs[c], uvs[c + 1], uvs[c + 2]};
+    std::sort(key.begin(), key.end());
+    if (known.insert(key).second) kept.insert(kept.end(), {c, c + 1, c + 2});
   }
-  const SurfaceView view(file);
-  const beltrami_surface surface = view.surface();
-  found = {};
-  found.struct_size = sizeof found;
-  const beltrami_status status = beltrami_check_atlas(&surface, 0, &found, nullptr, 0);
-  require_ok(status, path, "", found.error_element_kind, found.error_element);
-  file.corner_uvs.values = uvs;
-  return status;
+  return kept;
 }
 
-std::vector<std::string> write_outputs(const MeshFile& file, const std::string& path,
-                                       std::uint32_t uv_set, std::deque<AtomicFile>& outputs) {
+}  // namespace
+
+std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
+                                                         const std::string& path, bool share) {
+  const UvNumbers numbers = uv_numbers(format_of(path), file.single_uvs);
+  const std::vector<double>& uvs = file.corner_uvs.values;
+  bool kept = true;
+  for (std::size_t i = 0; kept && i < uvs.size(); i += 2) kept = numbers.keeps(uvs[i], uvs[i + 1]);
+  if (kept) return std::nullopt;
+  MeshFile judged;
+  judged.positions = file.positions;
+  judged.polygons = file.polygons;
+  judged.corner_uvs = file.corner_uvs;
+  for (std::size_t i = 0; i < uvs.size(); i += 2) {
+    const auto [u, v] = numbers.judged(uvs[i], uvs[i + 1]);
+    judged.corner_uvs.values[i] = u;
+    judged.corner_uvs.values[i + 1] = v;
+  }
+  if (share && judged.polygons.all_triangles()) cut_faces(judged, corners_of_first_copies(judged));
+  const SurfaceView view(judged);
+  const beltrami_surface surface = view.surface();
+  beltrami_atlas_certificate found{};
+  found.struct_size = sizeof found;
+  const beltrami_status status = beltrami_check_atlas(&surface, 0, &found, nullptr, 0);
+  require_ok(status, file.path, "", found.error_element_kind, found.error_element);
+  return found;
+}
+
+void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,
+                   std::deque<AtomicFile>& outputs, Report& report) {
+  const auto append = [](std::vector<std::string> lines, std::vector<std::string>& all) {
+    std::move(lines.begin(), lines.end(), std::back_inserter(all));
+  };
   if (format_of(path) != MeshFormat::kGltf) {
     AtomicFile& output = outputs.emplace_back(path);
     write_mesh(file, path, [&](std::string_view bytes) {
@@ -61,9 +96,10 @@ std::vector<std::string> write_outputs(const MeshFile& file, const std::string& 
       output.write(bytes);
     });
     output.close();
-    return not_kept(file, path);
+    append(not_kept(file, path), report.not_kept);
+    return;
   }
-  const GltfOutput gltf = write_gltf(file, uv_set, path);
+  GltfOutput gltf = write_gltf(file, uv_set, path);
   for (const GltfOutput::File& part : gltf.files) {
     AtomicFile& output = outputs.emplace_back(part.path);
     for (const std::string& piece : part.pieces) {
@@ -72,7 +108,9 @@ std::vector<std::string> write_outputs(const MeshFile& file, const std::string& 
     }
     output.close();
   }
-  return gltf.not_kept;
+  for (std::string& old : gltf.replaced) outputs.back().remove_then(std::move(old));
+  append(std::move(gltf.not_kept), report.not_kept);
+  append(std::move(gltf.notes), report.notes);
 }
 
 }  // namespace beltrami::cli

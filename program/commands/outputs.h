@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "commands/report.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
 
@@ -20,14 +22,15 @@ void require_output_format(const std::string& input, const std::string& output);
 /// Gives a mesh these UVs, u v for each corner, instead of those that it has.
 void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single);
 
-/// The verdict on what glTF stores of the mesh's UVs: u and 1 - v in single precision. A mirror and
-/// a shift from them to -v are exact. Throws Failure with `path`.
-beltrami_status judge_stored_uvs(MeshFile& file, const std::string& path,
-                                 beltrami_atlas_certificate& found);
+/// The verdict on the numbers that a file at `path` holds of the corner UVs of `file`; nothing
+/// where it holds them exactly. `share`: faces that have the UVs of another one are copies, and
+/// overlap it on purpose. Throws Failure with the path of the input.
+std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
+                                                         const std::string& path, bool share);
 
-/// Writes a mesh with its UVs, complete on the disk but not in place. Returns what of it is not
-/// kept.
-std::vector<std::string> write_outputs(const MeshFile& file, const std::string& path,
-                                       std::uint32_t uv_set, std::deque<AtomicFile>& outputs);
+/// Writes a mesh with its UVs, complete on the disk but not in place. Notes in the report what of
+/// it is not kept, and what else is to be known of it.
+void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,
+                   std::deque<AtomicFile>& outputs, Report& report);
 
 }  // namespace beltrami::cli

@@ -61,6 +61,10 @@ class PackRun {
   int run() {
     name_files();
     require_files();
+    // What glTF holds is in single precision.
+    if (std::any_of(files_.begin(), files_.end(), is_gltf)) {
+      options_.set(BELTRAMI_OPTION_FLOAT32, 1);
+    }
     options_.apply_to(context_.get());
     note_options(arguments_, options_, report_);
     for (std::size_t i = 0; i < files_.size(); ++i) read(files_[i], i < arguments_.kept);
@@ -115,7 +119,7 @@ class PackRun {
     throw_if_interrupted();
     bar_.show(0, "read");
     StageClock clock(report_, "read");
-    MeshFile& file = mesh.file = read_mesh(mesh.input, Content::kAll);
+    MeshFile& file = mesh.file = read_mesh(mesh.input, Content::kAll, arguments_.reach);
     require_whole(file);
     if (file.uvs.empty() && file.corner_uvs.of_corner.empty()) {
       throw Failure(mesh.input + ": has no UVs to pack: unwrap it first");
@@ -247,15 +251,14 @@ class PackRun {
       corner_uvs[2 * std::size_t{mesh.corners[i]} + 1] = uv[1] + v;
     }
     set_corner_uvs(mesh.file, corner_uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
-    if (is_gltf(mesh)) judge_stored(mesh);
+    judge_held(mesh);
   }
 
-  /// glTF rounds what it stores: where that folds a mesh, the verdict is on it.
-  void judge_stored(PackedFile& mesh) {
-    beltrami_atlas_certificate found{};
-    const beltrami_status status = judge_stored_uvs(mesh.file, mesh.input, found);
-    if (status == BELTRAMI_OK || report_.atlas_certificate->injective == 0) return;
-    report_.status = beltrami_status_name(status);
+  /// The last verdict is on the numbers that the file gets.
+  void judge_held(const PackedFile& mesh) {
+    const auto found = judge_held_uvs(mesh.file, mesh.output, false);
+    if (!found || found->injective != 0 || report_.atlas_certificate->injective == 0) return;
+    report_.status = beltrami_status_name(BELTRAMI_NOT_INJECTIVE);
     report_.atlas_certificate = found;
     report_.float32_injective = false;
   }
@@ -265,9 +268,7 @@ class PackRun {
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
     for (const PackedFile& mesh : files_) {
-      for (std::string& what : write_outputs(mesh.file, mesh.output, arguments_.uv_set, outputs)) {
-        report_.not_kept.push_back(std::move(what));
-      }
+      write_outputs(mesh.file, mesh.output, arguments_.uv_set, outputs, report_);
     }
     if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     if (!arguments_.picture.empty()) write_picture(outputs.emplace_back(arguments_.picture));
@@ -288,7 +289,7 @@ class PackRun {
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
-    for (AtomicFile& output : outputs) output.commit();
+    commit(outputs);
     remark(note);
     return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
   }

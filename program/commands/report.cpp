@@ -388,6 +388,7 @@ std::string to_json(const Report& report) {
       {"flips_before_repair", optional(report.flips_before_repair)},
       {"repair", repair_json(report)},
       {"not_kept", report.not_kept},
+      {"notes", report.notes},
       {"stages", stages_json(report)},
       {"seconds", number(report.seconds)},
       {"peak_memory_bytes", peak_memory_bytes()},
@@ -398,12 +399,19 @@ std::string to_json(const Report& report) {
 }
 
 std::string to_note(const Report& report, const std::string& written) {
-  if (report.not_kept.empty()) return "";
-  std::string text = "beltrami: note: " + written + " does not keep ";
-  for (std::size_t i = 0; i < report.not_kept.size(); ++i) {
-    text += (i ? ", " : "") + report.not_kept[i];
+  std::string lines;
+  const auto add = [&](const std::string& text) {
+    lines += one_line("beltrami: note: " + written + text) + "\n";
+  };
+  if (!report.not_kept.empty()) {
+    std::string text = " does not keep ";
+    for (std::size_t i = 0; i < report.not_kept.size(); ++i) {
+      text += (i ? ", " : "") + report.not_kept[i];
+    }
+    add(text);
   }
-  return one_line(text) + "\n";
+  for (const std::string& note : report.notes) add(": " + note);
+  return lines;
 }
 
 std::string to_summary(const Report& report, const std::string& written) {
@@ -433,7 +441,9 @@ std::string to_summary(const Report& report, const std::string& written) {
            static_cast<unsigned long long>(report.failed_charts.front().chart.first_face));
   }
   if (report.status == "BELTRAMI_NOT_INJECTIVE_FLOAT32") {
-    append(text, "note       injective in double precision only: leave out --float32\n");
+    append(
+        text,
+        "note       injective in double precision only: write .obj or .ply, without --float32\n");
   }
   if (report.result && report.result->degenerate_faces > 0) {
     append(text, "note       %llu faces have no area, the first is %llu (counted from 0)\n",

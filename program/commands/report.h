@@ -72,6 +72,7 @@ struct Report {
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output
+  std::vector<std::string> notes;     ///< what else is to be known of the output, in sentences
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
   std::optional<std::uint64_t>
@@ -93,7 +94,8 @@ std::string to_json(const Report& report);
 /// "face", "vertex" or "corner".
 const char* element_name(std::int32_t kind);
 
-/// The line on stderr that says what of the input `written` does not keep; "" if it keeps all.
+/// The lines on stderr that say what of the input `written` does not keep, and what else is to be
+/// known of it; "" where there is nothing.
 std::string to_note(const Report& report, const std::string& written);
 
 /// The lines for people. `written`: the output path, or "".

@@ -138,8 +138,8 @@ class Transfer {
 
  private:
   void read_triangles() {
-    const MeshFile from = read_mesh(arguments_.old_mesh, Content::kUvs);
-    const MeshFile to = read_mesh(arguments_.new_mesh, Content::kUvs);
+    const MeshFile from = read_mesh(arguments_.old_mesh, Content::kUvs, arguments_.reach);
+    const MeshFile to = read_mesh(arguments_.new_mesh, Content::kUvs, arguments_.reach);
     const std::vector<std::uint32_t> corners = triangle_corners(to);
     to_ = textured(to, corners);
     if (same_polygons(from, to)) {

@@ -55,6 +55,8 @@ class Unwrapping {
 
   int run() {
     require_files();
+    // What glTF holds is in single precision.
+    if (writes_gltf() && on_pages()) options_.set(BELTRAMI_OPTION_FLOAT32, 1);
     options_.apply_to(context_.get());
     note_options(arguments_, options_, report_);
     read();
@@ -90,9 +92,13 @@ class Unwrapping {
     }
     if (arguments_.masks.empty()) return;
     require_writable(path_of_page(arguments_.masks, 0));
-    if (options_.integer(BELTRAMI_OPTION_PACK) == BELTRAMI_PACK_NONE || !arguments_.pins.empty()) {
+    if (!on_pages()) {
       throw Failure("--masks: there are masks of pages alone: do without --pack none and --pins");
     }
+  }
+
+  bool on_pages() const {
+    return options_.integer(BELTRAMI_OPTION_PACK) != BELTRAMI_PACK_NONE && arguments_.pins.empty();
   }
 
   bool writes_gltf() const { return format_of(arguments_.output) == MeshFormat::kGltf; }
@@ -101,7 +107,8 @@ class Unwrapping {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
-    file_ = read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface);
+    file_ =
+        read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface, arguments_.reach);
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
       for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {
@@ -222,16 +229,17 @@ class Unwrapping {
         triangles_[c] = static_cast<std::uint32_t>(c);
       }
     }
-    // Copies that share UVs overlap on purpose; what is stored is judged without such knowledge.
-    if (writes_gltf() && options_.integer(BELTRAMI_OPTION_SHARE_COPIES) == 0) judge_stored();
+    judge_held();
   }
 
-  void judge_stored() {
-    beltrami_atlas_certificate found{};
-    const beltrami_status status = judge_stored_uvs(file_, arguments_.input, found);
-    report_.status = beltrami_status_name(status);
+  /// The last verdict is on the numbers that the file gets.
+  void judge_held() {
+    const bool share = options_.integer(BELTRAMI_OPTION_SHARE_COPIES) != 0;
+    const auto found = judge_held_uvs(file_, arguments_.output, share);
+    if (!found) return;
     report_.atlas_certificate = found;
-    report_.float32_injective = found.injective != 0;
+    report_.float32_injective = found->injective != 0;
+    if (found->injective == 0) report_.status = beltrami_status_name(BELTRAMI_NOT_INJECTIVE);
   }
 
   /// All files are complete on the disk before the first of them replaces anything. Returns the
@@ -240,7 +248,7 @@ class Unwrapping {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
-    report_.not_kept = write_outputs(file_, arguments_.output, arguments_.uv_set, outputs);
+    write_outputs(file_, arguments_.output, arguments_.uv_set, outputs, report_);
     if (!arguments_.written_seams.empty()) write_seams(outputs);
     if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     clock.finish();
@@ -260,7 +268,7 @@ class Unwrapping {
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
-    for (AtomicFile& output : outputs) output.commit();
+    commit(outputs);
     if (picture) picture->commit();
     if (report) report->commit();
     remark(note);

@@ -97,7 +97,8 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
     temporary_->keep();
     fail("cannot be written");
   }
-  if (fs::exists(status)) set_permissions(descriptor_, status.permissions());
+  is_new_ = !fs::exists(status);
+  if (!is_new_) set_permissions(descriptor_, status.permissions());
 }
 
 AtomicFile::~AtomicFile() {
@@ -128,9 +129,15 @@ void AtomicFile::commit() {
 #endif
   temporary_->keep();
   temporary_.reset();
+  made_ = is_new_;
+  for (const std::string& path : obsolete_) std::remove(path.c_str());
   // The file has its name now. That the name outlives a power cut is asked for, but where a folder
   // cannot be opened or synchronised, nothing is wrong with the file.
   sync_directory(folder_.c_str());
+}
+
+void AtomicFile::take_back() noexcept {
+  if (std::exchange(made_, false)) std::remove(target_.c_str());
 }
 
 void AtomicFile::fail(const char* what) const {
@@ -138,6 +145,15 @@ void AtomicFile::fail(const char* what) const {
   if (number == ENOMEM) throw std::bad_alloc();
   if (number == EINTR) throw Failure(BELTRAMI_E_CANCELLED, "cancelled");
   throw Failure(path_ + ": " + what + ": " + std::strerror(number));
+}
+
+void commit(std::deque<AtomicFile>& files) {
+  try {
+    for (AtomicFile& file : files) file.commit();
+  } catch (...) {
+    for (AtomicFile& file : files) file.take_back();
+    throw;
+  }
 }
 
 void require_writable(const std::string& path) {

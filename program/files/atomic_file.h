@@ -1,9 +1,12 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "process/leftovers.h"
 
@@ -26,8 +29,12 @@ class AtomicFile {
   void write(std::string_view bytes);
   /// Has the disk store what was written, so that a full one shows before anything is replaced.
   void close();
+  /// Has commit() remove this file, which nothing needs once the target is replaced.
+  void remove_then(std::string path) { obsolete_.push_back(std::move(path)); }
   /// Closes, and replaces the target. Needs no memory after a close().
   void commit();
+  /// Removes the target again if commit() made it where no file was.
+  void take_back() noexcept;
 
  private:
   [[noreturn]] void fail(const char* what) const;
@@ -36,8 +43,15 @@ class AtomicFile {
   std::string target_;  ///< links followed
   std::string folder_;  ///< of the target
   std::optional<Leftover> temporary_;
+  std::vector<std::string> obsolete_;
   int descriptor_ = -1;
+  bool is_new_ = false;  ///< there is no target
+  bool made_ = false;    ///< commit() made one
 };
+
+/// Commits all of them in order. Where one cannot be, those before it that are new are taken back,
+/// so that no part of a model stays of which the rest is missing.
+void commit(std::deque<AtomicFile>& files);
 
 /// Throws Failure unless `path` could be written now: told before minutes of work, not after. What
 /// is not a regular file is not opened, since the reader of a pipe would notice.

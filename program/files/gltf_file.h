@@ -16,7 +16,6 @@
 // such node shows, and one that a skin moves, stays where its own coordinates have it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,36 +31,36 @@ struct GltfOutput {
     std::vector<std::string> pieces;  ///< one after another
   };
   std::vector<File> files;            ///< to be put in place in this order: a .bin, then its .gltf
+  std::vector<std::string> replaced;  ///< buffers of the model that was there, to be removed then
   std::vector<std::string> not_kept;  ///< in words: "tangents"
+  std::vector<std::string> notes;     ///< what else is to be known of the output, in sentences
 };
 
 /// u v per vertex of TEXCOORD_`uv_set`, NaN in primitives without; empty where none has it. glTF's
 /// V axis points down, that of beltrami up: v here is 1 - v there. Precondition: file.gltf.
 std::vector<double> gltf_uvs(const MeshFile& file, std::uint32_t uv_set);
 
-/// Throws Failure unless every primitive has the sets before `uv_set`, which glTF asks for; it
-/// names the least set that is free. Precondition: file.gltf.
+/// Throws Failure where `uv_set` is beyond 1 and leaves out a set that no primitive has; it names
+/// the greatest that does not. Precondition: file.gltf.
 void require_uv_set(const MeshFile& file, std::uint32_t uv_set);
 
-/// The paths of what write_gltf is going to give. Throws Failure where one of them is a buffer of
-/// `file` that would not be replaced together with `file`. Preconditions: those of write_gltf.
+/// The paths of what write_gltf would give now. Preconditions: those of write_gltf.
 std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::string& path);
-
-/// u and v as glTF holds them: the bits that write_gltf writes.
-std::array<float, 2> stored_uv(double u, double v);
 
 /// The file with its UVs now, of corners or of vertices, as TEXCOORD_`uv_set` of every primitive
 /// with triangles, in single precision, for `path`: .glb holds its buffer; .gltf has it beside it,
-/// as the same name with .bin, where the input had a file too, else in itself.
+/// in a new file of its name with .bin, where the input had a file too, else in itself.
 ///
 /// A vertex is split only where its corners have UVs of different numbers; its copies have its
 /// other attributes to the bit, also those of morph targets, and come behind the old vertices,
 /// which keep their places. Bytes that nothing refers to any more are left out. Tangents go where
-/// the material's normal map uses the new UVs: they belonged to the old ones.
+/// the material's normal map uses the new UVs: they belonged to the old ones; so do the transforms
+/// of KHR_texture_transform of textures that use them. Primitives without the sets before `uv_set`
+/// get the same UVs in these.
 ///
 /// Preconditions: file.gltf, and its faces are where they were, though their corners may have
-/// turned; `path` is of glTF. Throws Failure as require_uv_set and gltf_output_paths do, and for
-/// what is too large for GLB; std::bad_alloc.
+/// turned; `path` is of glTF. Throws Failure as require_uv_set does, and for what is too large
+/// for GLB; std::bad_alloc.
 GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path);
 
 }  // namespace beltrami::cli

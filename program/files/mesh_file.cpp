@@ -31,7 +31,7 @@ bool is_mni(std::string_view text) {
 }
 
 /// The reader of the format, on the text of the file.
-MeshFile read_text(const std::string& path, Content content) {
+MeshFile read_text(const std::string& path, Content content, Reach reach) {
   const MeshFormat format = format_of(path);
   std::string text = read_file(path);
   if (text.empty()) throw Failure(path + ": the file is empty");
@@ -46,7 +46,7 @@ MeshFile read_text(const std::string& path, Content content) {
     case MeshFormat::kStl:
       return read_stl(text, path, content);
     default:
-      return read_gltf(text, path, content);
+      return read_gltf(text, path, content, reach);
   }
 }
 
@@ -93,8 +93,8 @@ void require_whole(const MeshFile& mesh) {
   if (!mesh.truncated.empty()) throw Failure(mesh.path + ": " + mesh.truncated);
 }
 
-MeshFile read_mesh(const std::string& path, Content content) {
-  MeshFile mesh = read_text(path, content);
+MeshFile read_mesh(const std::string& path, Content content, Reach reach) {
+  MeshFile mesh = read_text(path, content, reach);
   mesh.path = path;
   return mesh;
 }

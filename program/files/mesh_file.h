@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "files/column.h"
+#include "files/inside_folder.h"
 #include "files/polygons.h"
 
 namespace beltrami::cli {
@@ -89,10 +90,10 @@ MeshFormat format_of(const std::string& path);
 /// Throws Failure unless `path` has the extension of a format that can hold UVs: OBJ or PLY.
 void require_writable_format(const std::string& path);
 
-/// Reads `path`. Throws Failure for anything unreadable, and for indices out of range;
-/// std::bad_alloc. A PLY file that ends amid its faces is read as far as it goes: see `truncated`.
-/// Face and vertex numbers in messages count from 0.
-MeshFile read_mesh(const std::string& path, Content content);
+/// Reads `path`, and what it names within `reach`. Throws Failure for anything unreadable, and for
+/// indices out of range; std::bad_alloc. A PLY file that ends amid its faces is read as far as it
+/// goes: see `truncated`. Face and vertex numbers in messages count from 0.
+MeshFile read_mesh(const std::string& path, Content content, Reach reach = Reach::kItsFolder);
 
 /// Throws Failure for a file that ends amid its faces.
 void require_whole(const MeshFile& mesh);
@@ -104,7 +105,8 @@ MeshFile read_ply(std::string_view text, const std::string& path, Content conten
 MeshFile read_mni(std::string_view text, const std::string& path, Content content);
 MeshFile read_stl(std::string_view text, const std::string& path, Content content);
 /// gltf_file.h says what of a scene is in it. Buffers in files are read from beside `path`.
-MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content);
+MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content,
+                   Reach reach = Reach::kItsFolder);
 
 /// Receives the bytes of a file in order.
 using Sink = std::function<void(std::string_view)>;

@@ -10,6 +10,7 @@
 #include "files/column.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
+#include "files/uv_numbers.h"
 #include "files/writer.h"
 
 namespace beltrami::cli {
@@ -165,11 +166,14 @@ bool has_corner_uvs(const MeshFile& mesh) {
   return !mesh.corner_uvs.of_corner.empty();
 }
 
-void write_uv(const MeshFile& mesh, double value, Writer& out) {
-  if (mesh.single_uvs) {
-    out.binary(static_cast<float>(value));
-  } else {
-    out.binary(value);
+void write_uv(const MeshFile& mesh, const double* uv, Writer& out) {
+  const UvNumbers numbers = uv_numbers(MeshFormat::kPly, mesh.single_uvs);
+  for (const double value : numbers.held(uv[0], uv[1])) {
+    if (numbers.single) {
+      out.binary(static_cast<float>(value));
+    } else {
+      out.binary(value);
+    }
   }
 }
 
@@ -180,7 +184,7 @@ void write_vertices(const MeshFile& mesh, const ColumnWriter& columns, Writer& o
       columns.write(i, out);
       continue;
     }
-    for (std::size_t k = 0; k < 2; ++k) write_uv(mesh, mesh.uvs[2 * i + k], out);
+    write_uv(mesh, &mesh.uvs[2 * i], out);
     columns.write(i, out);
   }
 }
@@ -194,8 +198,7 @@ void write_faces(const MeshFile& mesh, Scalar count_type, Scalar uv_count_type,
     if (has_corner_uvs(mesh)) {
       write_count(uv_count_type, 2 * corners.size(), out);
       for (std::uint64_t c = mesh.polygons.begin(i); c < mesh.polygons.end(i); ++c) {
-        const std::size_t at = 2 * std::size_t{mesh.corner_uvs.of_corner[c]};
-        for (std::size_t k = 0; k < 2; ++k) write_uv(mesh, mesh.corner_uvs.values[at + k], out);
+        write_uv(mesh, &mesh.corner_uvs.values[2 * std::size_t{mesh.corner_uvs.of_corner[c]}], out);
       }
     }
     columns.write(i, out);
@@ -240,7 +243,8 @@ void write_ply(const MeshFile& mesh, Writer& out) {
   }
   declare_element("vertex", mesh.vertex_count(), out);
   out.text("property double x\nproperty double y\nproperty double z\n");
-  const std::string_view number = mesh.single_uvs ? "float" : "double";
+  const bool single = uv_numbers(MeshFormat::kPly, mesh.single_uvs).single;
+  const std::string_view number = single ? "float" : "double";
   for (const std::string_view name : {"s", "t"}) {
     if (!has_corner_uvs(mesh)) declare_property("", number, name, out);
   }

@@ -73,8 +73,7 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
       for (Vec2& w : placed) {
         w = place_on_page(packing, parts[i], placement, options.resolution, w);
       }
-      const NumberFormat numbers{.float32 = float32, .single_first = placement.page > 0};
-      round_chart(charts[c].chart.mesh, placed, numbers, of_chart, maps[c]);
+      round_on_page(charts[c].chart.mesh, placed, placement.page, float32, of_chart, maps[c]);
     });
     pages.margin = margin_of(charts, maps, pages.page_of_chart, options.resolution, own);
     return pages.margin;

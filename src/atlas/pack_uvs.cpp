@@ -8,6 +8,7 @@
 
 #include "admit/orient.h"
 #include "atlas/margin.h"
+#include "atlas/round_chart.h"
 #include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -178,10 +179,9 @@ std::vector<Vec2> round_disk(const UvChart& chart, bool mirrored, const std::vec
   }
 }
 
-/// The numbers to deliver for a chart, in which as few faces as possible change their sign.
-std::vector<Vec2> rounded(const UvChart& chart, const std::vector<Vec2>& placed, bool float32,
-                          const Work& work) {
-  const Numbers numbers{.single = float32, .exponent = 0};
+/// Such numbers for a chart, in which as few faces as possible change their sign.
+std::vector<Vec2> rounded(const UvChart& chart, const std::vector<Vec2>& placed,
+                          const Numbers& numbers, const Work& work) {
   std::vector<Vec2> result = nearest(numbers, placed);
   const std::vector<int> before = signs_of(chart.shape.faces, chart.shape.points);
   if (signs_of(chart.shape.faces, result) == before) return result;
@@ -192,15 +192,22 @@ std::vector<Vec2> rounded(const UvChart& chart, const std::vector<Vec2>& placed,
   return round_disk(chart, all(-1), placed, numbers, work);
 }
 
-/// Single precision on further pages where that is as good: without the page's corner such numbers
-/// round to themselves.
+/// The numbers to deliver: doubles on the first page where single precision keeps their faces, with
+/// the V axis up and down; else multiples of the page's step, if these do.
 std::vector<Vec2> rounded_on_page(const UvChart& chart, Index page, const std::vector<Vec2>& placed,
                                   bool float32, const Work& work) {
-  std::vector<Vec2> result = rounded(chart, placed, float32, work);
-  if (float32 || page == 0 || stays(chart)) return result;
-  std::vector<Vec2> single = rounded(chart, placed, true, work);
+  const Numbers doubles, floats{.single = true}, steps{.single = true, .step = step_of(page)};
+  if (stays(chart)) return rounded(chart, placed, float32 ? floats : doubles, work);
+  if (float32) return rounded(chart, placed, steps, work);
+  std::vector<Vec2> result = rounded(chart, placed, doubles, work);
   const auto signs = [&](const std::vector<Vec2>& uvs) { return signs_of(chart.shape.faces, uvs); };
-  return signs(single) == signs(result) ? single : result;
+  const std::vector<int> expected = signs(result);
+  if (page == 0 && signs(nearest(floats, result)) == expected &&
+      signs(stored_downwards(result, work)) == expected) {
+    return result;
+  }
+  std::vector<Vec2> single = rounded(chart, placed, steps, work);
+  return signs(single) == expected ? single : result;
 }
 
 /// Turns faces over that run against most of their chart: a winding that changes is no fold.

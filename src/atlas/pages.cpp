@@ -11,9 +11,11 @@
 namespace beltrami {
 namespace {
 
-/// Rounding to nearest moves a vertex by half a unit in the last place of single precision in each
-/// direction, of numbers up to the last page's; two charts and a diagonal are worth 4 of them.
-constexpr double kRounding = 4 * 0x1p-24;
+/// The multiples of it are single-precision numbers as far as 1.
+constexpr double kUnitStep = 0x1p-24;
+/// Rounding to nearest moves a vertex by half of step_of in each direction, at most kUnitStep times
+/// the greatest coordinate; two charts and a diagonal are worth 4 of them.
+constexpr double kRounding = 4 * kUnitStep;
 /// What mending moves further is rare: room for it is made where it is needed.
 constexpr int kMostTries = 4;
 constexpr double kMoreRoom = 2;
@@ -52,6 +54,13 @@ Packing packed(std::span<const PackChart> charts, const PackOptions& options, co
 }
 
 }  // namespace
+
+double step_of(Index page) {
+  const double reach = tile_of(page).maxCoeff() + 1;
+  double step = kUnitStep;
+  while (step < kUnitStep * reach) step *= 2;
+  return step;
+}
 
 Packing pack_and_deliver(std::span<const PackChart> charts, const PackOptions& options,
                          const std::function<double(const Packing&, const Work&)>& deliver,

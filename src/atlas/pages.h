@@ -22,6 +22,11 @@ inline Vec2 tile_of(Index page) {
   return {static_cast<double>(column), static_cast<double>(row)};
 }
 
+/// The least power of two of which single precision holds every multiple on the page, and 1 less
+/// each of them, so that v may be stored with its axis up or down. Corners of pages are multiples
+/// of it.
+double step_of(Index page);
+
 /// What charts were split for.
 struct SplitFigures {
   double before = 0;  ///< the utilisation of the charts whole

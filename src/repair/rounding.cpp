@@ -281,6 +281,7 @@ double spacing_of(double x) {
 
 double Numbers::delivered(double x) const {
   const double number = portable::times_power_of_two(x, -exponent);
+  if (step > 0) return step * std::floor(number / step + 0.5);
   return single ? nearest_of<float>(number) : nearest_of<double>(number);
 }
 
@@ -288,12 +289,13 @@ double Numbers::nearest(double x) const {
   constexpr int kModerate = 400;  // the product of two such powers is far from both ends
   const double size = std::abs(x);
   const bool moderate = size > 0x1p-400 && size < 0x1p400 && std::abs(exponent) < kModerate;
-  if (!single && moderate) return x;
+  if (!single && step == 0 && moderate) return x;
   return portable::times_power_of_two(delivered(x), exponent);
 }
 
 double Numbers::spacing(double x) const {
   const double number = delivered(x);
+  if (step > 0) return portable::times_power_of_two(step, exponent);
   const double spacing = single ? spacing_of<float>(number) : spacing_of<double>(number);
   return portable::times_power_of_two(spacing, exponent);
 }

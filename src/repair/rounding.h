@@ -16,6 +16,8 @@ namespace beltrami {
 struct Numbers {
   bool single = false;  ///< float; else double
   int exponent = 0;
+  /// Above 0: the multiples of it alone. A power of two, and those in use are numbers of the type.
+  double step = 0;
 
   /// The nearest number to a finite one; beyond the range of the type the end of it.
   double nearest(double x) const;

@@ -1,10 +1,15 @@
-// Allocations that fail, one by one and from one on; and what reaches the disk in which order. By
-// libraries that are loaded before the program's own.
+// Allocations that fail, one by one and from one on; what reaches the disk in which order, and what
+// is there when a rename fails. By libraries that are loaded before the program's own.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "files/gltf_file.h"
+#include "files/mesh_file.h"
+#include "gltf_builder.h"
 #include "run_program.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -114,6 +119,62 @@ TEST(Disk, HasEveryFileBeforeTheFirstIsReplacedAndEveryNameAtTheEnd) {
   EXPECT_EQ(stored, renamed);
   EXPECT_EQ(renamed.size(), 3u);
   EXPECT_TRUE(named) << "the folder is not stored after the last rename";
+}
+
+/// A .gltf file whose buffer is beside it.
+struct Pair {
+  TemporaryDirectory directory;
+  GltfBuilder builder;
+  std::string path;
+
+  Pair() {
+    builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})}},
+                 builder.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}));
+    directory.file("m.bin", builder.buffer());
+    path = directory.file("m.gltf", builder.text("m.bin"));
+  }
+  std::size_t files() const {
+    const auto folder = std::filesystem::path(path).parent_path();
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+  }
+  bool has_uvs() const { return !gltf_uvs(read_mesh(path, Content::kSurface), 0).empty(); }
+};
+
+Surroundings failing_rename(const char* at, bool kill) {
+  Surroundings around;
+  around.environment = {{"LD_PRELOAD", BELTRAMI_FAIL_RENAMES}, {"FAIL_AT", at}};
+  if (kill) around.environment.emplace_back("KILL", "1");
+  return around;
+}
+
+TEST(Disk, HasTheOldModelOrTheNewOneWhicheverRenameFails) {
+  for (const char* at : {"1", "2"}) {
+    const Pair pair;
+    const Outcome outcome =
+        run({"unwrap", pair.path, pair.path, "--cut", "minimal"}, failing_rename(at, false));
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_FALSE(pair.has_uvs()) << "rename " << at;
+    EXPECT_EQ(pair.directory.read("m.gltf"), pair.builder.text("m.bin"));
+    EXPECT_EQ(pair.directory.read("m.bin"), pair.builder.buffer());
+    EXPECT_EQ(pair.files(), 2u) << "nothing is left of the new one";
+  }
+  const Pair pair;
+  const Outcome outcome = run({"unwrap", pair.path, pair.path, "--cut", "minimal"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(pair.has_uvs());
+  EXPECT_EQ(pair.files(), 2u) << "nothing is left of the old one";
+}
+
+TEST(Disk, HasTheOldModelOrTheNewOneWheneverTheProcessIsKilled) {
+  for (const char* at : {"1", "2"}) {
+    const Pair pair;
+    const Outcome outcome =
+        run({"unwrap", pair.path, pair.path, "--cut", "minimal"}, failing_rename(at, true));
+    EXPECT_EQ(outcome.signal, SIGKILL);
+    EXPECT_FALSE(pair.has_uvs()) << "rename " << at;
+    EXPECT_EQ(run({"unwrap", pair.path, pair.path, "--cut", "minimal"}).exit_code, 0);
+    EXPECT_TRUE(pair.has_uvs()) << "what was left beside it is in nobody's way";
+  }
 }
 
 }  // namespace

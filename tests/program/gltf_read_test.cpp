@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "files/column.h"
 #include "files/gltf_file.h"
@@ -199,11 +200,59 @@ TEST(GltfRead, CompressedMeshesAreRefusedWithWhatToDo) {
             {"bufferView", 0}};
       },
       "a.glb: meshes[0].primitives[0]: it is compressed by KHR_draco_mesh_compression, which "
-      "cannot "
-      "be read: export the file without mesh compression");
+      "cannot be read: decompress the file first (gltf-transform copy IN.glb OUT.glb), or export");
   expect_refusal(
       [](Json& j) { j["bufferViews"][1]["extensions"]["EXT_meshopt_compression"]["buffer"] = 0; },
-      "a.glb: bufferViews[1]: its bytes are compressed by EXT_meshopt_compression");
+      "a.glb: bufferViews[1]: its bytes are compressed by EXT_meshopt_compression, which cannot be "
+      "read: decompress the file first (gltf-transform copy IN.glb OUT.glb, or gltfpack -noq -i "
+      "IN.glb -o OUT.glb)");
+}
+
+TEST(GltfRead, WhatWouldGrowBeyondReasonIsRefusedBeforeItDoes) {
+  // One strip over three vertices, by indices of a byte each, drawn by so many primitives.
+  constexpr std::size_t kIndices = 60'000;
+  const auto strips = [&](int primitives) {
+    GltfBuilder builder;
+    std::string bytes;
+    for (std::size_t i = 0; i < kIndices; ++i) bytes += static_cast<char>(i % 3);
+    builder.json["accessors"].push_back({{"bufferView", builder.view(bytes)},
+                                         {"componentType", 5121},
+                                         {"count", kIndices},
+                                         {"type", "SCALAR"}});
+    Json& strip = builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}, 0);
+    strip["mode"] = 5;
+    const Json copy = strip;
+    for (int i = 1; i < primitives; ++i) builder.json["meshes"][0]["primitives"].push_back(copy);
+    return read_gltf(builder.glb(), "a.glb", Content::kSurface);
+  };
+  EXPECT_EQ(strips(4).polygons.size(), 4 * (kIndices - 2));
+  try {
+    strips(40);
+    FAIL() << "2,400,000 faces of 65,000 bytes";
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("items for each byte"), std::string::npos)
+        << failure.what();
+  }
+}
+
+TEST(GltfRead, BuffersOfOneFileAreReadOnce) {
+  const TemporaryDirectory directory;
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0})}},
+               builder.indices<std::uint8_t>({0, 1, 2}));
+  Json json = Json::parse(builder.text("b.bin"));
+  for (int i = 0; i < 3; ++i) json["buffers"].push_back(json["buffers"][0]);
+  json["bufferViews"][1]["buffer"] = 3;
+  directory.file("b.bin", builder.buffer());
+  MeshFile file = read_mesh(directory.file("a.gltf", json.dump()), Content::kSurface);
+  EXPECT_EQ(file.polygons.corners(), (std::vector<std::uint32_t>{0, 1, 2}));
+  file.corner_uvs = {{0, 0, 1, 0, 0, 1}, {0, 1, 2}};
+  const GltfOutput output = write_gltf(file, 0, directory.path("c.glb"));
+  const MeshFile back = read_gltf(
+      std::accumulate(output.files[0].pieces.begin(), output.files[0].pieces.end(), std::string()),
+      "c.glb", Content::kAll);
+  EXPECT_EQ(back.positions, file.positions);
+  EXPECT_EQ(back.uvs, (std::vector<double>{0, 0, 1, 0, 0, 1}));
 }
 
 TEST(GltfRead, WhatIsOutOfRangeIsNamed) {
@@ -225,8 +274,8 @@ TEST(GltfRead, WhatIsOutOfRangeIsNamed) {
   expect_refusal([](Json& j) { j["bufferViews"][0]["byteOffset"] = kHuge; }, "reaches beyond");
   expect_refusal([](Json& j) { j["buffers"][0]["byteLength"] = 1000; }, "cut short");
   expect_refusal([](Json& j) { j["buffers"][0]["uri"] = "data:,abc"; }, "no data in base 64");
-  expect_refusal([](Json& j) { j["buffers"][0]["uri"] = "https://a/b.bin"; }, "export the file as");
-  expect_refusal([](Json& j) { j["buffers"][0]["uri"] = "/b.bin"; }, "export the file as");
+  expect_refusal([](Json& j) { j["buffers"][0]["uri"] = "https://a/b.bin"; }, "its uri 'https:");
+  expect_refusal([](Json& j) { j["buffers"][0]["uri"] = "/b.bin"; }, "--allow-outside");
   expect_refusal([](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }, "indices are no");
   expect_refusal([](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }, "mode 7 is none");
   expect_refusal([](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; }, "materials[0]");

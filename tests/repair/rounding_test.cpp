@@ -38,6 +38,20 @@ TEST(Rounding, IsTheNearestRoundingWhereThatIsInjective) {
   expect_single_numbers(rounded);
 }
 
+TEST(Rounding, GoesToMultiplesOfAStep) {
+  const DiskMesh mesh = disks::disk(meshes::grid(14, 14));
+  const Numbers steps{.single = true, .step = 0x1p-6};
+  EXPECT_EQ(steps.nearest(0.3), 0.296875);
+  EXPECT_EQ(steps.nearest(-0.3), -0.296875);
+  EXPECT_EQ(steps.spacing(1e-9), 0x1p-6);
+  std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  for (Vec2& w : uvs) w = {w.x() + 0.01, w.y() * w.y() + 0.3 * w.x()};  // rows fold
+  const Rounded rounded = round_map(mesh, uvs, uvs, steps, Work(1));
+  EXPECT_TRUE(rounded.certificate.injective());
+  EXPECT_GT(rounded.moved, 0);
+  for (const Vec2& w : rounded.uvs) EXPECT_EQ(steps.nearest(w), w);
+}
+
 TEST(Rounding, OpensFacesThatRoundingFolds) {
   const DiskMesh mesh = disks::disk(meshes::grid(14, 14));
   for (const double height : {1e-6, 1e-7, 3e-8, 1e-9, 1e-12}) {

@@ -1,8 +1,11 @@
 #include "files/gltf/container.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "files/gltf/little.h"
 #include "files/gltf/uri.h"
@@ -11,9 +14,29 @@
 namespace beltrami::cli::gltf {
 namespace {
 
+namespace fs = std::filesystem;
+
 bool is_glb(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = fs::path(path).extension().string();
   return extension.size() == 4;  // else it is .gltf
+}
+
+/// scene.bin, scene-1.bin, scene-2.bin beside scene.gltf.
+std::string buffer_name(const std::string& path, std::uint64_t number) {
+  fs::path name = fs::path(path).replace_extension();
+  if (number > 0) (name += "-") += std::to_string(number);
+  return (name += ".bin").string();
+}
+
+/// Whether buffer_name may have made it, without folders.
+bool is_buffer_name(const std::string& name, const std::string& path) {
+  constexpr std::string_view kEnd = ".bin";
+  const std::string stem = fs::path(path).stem().string();
+  if (!name.starts_with(stem) || !name.ends_with(kEnd)) return false;
+  if (name.size() < stem.size() + kEnd.size()) return false;
+  const std::string number = name.substr(stem.size(), name.size() - stem.size() - kEnd.size());
+  return number.empty() || (number[0] == '-' && number.size() > 1 &&
+                            number.find_first_not_of("0123456789", 1) == std::string::npos);
 }
 
 GltfOutput::File glb(const Json& json, Buffer buffer, const std::string& path) {
@@ -37,17 +60,43 @@ GltfOutput::File glb(const Json& json, Buffer buffer, const std::string& path) {
   return file;
 }
 
-std::filesystem::path folder_of(const std::string& path) {
+fs::path folder_of(const std::string& path) {
   std::error_code ignored;  // what cannot be resolved is compared as it is
-  const std::filesystem::path folder = std::filesystem::absolute(path, ignored).parent_path();
-  return std::filesystem::weakly_canonical(folder, ignored);
+  const fs::path folder = fs::absolute(path, ignored).parent_path();
+  return fs::weakly_canonical(folder, ignored);
 }
 
 }  // namespace
 
 std::string buffer_path(const Document& document, const std::string& path) {
   if (is_glb(path) || document.storage != Storage::kFile) return {};
-  return std::filesystem::path(path).replace_extension(".bin").string();
+  for (std::uint64_t number = 0;; ++number) {
+    std::string name = buffer_name(path, number);
+    std::error_code ignored;
+    if (!fs::exists(fs::symlink_status(name, ignored))) return name;
+  }
+}
+
+std::vector<std::string> buffers_replaced(const Document& document, const std::string& path) {
+  std::error_code ignored;
+  if (is_glb(path) || !fs::is_regular_file(path, ignored)) return {};
+  std::ifstream file(path, std::ios::binary);
+  const Json old = Json::parse(file, nullptr, false);
+  if (!old.is_object() || !old.contains("buffers") || !old["buffers"].is_array()) return {};
+  const bool in_place = fs::equivalent(document.path, path, ignored);
+  std::vector<std::string> found;
+  for (const Json& buffer : old["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const std::string& uri = buffer["uri"].get_ref<const std::string&>();
+    const std::optional<std::string> name = is_data(uri) ? std::nullopt : decode_path(uri);
+    if (!name || !is_buffer_name(*name, path)) continue;
+    const std::string own = fs::path(path).replace_filename(*name).string();
+    const bool needed =
+        std::any_of(document.files.begin(), document.files.end(),
+                    [&](const auto& input) { return fs::equivalent(input.first, own, ignored); });
+    if (fs::is_regular_file(own, ignored) && (in_place || !needed)) found.push_back(own);
+  }
+  return found;
 }
 
 std::vector<GltfOutput::File> files_of(const Document& document, Json json, Buffer buffer,
@@ -65,7 +114,7 @@ std::vector<GltfOutput::File> files_of(const Document& document, Json json, Buff
     for (const std::string& piece : buffer.pieces) bytes += piece;
     uri = encode_data(bytes);
   } else {
-    uri = encode_path(std::filesystem::path(beside).filename().string());
+    uri = encode_path(fs::path(beside).filename().string());
     files.push_back({beside, std::move(buffer.pieces)});
   }
   files.push_back({path, {json.dump(2), "\n"}});

@@ -1,7 +1,6 @@
 #include "files/gltf/document.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "files/gltf/little.h"
@@ -96,30 +95,31 @@ void refuse_compression(const Document& document) {
       const Item view = document.entry("bufferViews", i);
       if (!view.has_extension(extension)) continue;
       view.fail(std::string("its bytes are compressed by ") + extension +
-                ", which cannot be read: export the file without mesh compression");
+                ", which cannot be read: decompress the file first (gltf-transform copy IN.glb " +
+                "OUT.glb, or gltfpack -noq -i IN.glb -o OUT.glb), or export it without mesh " +
+                "compression");
     }
   }
 }
 
-std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri) {
-  const std::optional<std::string> relative = decode_path(uri);
-  if (!relative) {
-    buffer.fail(
-        "its uri is neither data in base 64 nor a file beside this one: export the file "
-        "as .glb");
-  }
-  const std::string file =
-      (std::filesystem::path(document.path).parent_path() / *relative).string();
-  document.files.push_back(file);
-  return read_file(file);
+/// Buffers may be of one file, which is read once: else a short document could ask for any amount.
+std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri,
+                          Reach reach) {
+  const NamedFile file = follow_uri(document.path, uri, reach);
+  if (file.path.empty()) buffer.fail("its uri '" + one_line(uri) + "' " + file.refusal);
+  const std::uint64_t number = document.buffers.size();
+  const auto [first, is_new] = document.files.try_emplace(file.path, number);
+  document.first_of_file[number] = first->second;
+  return is_new ? read_file(file.path) : std::string();
 }
 
-void read_buffers(Document& document, const std::optional<std::string_view>& chunk) {
+void read_buffers(Document& document, const std::optional<std::string_view>& chunk, Reach reach) {
   for (std::uint64_t i = 0; i < document.count("buffers"); ++i) {
     const Item buffer = document.entry("buffers", i);
     const std::string uri = buffer.text("uri");
     Storage storage = Storage::kEmbedded;
     std::string bytes;
+    document.first_of_file.push_back(i);
     if (uri.empty()) {
       storage = Storage::kChunk;
       if (i != 0 || !chunk) buffer.fail("it has no bytes: export the file again");
@@ -130,15 +130,16 @@ void read_buffers(Document& document, const std::optional<std::string_view>& chu
       bytes = std::move(*data);
     } else {
       storage = Storage::kFile;
-      bytes = bytes_of_file(document, buffer, uri);
-    }
-    const std::uint64_t length = buffer.required("byteLength");
-    if (length > bytes.size()) {
-      buffer.fail("there are " + std::to_string(bytes.size()) + " of its " +
-                  std::to_string(length) + " bytes: the file is cut short");
+      bytes = bytes_of_file(document, buffer, uri, reach);
     }
     if (i == 0) document.storage = storage;
     document.buffers.push_back(std::move(bytes));
+    const std::uint64_t length = buffer.required("byteLength");
+    const std::uint64_t found = document.buffers[document.first_of_file[i]].size();
+    if (length > found) {
+      buffer.fail("there are " + std::to_string(found) + " of its " + std::to_string(length) +
+                  " bytes: the file is cut short");
+    }
     // The text would be as long as the bytes once more, and the output has one of its own.
     if (storage == Storage::kEmbedded) document.json["buffers"][i].erase("uri");
   }
@@ -159,6 +160,7 @@ BufferView buffer_view(const Document& document, std::uint64_t number) {
     item.fail("it reaches beyond buffers[" + std::to_string(view.buffer) +
               "]: the file is damaged, export it again");
   }
+  view.buffer = document.first_of_file[view.buffer];
   return view;
 }
 
@@ -173,7 +175,7 @@ std::uint64_t Document::count(const char* list) const {
   return all ? all->size() : 0;
 }
 
-Document read_document(std::string_view bytes, const std::string& path) {
+Document read_document(std::string_view bytes, const std::string& path, Reach reach) {
   if (bytes.empty()) throw Failure(path + ": the file is empty");
   Document document;
   document.path = path;
@@ -187,7 +189,7 @@ Document read_document(std::string_view bytes, const std::string& path) {
   document.json = parse(container.json, path);
   require_version(document);
   refuse_compression(document);
-  read_buffers(document, container.chunk);
+  read_buffers(document, container.chunk, reach);
   for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) buffer_view(document, i);
   return document;
 }

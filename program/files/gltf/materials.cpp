@@ -1,6 +1,10 @@
 #include "files/gltf/materials.h"
 
+#include <algorithm>
 #include <optional>
+#include <string_view>
+
+#include "process/failure.h"
 
 namespace beltrami::cli::gltf {
 namespace {
@@ -10,29 +14,145 @@ std::optional<Item> extension(const Item& item, const char* name) {
   return all ? all->object(name) : std::nullopt;
 }
 
-void add_set(const Document& document, const Item& user, std::vector<std::uint64_t>& sets) {
-  const std::optional<std::uint64_t> number = user.whole("material");
-  if (!number) return;
-  const std::optional<Item> texture = document.entry("materials", *number).object("normalTexture");
-  if (!texture) return;
-  std::uint64_t set = texture->whole("texCoord", 0);
-  if (const std::optional<Item> transform = extension(*texture, "KHR_texture_transform")) {
-    set = transform->whole("texCoord", set);
+constexpr const char* kTransform = "KHR_texture_transform";
+constexpr const char* kVariants = "KHR_materials_variants";
+
+/// The set of UVs that a texture is drawn through.
+std::uint64_t set_of(const Item& texture) {
+  const std::uint64_t set = texture.whole("texCoord", 0);
+  const std::optional<Item> transform = extension(texture, kTransform);
+  return transform ? transform->whole("texCoord", set) : set;
+}
+
+/// The numbers of a primitive's material, and of those that KHR_materials_variants has for it.
+std::vector<std::uint64_t> materials_of(const Item& primitive) {
+  std::vector<std::uint64_t> numbers;
+  const auto add = [&](const Item& user) {
+    if (const std::optional<std::uint64_t> number = user.whole("material")) {
+      numbers.push_back(*number);
+    }
+  };
+  add(primitive);
+  const std::optional<Item> variants = extension(primitive, kVariants);
+  const std::optional<Item> mappings = variants ? variants->array("mappings") : std::nullopt;
+  for (std::uint64_t i = 0; mappings && i < mappings->size(); ++i) add((*mappings)[i]);
+  return numbers;
+}
+
+/// Whether the member `key` of something says how a texture is drawn: by its name, or by the set or
+/// the channels that it names.
+bool is_texture(const Json& json, std::string_view key) {
+  if (!json.is_object() || !json.contains("index")) return false;
+  return key.ends_with("exture") || json.contains("texCoord") || json.contains("channels");
+}
+
+/// Calls visit(json) for all such in `json`, the member `key` of something.
+template <class Visit>
+void visit_textures(Json& json, std::string_view key, const Visit& visit) {
+  if (is_texture(json, key)) visit(json);
+  if (json.is_array()) {
+    for (Json& item : json) visit_textures(item, key, visit);
+  } else if (json.is_object()) {
+    for (auto& [name, value] : json.items()) {
+      if (name != "extras") visit_textures(value, name, visit);
+    }
   }
-  sets.push_back(set);
+}
+
+/// What is not as it should be uses no set.
+bool uses_set(const Json& texture, std::uint64_t uv_set) {
+  static const std::string nobody;
+  try {
+    return set_of({texture, "", nobody}) == uv_set;
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
+bool any_texture_uses(Json& json, std::uint64_t uv_set) {
+  bool found = false;
+  visit_textures(json, "", [&](Json& texture) { found = found || uses_set(texture, uv_set); });
+  return found;
+}
+
+/// The extensions of `json`, an object of the document, whose textures use the set.
+void add_extensions(Json& json, std::uint64_t uv_set, std::set<std::string>& found) {
+  if (!json.is_object() || !json.contains("extensions")) return;
+  for (auto& [name, value] : json["extensions"].items()) {
+    if (name != kVariants && any_texture_uses(value, uv_set)) found.insert(name);
+  }
+}
+
+/// Leaves the extension itself where something else is in it, or may point to it: without these
+/// members it stands for none. Returns whether there was something to take away.
+bool take_transform(Json& texture, bool keep_extension) {
+  if (!texture.contains("extensions") || !texture["extensions"].contains(kTransform)) return false;
+  Json& extensions = texture["extensions"];
+  Json& transform = extensions[kTransform];
+  if (!transform.is_object()) return false;
+  bool any = false;
+  for (const char* key : {"offset", "rotation", "scale"}) any = transform.erase(key) > 0 || any;
+  if (keep_extension || !transform.empty()) return any;
+  extensions.erase(kTransform);
+  if (extensions.empty()) texture.erase("extensions");
+  return any;
+}
+
+bool has_key(const Json& json, const char* key) {
+  if (!json.is_structured()) return false;
+  if (json.is_object() && json.contains(key)) return true;
+  return std::any_of(json.begin(), json.end(),
+                     [&](const Json& item) { return has_key(item, key); });
+}
+
+/// Takes an extension that is used no more off the lists.
+void forget_transform(Json& json) {
+  if (has_key(json, kTransform)) return;
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    if (!json.contains(key) || !json[key].is_array()) continue;
+    Json left = Json::array();
+    for (Json& name : json[key]) {
+      if (name != kTransform) left.push_back(std::move(name));
+    }
+    json[key] = std::move(left);
+    if (json[key].empty()) json.erase(key);
+  }
 }
 
 }  // namespace
 
 std::vector<std::uint64_t> sets_of_normal_maps(const Document& document, const Item& primitive) {
   std::vector<std::uint64_t> sets;
-  add_set(document, primitive, sets);
-  const std::optional<Item> variants = extension(primitive, "KHR_materials_variants");
-  const std::optional<Item> mappings = variants ? variants->array("mappings") : std::nullopt;
-  for (std::uint64_t i = 0; mappings && i < mappings->size(); ++i) {
-    add_set(document, (*mappings)[i], sets);
+  for (const std::uint64_t number : materials_of(primitive)) {
+    const std::optional<Item> texture = document.entry("materials", number).object("normalTexture");
+    if (texture) sets.push_back(set_of(*texture));
   }
   return sets;
+}
+
+SetUsers free_set_of_textures(const Document& document, const std::vector<Item>& primitives,
+                              std::uint64_t uv_set, Json& json) {
+  SetUsers users;
+  const bool animated = has_key(json, "KHR_animation_pointer");
+  std::set<std::uint64_t> materials;
+  for (const Item& primitive : primitives) {
+    for (const std::uint64_t number : materials_of(primitive)) materials.insert(number);
+    Json own = primitive.json;
+    add_extensions(own, uv_set, users.extensions);
+  }
+  if (!primitives.empty()) add_extensions(json, uv_set, users.extensions);
+  for (const std::uint64_t number : materials) {
+    document.entry("materials", number);  // is there
+    bool uses = false;
+    visit_textures(json["materials"][number], "", [&](Json& texture) {
+      if (!uses_set(texture, uv_set)) return;
+      uses = true;
+      users.transforms += take_transform(texture, animated) ? 1 : 0;
+    });
+    users.materials += uses ? 1 : 0;
+  }
+  if (users.transforms > 0) forget_transform(json);
+  return users;
 }
 
 }  // namespace beltrami::cli::gltf

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "files/gltf/document.h"
@@ -12,5 +14,19 @@ namespace beltrami::cli::gltf {
 /// The sets of UVs that the normal maps of a primitive's material use, and of the materials that
 /// KHR_materials_variants has for it. Throws Failure for a material that is not there.
 std::vector<std::uint64_t> sets_of_normal_maps(const Document& document, const Item& primitive);
+
+/// What is drawn through a set of UVs that is replaced.
+struct SetUsers {
+  std::uint64_t materials = 0;   ///< with textures that use the set
+  std::uint64_t transforms = 0;  ///< of KHR_texture_transform that were taken away
+  std::set<std::string>
+      extensions;  ///< of primitives whose textures use it, but those of materials
+};
+
+/// Takes the transforms away from the textures of `json`, an edited copy of the document's, that
+/// the materials of these primitives draw through set `uv_set`: UVs made for a whole texture are
+/// not to be scaled again. Says who uses the set. What only a material's extras have is not known.
+SetUsers free_set_of_textures(const Document& document, const std::vector<Item>& primitives,
+                              std::uint64_t uv_set, Json& json);
 
 }  // namespace beltrami::cli::gltf

@@ -24,6 +24,12 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kTriangles = 4, kFan = 6;  // 5 is a strip
+/// Corners of triangles, and vertices of sets, for each byte of the file. The indices of a strip
+/// give 3, each once; more are of primitives that share them, which no exporter does many times,
+/// while a short file could ask for any amount of memory so.
+constexpr std::uint64_t kMostPerByte = 16;
+/// Bytes of attributes and morph targets likewise; more, since those of sparse ones are not stored.
+constexpr std::uint64_t kMostBytesPerByte = 128;
 
 /// Three vertices per triangle, in the orientation that glTF gives it.
 std::vector<std::uint32_t> triangles_of(const Item& primitive, std::uint64_t mode,
@@ -55,7 +61,8 @@ struct Local {
 
 class Reader {
  public:
-  Reader(MeshFile& file, Model& model) : document_(model.document), file_(file), model_(model) {}
+  Reader(MeshFile& file, Model& model, std::uint64_t bytes)
+      : document_(model.document), file_(file), model_(model), bytes_(bytes) {}
 
   void read(bool attributes) {
     const std::vector<std::optional<Transform>> transforms = mesh_transforms(document_);
@@ -104,8 +111,9 @@ class Reader {
     if (mode < kTriangles) return;
     if (item.has_extension("KHR_draco_mesh_compression")) {
       item.fail(
-          "it is compressed by KHR_draco_mesh_compression, which cannot be read: export the "
-          "file without mesh compression");
+          "it is compressed by KHR_draco_mesh_compression, which cannot be read: decompress the "
+          "file first (gltf-transform copy IN.glb OUT.glb), or export it without mesh "
+          "compression");
     }
     const std::optional<Item> attributes = item.object("attributes");
     if (!attributes) item.fail("it has no attributes");
@@ -124,6 +132,8 @@ class Reader {
       std::iota(indices.begin(), indices.end(), 0u);
     }
     local.corners = triangles_of(item, mode, std::move(indices));
+    of_primitives_ += local.corners.size();
+    require_in_proportion(item, of_primitives_, kMostPerByte);
     primitives.push_back(std::move(local));
   }
 
@@ -139,6 +149,8 @@ class Reader {
     for (std::uint64_t i = 0; targets && i < targets->size(); ++i) {
       require_whole((*targets)[i], positions.count());
     }
+    of_sets_ += positions.count();
+    require_in_proportion(item, of_sets_, kMostPerByte);
     model_.sets.push_back({mesh, number, positions.count()});
     number_of_.emplace_back(positions.count(), kNoVertex);
     return found->second;
@@ -155,11 +167,13 @@ class Reader {
   }
 
   /// What the writer is going to rely on.
-  void require_whole(const Item& attributes, std::uint64_t count) const {
+  void require_whole(const Item& attributes, std::uint64_t count) {
     if (!attributes.json.is_object()) attributes.fail("it is no object");
     for (const auto& [name, unused] : attributes.json.items()) {
       const std::uint64_t number = attributes.required(name.c_str());
       const Accessor accessor(document_, number, count);
+      of_attributes_ += count * accessor.element_size();
+      require_in_proportion(attributes, of_attributes_, kMostBytesPerByte);
       if (name.starts_with("TEXCOORD_") && accessor.type() != "VEC2") {
         document_.entry("accessors", number).fail("UVs are no pairs");
       }
@@ -211,6 +225,13 @@ class Reader {
     file_.face_columns = {std::move(mesh), std::move(number), std::move(material)};
   }
 
+  void require_in_proportion(const Item& item, std::uint64_t items, std::uint64_t per_byte) const {
+    if (items <= per_byte * bytes_) return;
+    item.fail("up to here the primitives have more than " + std::to_string(per_byte) +
+              " items for each byte of the file, which they share: split the file, or export it "
+              "again");
+  }
+
   [[noreturn]] void too_many() const {
     document_.root().fail("there are more than " + std::to_string(kMaxIndex) +
                           " vertices or triangles: split the file");
@@ -219,6 +240,9 @@ class Reader {
   const Document& document_;
   MeshFile& file_;
   Model& model_;
+  std::uint64_t bytes_;                                   ///< of the file and its buffers
+  std::uint64_t of_sets_ = 0, of_primitives_ = 0;         ///< vertices, corners
+  std::uint64_t of_attributes_ = 0;                       ///< bytes
   std::vector<std::uint32_t> corners_;                    ///< of the polygons
   std::map<std::string, std::uint32_t> numbers_of_sets_;  ///< by attributes and targets as text
   /// Per set and vertex: which vertex of the file it is in the mesh at hand.
@@ -228,11 +252,13 @@ class Reader {
 }  // namespace
 }  // namespace gltf
 
-MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content) {
+MeshFile read_gltf(std::string_view bytes, const std::string& path, Content content, Reach reach) {
   const auto model = std::make_shared<gltf::Model>();
-  model->document = gltf::read_document(bytes, path);
+  model->document = gltf::read_document(bytes, path, reach);
   MeshFile file;
-  gltf::Reader(file, *model).read(content != Content::kUvs);
+  std::uint64_t size = bytes.size();
+  for (const std::string& buffer : model->document.buffers) size += buffer.size();
+  gltf::Reader(file, *model, size).read(content != Content::kUvs);
   file.not_kept = model->document.not_kept;
   file.gltf = model;
   if (content == Content::kSurface) return file;

@@ -1,6 +1,5 @@
 // UVs into a document.
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "files/gltf/document.h"
 #include "files/gltf/item.h"
 #include "files/gltf/little.h"
+#include "files/gltf/materials.h"
 #include "files/gltf/model.h"
 #include "files/gltf/rebuild.h"
 #include "files/gltf/split.h"
@@ -31,6 +31,18 @@ constexpr const char* kManifold = "EXT_mesh_manifold";
 
 std::string name_of_set(std::uint32_t uv_set) {
   return "TEXCOORD_" + std::to_string(uv_set);
+}
+
+/// The least set that this primitive does not have.
+std::uint32_t free_set(const Item& primitive) {
+  const std::optional<Item> attributes = primitive.object("attributes");
+  std::uint32_t set = 0;
+  while (attributes->find(name_of_set(set).c_str())) ++set;
+  return set;
+}
+
+std::string counted(std::uint64_t count, const char* one, const char* several) {
+  return std::to_string(count) + " " + (count == 1 ? one : several);
 }
 
 /// An index type that holds indices below `count`, and is no smaller than that of the input. The
@@ -70,11 +82,13 @@ class Writer {
       throw_if_interrupted();
       edit_primitive(primitive);
     }
+    edit_textures();
     return rebuild(document_, json_, std::move(added_));
   }
 
   Json take_json() { return std::move(json_); }
   const std::set<std::string>& not_kept() const { return not_kept_; }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   std::uint64_t add(NewAccessor accessor) {
@@ -91,7 +105,7 @@ class Writer {
     const bool tangents = std::find(mapped.begin(), mapped.end(), uv_set_) == mapped.end();
 
     edit_attributes(primitive["attributes"], false, set, tangents);
-    primitive["attributes"][uv_name_] = uvs_of_set_[set];
+    add_uvs(primitive["attributes"], uvs_of_set_[set]);
     if (primitive.contains("targets")) {
       for (Json& target : primitive["targets"]) edit_attributes(target, true, set, tangents);
     }
@@ -101,6 +115,50 @@ class Writer {
     if (stale) {
       mesh["extensions"].erase(kManifold);
       not_kept_.insert(kManifold);
+    }
+  }
+
+  /// glTF has no set of UVs without those before it: they get the same ones.
+  void add_uvs(Json& attributes, std::uint64_t uvs) {
+    bool filled = false;
+    for (std::uint32_t before = 0; before < uv_set_; ++before) {
+      const std::string name = name_of_set(before);
+      if (attributes.contains(name)) continue;
+      attributes[name] = uvs;
+      filled = true;
+    }
+    attributes[uv_name_] = uvs;
+    if (filled) ++filled_;
+  }
+
+  /// Textures that were drawn through the UVs that are replaced, and what is to be known of them.
+  void edit_textures() {
+    std::vector<Item> replaced;
+    std::uint32_t free = uv_set_ + 1;
+    for (const Primitive& place : model_.primitives) {
+      const Item primitive = model_.primitive(place.mesh, place.primitive);
+      free = std::max(free, free_set(primitive));
+      if (primitive.object("attributes")->find(uv_name_.c_str())) replaced.push_back(primitive);
+    }
+    const SetUsers users = free_set_of_textures(document_, replaced, uv_set_, json_);
+    const std::string elsewhere = "--uv-set " + std::to_string(free) + " leaves it as it is";
+    if (users.materials > 0) {
+      notes_.push_back(counted(users.materials, "material draws", "materials draw") +
+                       " textures through " + uv_name_ + ", which is new now: " +
+                       "beltrami transfer makes textures for it, " + elsewhere);
+    }
+    for (const std::string& extension : users.extensions) {
+      notes_.push_back(extension + " has textures for " + uv_name_ +
+                       ", which is new now: " + elsewhere);
+    }
+    if (users.transforms > 0) {
+      not_kept_.insert("KHR_texture_transform of " +
+                       counted(users.transforms, "texture", "textures"));
+    }
+    if (filled_ > 0) {
+      notes_.push_back(counted(filled_, "primitive", "primitives") +
+                       " had no UVs in the sets before " + uv_name_ +
+                       ", which glTF asks for: the new ones are there, too");
     }
   }
 
@@ -216,64 +274,42 @@ class Writer {
   std::vector<std::uint64_t> uvs_of_set_;
   std::vector<std::map<std::uint64_t, std::uint64_t>> new_numbers_;  ///< per set, of old accessors
   std::set<std::string> not_kept_;
+  std::vector<std::string> notes_;
+  std::uint64_t filled_ = 0;  ///< primitives that got sets before the one asked for
 };
-
-/// The least set that this primitive does not have.
-std::uint32_t free_set(const Item& primitive) {
-  const std::optional<Item> attributes = primitive.object("attributes");
-  std::uint32_t set = 0;
-  while (attributes->find(name_of_set(set).c_str())) ++set;
-  return set;
-}
 
 }  // namespace
 }  // namespace gltf
 
 void require_uv_set(const MeshFile& file, std::uint32_t uv_set) {
   const gltf::Model& model = gltf::model_of(file);
-  std::uint32_t least = uv_set;
-  std::string lacking;
+  std::uint32_t most = 1;
   for (const gltf::Primitive& place : model.primitives) {
-    const gltf::Item primitive = model.primitive(place.mesh, place.primitive);
-    const std::uint32_t free = gltf::free_set(primitive);
-    if (free >= least) continue;
-    least = free;
-    lacking = primitive.name;
+    most = std::max(most, gltf::free_set(model.primitive(place.mesh, place.primitive)));
   }
-  if (least == uv_set) return;
-  throw Failure(model.document.path + ": " + lacking + " has no " + gltf::name_of_set(least) +
+  if (uv_set <= most) return;
+  throw Failure(model.document.path + ": no primitive has " + gltf::name_of_set(most) +
                 ", and glTF leaves none out before " + gltf::name_of_set(uv_set) + ": use set " +
-                std::to_string(least));
+                std::to_string(most));
 }
 
 std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::string& path) {
-  const gltf::Document& document = gltf::model_of(file).document;
-  const std::string beside = gltf::buffer_path(document, path);
+  const std::string beside = gltf::buffer_path(gltf::model_of(file).document, path);
   if (beside.empty()) return {path};
-  std::error_code ignored;
-  const bool in_place = std::filesystem::equivalent(document.path, path, ignored);
-  for (const std::string& buffer : document.files) {
-    if (in_place || !std::filesystem::equivalent(buffer, beside, ignored)) continue;
-    throw Failure(path + ": its buffer would replace " + beside + ", which belongs to " +
-                  document.path + ": use another name, or the extension .glb");
-  }
   return {beside, path};
-}
-
-std::array<float, 2> stored_uv(double u, double v) {
-  return {static_cast<float>(u), static_cast<float>(1 - v)};
 }
 
 GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path) {
   require_uv_set(file, uv_set);
-  gltf_output_paths(file, path);
   const gltf::Document& document = gltf::model_of(file).document;
   gltf::Writer writer(file, uv_set);
   gltf::Buffer buffer = writer.write();
   GltfOutput output;
   output.files = gltf::files_of(document, writer.take_json(), std::move(buffer), path);
+  output.replaced = gltf::buffers_replaced(document, path);
   output.not_kept = file.not_kept;
   output.not_kept.insert(output.not_kept.end(), writer.not_kept().begin(), writer.not_kept().end());
+  output.notes = writer.notes();
   for (const std::string& image : gltf::images_left_behind(document, path)) {
     output.not_kept.push_back("image beside the input: " + one_line(image));
   }
