@@ -77,7 +77,7 @@ void orient_charts(UvTriangles& united, const std::vector<bool>& excepted, const
     number.push_back(f);
   }
   if (judged.empty()) return;
-  Gluing gluing = glue(size_of(united.uvs), judged, std::vector<Index>(judged.size(), 0), {}, work);
+  Gluing gluing = glue(united.uvs, judged, std::vector<Index>(judged.size(), 0), {}, work);
   orient(judged, gluing.twin, {}, work);
   for (std::size_t i = 0; i < judged.size(); ++i) united.faces[number[i]] = judged[i];
 }

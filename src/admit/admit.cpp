@@ -258,12 +258,12 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
       polygons = polygons_of(admitted, options);
     }
   }
-  Gluing gluing = glue(vertex_count, kept, layers, polygons, work);
+  Gluing gluing = glue(positions, kept, layers, polygons, work);
   counts.crowded_edges = gluing.crowded_edges;
   Orientation orientation = orient(kept, gluing.twin, polygons, work);
   counts.one_sided_edges = orientation.one_sided_edges;
   admitted.reversed = std::move(orientation.reversed);
-  if (gluing.joined_in_polygons) part_double_edges(kept, gluing.twin);
+  if (gluing.joined_in_crowds) part_double_edges(kept, gluing.twin);
   SplitSurface split = split_fans(positions, kept, gluing.twin, work);
   admitted.surface = std::move(split.surface);
   admitted.input_vertex = std::move(split.vertex);

@@ -30,7 +30,8 @@ struct AdmitCounts {
                                  ///< square of their longest edge
   Index copies = 0;              ///< faces with the vertices of a face before them, either way
                                  ///< round: each lies in a layer of its own, or is shared
-  Index crowded_edges = 0;       ///< of more than two faces of a layer, which part there
+  Index crowded_edges = 0;       ///< of more than two faces of a layer, where only those stay
+                                 ///< together that continue each other
   Index one_sided_edges = 0;     ///< where the sides of a one-sided surface part
   Index split_vertices = 0;      ///< that became several, one for each fan of faces
   Index reversed_faces = 0;      ///< turned over to agree with most faces of their component
@@ -64,9 +65,9 @@ struct Admitted {
 };
 
 /// Makes oriented manifold pieces of any triangles: sets faces without area aside, glues faces
-/// across edges that exactly two of a layer share, orients each component breadth first, and gives
-/// each fan of faces a vertex of its own. Throws Error EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, or
-/// ZERO_AREA where no face has any.
+/// across edges that exactly two of a layer share, and those of more that continue each other,
+/// orients each component breadth first, and gives each fan of faces a vertex of its own. Throws
+/// Error EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, or ZERO_AREA where no face has any.
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work);
 

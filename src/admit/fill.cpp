@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ namespace {
 
 /// Of the square of its longest edge: a virtual face with less area would be one without a shape.
 constexpr double kLeastArea = 1e-6;
+
+/// Of a component's area: a boundary within which a flat disk has no more is an opening of a body;
+/// that of a sheet, however it is bent, spans more.
+constexpr double kLargestOpening = 0.25;
 
 using Loop = std::span<const Index>;  // of half-edges
 
@@ -106,6 +111,27 @@ void fill(Surface& surface, Loop loop) {
   surface.twin[first + 1] = last;
 }
 
+/// Which boundaries are to stay open whatever their length: the longest of each component, the
+/// first of equal ones; but for the only one of a body with handles, where it is an opening.
+std::vector<bool> outlines_of(const Topology& topology, const std::vector<double>& lengths,
+                              const std::vector<double>& areas) {
+  std::vector<Index> longest(areas.size(), kNone);
+  for (Index i = 0; i < size_of(lengths); ++i) {
+    Index& known = longest[topology.component_of_loop[i]];
+    if (known == kNone || lengths[i] > lengths[known]) known = i;
+  }
+  std::vector<bool> is_outline(lengths.size(), false);
+  for (Index c = 0; c < size_of(longest); ++c) {
+    if (longest[c] == kNone) continue;
+    const double length = lengths[longest[c]];
+    const Component& component = topology.components[c];
+    const bool is_opening = component.loops == 1 && component.genus() > 0 &&
+                            length * length / (4 * std::numbers::pi) < kLargestOpening * areas[c];
+    is_outline[longest[c]] = !is_opening;
+  }
+  return is_outline;
+}
+
 }  // namespace
 
 FilledSurface fill_holes(Surface surface, const Topology& topology, double limit,
@@ -116,12 +142,16 @@ FilledSurface fill_holes(Surface surface, const Topology& topology, double limit
   const BoundaryLoops& loops = topology.loops;
   if (loops.count() == 0) return filled;
   const std::vector<double> areas = component_areas(filled.surface, topology);
+  std::vector<double> lengths;
+  for (Index i = 0; i < loops.count(); ++i) {
+    lengths.push_back(length_of(points_of(filled.surface, loop_of(loops, i))));
+  }
+  const std::vector<bool> is_outline = outlines_of(topology, lengths, areas);
   for (Index i = 0; i < loops.count(); ++i) {
     work.report(static_cast<double>(i) / loops.count());
-    const Index component = topology.component_of_loop[i];
-    if (topology.components[component].is_disk()) continue;
-    const std::vector<Vec3> points = points_of(filled.surface, loop_of(loops, i));
-    if (length_of(points) > limit * std::sqrt(areas[component]) || !spans_area(points)) continue;
+    const double most = limit * std::sqrt(areas[topology.component_of_loop[i]]);
+    if (is_outline[i] || lengths[i] > most) continue;
+    if (!spans_area(points_of(filled.surface, loop_of(loops, i)))) continue;
     fill(filled.surface, loop_of(loops, i));
     ++filled.filled_loops;
   }

@@ -16,9 +16,11 @@ struct FilledSurface {
 };
 
 /// Fills each boundary loop no longer than `limit` times the root of its component's area: one of
-/// three edges with a face, others with a fan around their centre. Left open are the loops of
-/// components that are disks as they stand, and loops that span no area. Time: linear.
-/// Preconditions: `topology` is the surface's; lengths far from the ends of the range of numbers.
+/// three edges with a face, others with a fan around their centre. Left open are the longest loop
+/// of each component, for that is its outline, and loops that span no area. The only loop of a
+/// component with handles is filled where it is an opening, short for the component's area. Time:
+/// linear. Preconditions: `topology` is the surface's; lengths far from the ends of the range of
+/// numbers.
 FilledSurface fill_holes(Surface surface, const Topology& topology, double limit, const Work& work);
 
 }  // namespace beltrami

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <utility>
 
+#include "admit/continue_sheets.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "mesh/edges.h"
@@ -26,21 +28,21 @@ void keep_majority(const std::vector<Index>& order, std::size_t begin,
   for (std::size_t i = begin; i < order.size(); ++i) reversed[order[i]] = !reversed[order[i]];
 }
 
-/// The spokes of one edge in one layer, by their polygons.
-using Crowd = std::vector<std::array<Index, 3>>;  // layer, polygon, half-edge
+/// The half-edges of one edge, by their layers and polygons.
+using Sides = std::vector<std::array<Index, 3>>;  // layer, polygon, half-edge
 
 /// Calls join for the pairs of one polygon, takes them out and returns how many are left at
 /// [first, last).
 template <class Join>
-std::size_t join_in_polygons(Crowd& crowd, std::size_t first, std::size_t last, const Join& join) {
+std::size_t join_in_polygons(Sides& sides, std::size_t first, std::size_t last, const Join& join) {
   std::size_t left = first;
   for (std::size_t i = first, next = 0; i < last; i = next) {
     next = i + 1;
-    while (next < last && crowd[next][1] == crowd[i][1]) ++next;
+    while (next < last && sides[next][1] == sides[i][1]) ++next;
     if (next - i == 2) {
-      join(crowd[i][2], crowd[i + 1][2]);
+      join(sides[i][2], sides[i + 1][2]);
     } else {
-      for (; i < next; ++i) crowd[left++] = crowd[i];
+      for (; i < next; ++i) sides[left++] = sides[i];
     }
   }
   return left - first;
@@ -53,7 +55,7 @@ Index turned(Index h) {
 
 }  // namespace
 
-Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
+Gluing glue(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
             const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work) {
   Gluing gluing;
   parallel_assign(work, gluing.twin, 3 * faces.size(), kNone);
@@ -61,9 +63,10 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
     gluing.twin[one] = other;
     gluing.twin[other] = one;
   };
-  std::atomic<Index> crowded{0};
+  std::vector<Crowd> crowds;
+  std::mutex mutex;
   std::atomic<bool> joined{false};
-  HalfedgeBuckets buckets = sort_halfedges(vertex_count, faces, work);
+  HalfedgeBuckets buckets = sort_halfedges(size_of(positions), faces, work);
   for_each_edge(work, buckets, [&](std::span<const Spoke> edge) {
     if (edge.size() < 2) return;
     if (edge.size() == 2) {
@@ -71,24 +74,37 @@ Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
       if (layers[one / 3] == layers[other / 3]) join(one, other);
       return;
     }
-    Crowd crowd;
+    Sides sides;
     for (const Spoke& spoke : edge) {
       const Index face = spoke.halfedge() / 3;
-      crowd.push_back({layers[face], polygons.empty() ? face : polygons[face], spoke.halfedge()});
+      sides.push_back({layers[face], polygons.empty() ? face : polygons[face], spoke.halfedge()});
     }
-    sort_interruptibly(crowd.begin(), crowd.end(), std::less<>());
-    for (std::size_t first = 0, last = 0; first < crowd.size(); first = last) {
-      while (last < crowd.size() && crowd[last][0] == crowd[first][0]) ++last;
+    sort_interruptibly(sides.begin(), sides.end(), std::less<>());
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+      while (last < sides.size() && sides[last][0] == sides[first][0]) ++last;
       const std::size_t left =
-          last - first > 2 ? join_in_polygons(crowd, first, last, join) : last - first;
+          last - first > 2 ? join_in_polygons(sides, first, last, join) : last - first;
       if (left < last - first) joined = true;
-      if (left == 2) join(crowd[first][2], crowd[first + 1][2]);
-      if (left > 2) ++crowded;
+      if (left == 2) join(sides[first][2], sides[first + 1][2]);
+      if (left < 3) continue;
+      Crowd crowd;
+      for (std::size_t i = first; i < first + left; ++i) crowd.push_back(sides[i][2]);
+      const std::lock_guard lock(mutex);
+      crowds.push_back(std::move(crowd));
     }
   });
-  gluing.crowded_edges = crowded;
-  gluing.joined_in_polygons = joined;
+  if (!crowds.empty()) continue_sheets(positions, faces, crowds, gluing.twin, work);
+  gluing.crowded_edges = size_of(crowds);
+  gluing.joined_in_crowds = joined || !crowds.empty();
   return gluing;
+}
+
+Gluing glue(const std::vector<Vec2>& uvs, const std::vector<Triangle>& faces,
+            const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work) {
+  std::vector<Vec3> positions;
+  positions.reserve(uvs.size());
+  for (const Vec2& w : uvs) positions.emplace_back(w.x(), w.y(), 0);
+  return glue(positions, faces, layers, polygons, work);
 }
 
 Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,

@@ -11,15 +11,18 @@ namespace beltrami {
 
 /// Half-edges 3 * face + corner, in pairs that may still run in the same direction.
 struct Gluing {
-  std::vector<Index> twin;          ///< per half-edge: the other one, or kNone
-  Index crowded_edges = 0;          ///< of more than two faces of a layer, which part there
-  bool joined_in_polygons = false;  ///< whether two of one polygon did not part at such an edge
+  std::vector<Index> twin;        ///< per half-edge: the other one, or kNone
+  Index crowded_edges = 0;        ///< of more than two faces of a layer
+  bool joined_in_crowds = false;  ///< whether faces may be glued across such an edge
 };
 
 /// Glues the faces of a layer (one number per face) across edges that exactly two of them share,
-/// and of a crowded edge the two of one polygon (one number per face, or none). Precondition: no
-/// face names a vertex twice.
-Gluing glue(Index vertex_count, const std::vector<Triangle>& faces,
+/// and of a crowded edge the two of one polygon (one number per face, or none), then the sheets
+/// that continue each other. Precondition: no face names a vertex twice.
+Gluing glue(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+            const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work);
+/// The same of faces in the plane.
+Gluing glue(const std::vector<Vec2>& uvs, const std::vector<Triangle>& faces,
             const std::vector<Index>& layers, std::span<const Index> polygons, const Work& work);
 
 struct Orientation {

@@ -33,22 +33,51 @@ double area_of(const std::vector<Vec2>& uvs, const Triangle& face) {
   return 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
 }
 
-/// Numbers charts by their least face.
+bool is_kept(const UvMesh& mesh, Index f) {
+  return !mesh.kept_page.empty() && mesh.kept_page[f] != kNone;
+}
+
+/// Per face whether it has an area in the plane, or stays whatever it has.
+std::vector<bool> faces_of_charts(const UvMesh& mesh) {
+  std::vector<bool> found(mesh.faces.size());
+  PollSometimes poll;
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    poll();
+    const auto [a, b, c] = mesh.faces[f];
+    found[f] = is_kept(mesh, f) || orientation(mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]) != 0;
+  }
+  return found;
+}
+
+/// Numbers charts by their least face. In none are sets of faces without area in the plane, nor
+/// faces that have none on the surface either: these tie no charts together.
 std::vector<Index> charts_of_faces(const UvMesh& mesh) {
+  const std::vector<bool> counts = faces_of_charts(mesh);
+  const auto ties = [&](Index f) {
+    return counts[f] || mesh.excepted.empty() || !mesh.excepted[f];
+  };
   DisjointSets sets(size_of(mesh.uvs));
   for (Index v = 0; v < size_of(mesh.uvs); ++v) sets.make(v);
-  PollSometimes poll;
-  for (const auto& [a, b, c] : mesh.faces) {
-    poll();
-    sets.unite(a, b);
-    sets.unite(b, c);
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    if (!ties(f)) continue;
+    sets.unite(mesh.faces[f][0], mesh.faces[f][1]);
+    sets.unite(mesh.faces[f][1], mesh.faces[f][2]);
   }
-  std::vector<Index> number(mesh.uvs.size(), kNone), chart_of_face;
+  std::vector<bool> is_chart(mesh.uvs.size(), false);
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    if (counts[f]) is_chart[sets.root(mesh.faces[f][0])] = true;
+  }
+  std::vector<Index> number(mesh.uvs.size(), kNone), chart_of_face(mesh.faces.size(), kNone);
   Index count = 0;
-  for (const Triangle& face : mesh.faces) {
-    Index& chart = number[sets.root(face[0])];
-    if (chart == kNone) chart = count++;
-    chart_of_face.push_back(chart);
+  for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    const Index root = sets.root(mesh.faces[f][0]);
+    if (!ties(f) || !is_chart[root]) continue;
+    if (number[root] == kNone) number[root] = count++;
+    chart_of_face[f] = number[root];
+  }
+  if (count == 0) {
+    throw Error(Fault::kZeroArea,
+                "no face has an area between its UVs: there is nothing to pack (unwrap the mesh)");
   }
   return chart_of_face;
 }
@@ -83,6 +112,7 @@ std::vector<UvChart> charts_of(const UvMesh& mesh, const std::vector<Index>& cha
   PollSometimes poll;
   for (Index f = 0; f < size_of(mesh.faces); ++f) {
     poll();
+    if (chart_of_face[f] == kNone) continue;
     if (chart_of_face[f] == size_of(charts)) charts.emplace_back();
     UvChart& chart = charts[chart_of_face[f]];
     chart.faces.push_back(f);
@@ -221,9 +251,39 @@ void orient_faces(UvMesh& mesh, const Work& work) {
     number.push_back(f);
   }
   if (judged.empty()) return;
-  Gluing gluing = glue(size_of(mesh.uvs), judged, std::vector<Index>(judged.size(), 0), {}, work);
+  Gluing gluing = glue(mesh.uvs, judged, std::vector<Index>(judged.size(), 0), {}, work);
   orient(judged, gluing.twin, {}, work);
   for (std::size_t i = 0; i < judged.size(); ++i) mesh.faces[number[i]] = judged[i];
+}
+
+/// Whose distances count: charts that stay may have no area.
+std::vector<Index> measured_charts(std::vector<Index> chart_of_face,
+                                   const std::vector<UvChart>& charts) {
+  for (Index& chart : chart_of_face) {
+    if (chart != kNone && charts[chart].area == 0) chart = kNone;
+  }
+  return chart_of_face;
+}
+
+/// Corners that are in no chart go to a vertex of the first one; their faces count to it, or to the
+/// chart that has another corner of theirs.
+void put_aside(const UvMesh& mesh, const std::vector<UvChart>& charts, PackedUvs& packed) {
+  std::vector<Index> chart_of_uv(mesh.uvs.size(), kNone);
+  for (Index c = 0; c < size_of(charts); ++c) {
+    for (const Index v : charts[c].vertices) chart_of_uv[v] = c;
+  }
+  const Index at = charts.front().vertices.front();
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Index& chart = packed.chart_of_face[f];
+    if (chart != kNone) continue;
+    for (const Index v : mesh.faces[f]) {
+      if (chart == kNone) chart = chart_of_uv[v];
+      if (chart_of_uv[v] != kNone) continue;
+      packed.uvs[v] = packed.uvs[at];
+      packed.page_of_uv[v] = packed.page_of_uv[at];
+    }
+    if (chart == kNone) chart = 0;
+  }
 }
 
 void judge(const UvMesh& mesh, bool float32, const Work& work, PackedUvs& packed) {
@@ -254,12 +314,14 @@ PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const 
   std::vector<UvChart> charts = charts_of(mesh, packed.chart_of_face);
   PackOptions with_density = options;
   with_density.texels_per_unit = set_scales(mesh, options, charts);
+  with_density.upright = options.turns > 1;  // no turns means that charts stay as they are
   std::vector<PackChart> shapes;
   std::vector<bool> kept;
   for (const UvChart& chart : charts) {
     shapes.push_back(chart.shape);
     kept.push_back(stays(chart));
   }
+  const std::vector<Index> measured = measured_charts(packed.chart_of_face, charts);
   Pages& pages = packed.pages;
   pages.resolution = options.resolution;
   pages.asked_margin = options.margin;
@@ -281,17 +343,17 @@ PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const 
         packed.page_of_uv[charts[c].vertices[v]] = placement.page;
       }
     });
-    return least_margin({mesh.faces, packed.uvs, packed.chart_of_face, pages.page_of_chart,
-                         options.resolution, kept},
-                        own);
+    return least_margin(
+        {mesh.faces, packed.uvs, measured, pages.page_of_chart, options.resolution, kept}, own);
   };
   const Packing packing =
       pack_and_deliver(shapes, with_density, deliver, work.part(0, 0.8).named("pack"));
   pages.count = packing.pages;
   pages.texels_per_unit = packing.texels_per_unit;
-  pages.margin = least_margin(
-      {mesh.faces, packed.uvs, packed.chart_of_face, pages.page_of_chart, options.resolution, {}},
-      work.aside());
+  pages.margin =
+      least_margin({mesh.faces, packed.uvs, measured, pages.page_of_chart, options.resolution, {}},
+                   work.aside());
+  put_aside(mesh, charts, packed);
   measure_pages(mesh.faces, packed.uvs, packed.chart_of_face, pages);
   judge(mesh, float32, work.part(0.8, 1).named("certify"), packed);
   return packed;

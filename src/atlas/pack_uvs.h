@@ -31,7 +31,7 @@ struct PackedUvs {
   std::vector<Vec2> uvs;             ///< one per UV vertex, in the plane of the pages (tile_of);
                                      ///< (0, 0) for those that no face uses
   std::vector<Index> page_of_uv;     ///< per UV vertex
-  std::vector<Index> chart_of_face;  ///< charts by their least face
+  std::vector<Index> chart_of_face;  ///< charts by their least face with an area in the plane
   Pages pages;
   AtlasCertificate certificate;         ///< of the numbers delivered
   AtlasCertificate single_certificate;  ///< of the single-precision numbers nearest to them
@@ -40,10 +40,13 @@ struct PackedUvs {
 /// Moves every chart by a rigid motion, none mirrored, and scales it as `areas` and `options` say.
 /// Charts that are flipped, folded or lie on themselves stay so, as the certificate tells; what
 /// rounding alone would fold of a disk is mended. Faces that run against most of their chart are
-/// taken the other way round. With `float32` in single-precision numbers. With charts that stay and
-/// no texels per unit, the others get the density of those. Throws Error INVALID_ARGUMENT, with the
-/// face, where faces of a chart are to stay on different pages or beyond [0, 1]^2, and NO_ROOM
-/// where charts do not fit. Precondition: finite, indices in range.
+/// taken the other way round. Faces without area in the plane that have none on the surface either,
+/// or hang together with no others, are no charts: unless they are to stay, corners of theirs that
+/// are in no chart become points of the first one. With `float32` in single-precision numbers. With
+/// charts that stay and no texels per unit, the others get the density of those. Throws Error
+/// INVALID_ARGUMENT, with the face, where faces of a chart are to stay on different pages or beyond
+/// [0, 1]^2, NO_ROOM where charts do not fit, and ZERO_AREA where there are none. Precondition:
+/// finite, indices in range.
 PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const Work& work);
 
 }  // namespace beltrami

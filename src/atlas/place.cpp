@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atlas/pack_maps.h"
 #include "atlas/round_chart.h"
 #include "atlas/rows.h"
 #include "base/parallel.h"
 #include "base/types.h"
 #include "base/vectors.h"
+#include "pack/outline.h"
 
 namespace beltrami {
 namespace {
@@ -32,13 +34,27 @@ int exponent_of_square(const std::vector<Vec2>& corners, const std::vector<Vec2>
   return extent > 0 ? std::ilogb(kRounding * extent) + 1 : 0;
 }
 
-/// Where the maps without pins move to: rows, above the box of those with pins.
-std::vector<Vec2> shifts_of(const std::vector<MappedChart>& maps, bool unit_square, int& exponent) {
-  std::vector<Vec2> shifts(maps.size(), Vec2::Zero()), sizes;
+/// The turn (cosine, sine) that lays the longer side of a map's least box along x.
+Vec2 upright(const AtlasChart& chart, const MappedChart& map) {
+  if (map.error) return {1, 0};
+  return turn_to_least_box(outline_of(real_part(chart, map.uvs)).hull);
+}
+
+std::vector<Vec2> turned(const Vec2& turn, std::vector<Vec2> uvs) {
+  for (Vec2& w : uvs) {
+    w = {turn.x() * w.x() - turn.y() * w.y(), turn.y() * w.x() + turn.x() * w.y()};
+  }
+  return uvs;
+}
+
+/// Moves the maps without pins, which stand upright, into rows, above the box of those with pins.
+void shift(const std::vector<MappedChart>& maps, bool unit_square, int& exponent,
+           std::vector<std::vector<Vec2>>& placed) {
+  std::vector<Vec2> sizes;
   std::vector<Index> free;
   Eigen::AlignedBox2d pinned;
   for (Index c = 0; c < size_of(maps); ++c) {
-    const Eigen::AlignedBox2d box = box_of(maps[c].uvs);
+    const Eigen::AlignedBox2d box = box_of(placed[c]);
     if (maps[c].pinned()) {
       pinned.extend(box);
     } else {
@@ -46,7 +62,7 @@ std::vector<Vec2> shifts_of(const std::vector<MappedChart>& maps, bool unit_squa
       sizes.push_back(box.sizes());
     }
   }
-  if (free.empty() || (maps.size() == 1 && !unit_square)) return shifts;
+  if (free.empty()) return;
   const std::vector<Vec2> corners = place_in_rows(sizes);
   if (unit_square) exponent = exponent_of_square(corners, sizes);
   Vec2 origin = Vec2::Zero();
@@ -56,27 +72,30 @@ std::vector<Vec2> shifts_of(const std::vector<MappedChart>& maps, bool unit_squa
     origin = {pinned.min().x(), pinned.max().y() + gap};
   }
   for (std::size_t i = 0; i < free.size(); ++i) {
-    shifts[free[i]] = origin + corners[i] - box_of(maps[free[i]].uvs).min();
+    const Vec2 by = origin + corners[i] - box_of(placed[free[i]]).min();
+    for (Vec2& w : placed[free[i]]) w += by;
   }
-  return shifts;
 }
 
 }  // namespace
 
 int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_square, bool float32,
                std::vector<MappedChart>& maps, const Work& work) {
-  const std::vector<Vec2> shifts = shifts_of(maps, unit_square, exponent);
+  std::vector<std::vector<Vec2>> placed(maps.size());
+  parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
+    const MappedChart& map = maps[c];
+    placed[c] = map.pinned() ? map.uvs : turned(upright(charts[c], map), map.uvs);
+  });
+  shift(maps, unit_square, exponent, placed);
   const NumberFormat numbers{.exponent = exponent, .float32 = float32};
   const Work of_chart = maps.size() == 1 ? work : work.aside();
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     if (maps[c].error) {
-      for (Vec2& w : maps[c].uvs) w += shifts[c];
+      maps[c].uvs = placed[c];
     } else if (maps[c].pinned()) {
       round_pinned(charts[c], numbers, of_chart, maps[c]);
     } else {
-      std::vector<Vec2> placed = maps[c].uvs;
-      for (Vec2& w : placed) w += shifts[c];
-      round_chart(charts[c].chart.mesh, placed, numbers, of_chart, maps[c]);
+      round_chart(charts[c].chart.mesh, placed[c], numbers, of_chart, maps[c]);
     }
   });
   return exponent;

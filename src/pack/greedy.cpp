@@ -127,7 +127,7 @@ std::vector<Needs> later_needs(const std::vector<std::vector<Mask>>& masks,
   return later;
 }
 
-/// The pages of a layout.
+/// The pages of a layout; those that were added are spare in the end.
 class Pages {
  public:
   Pages(std::vector<Page> given, const Page& empty, std::vector<Page>& spare)
@@ -141,6 +141,8 @@ class Pages {
   Page& operator[](Index p) { return pages_[p]; }
   Index size() const { return size_of(pages_); }
   void add(const Needs& needs) {
+    // The destructor is to allocate nothing.
+    spare_.reserve(spare_.size() + pages_.size() - given_ + 1);
     if (spare_.empty()) {
       pages_.emplace_back(empty_, needs);
       return;

@@ -38,6 +38,8 @@ struct PackOptions {
   double margin = 2;           ///< texels between charts, half of it to the page's edges; >= 0
   double texels_per_unit = 0;  ///< 0: as many as fit into max_pages
   int turns = 16;              ///< rotations that are tried: 16 or more, 4 quarter turns or 1, none
+  bool upright = false;        ///< 4 and 1 start from each chart's least box, its longer side
+                               ///< along x; else from the chart as it is
   int block = 1;               ///< charts share no block of so many texels per side
   int max_pages = 1;
   double effort = 1;  ///< work spent on trying other orders, to the default; 0: the first that fits

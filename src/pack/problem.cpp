@@ -57,7 +57,7 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
       outlines_(std::move(outlines)),
       base_(charts.size(), Vec2(1, 0)) {
   parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t c = begin; c < end && options_.turns > 4; ++c) {
+    for (std::int64_t c = begin; c < end && (options_.turns > 4 || options_.upright); ++c) {
       base_[c] = turn_to_least_box(outlines_[c].hull);
     }
   });

@@ -1,21 +1,86 @@
 // Every allocation fails once: the library answers with a status and goes on working.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <vector>
 
 #include "abi/host.h"
 #include "support/meshes.h"
+#include "support/surfaces.h"
 
 namespace {
 
-// Allocations of the armed thread that still succeed; negative: not armed.
-thread_local long allowed = -1;
+/// Of all threads: which allocations from now on fail.
+enum class Fails { kNone, kOne, kAllFrom };
+std::atomic<Fails> fails = Fails::kNone;
+std::atomic<long> to_come = 0;  // allocations before the first of them
+std::atomic<long> living = 0;   // pieces of memory that were not given back
 
-void* allocate(std::size_t size) {
-  if (allowed == 0) return nullptr;
-  if (allowed > 0) --allowed;
-  return std::malloc(size > 0 ? size : 1);
+bool refuses() {
+  const Fails which = fails.load();
+  if (which == Fails::kNone) return false;
+  const long before = to_come.fetch_sub(1);
+  return which == Fails::kOne ? before == 0 : before <= 0;
 }
 
+void* counted(void* memory) {
+  if (memory != nullptr) ++living;
+  return memory;
+}
+
+}  // namespace
+
+#ifdef BELTRAMI_REPLACES_MALLOC
+// What the C library and Eigen allocate fails, too.
+extern "C" {
+void* __libc_malloc(std::size_t size) noexcept;
+void* __libc_calloc(std::size_t count, std::size_t size) noexcept;
+void* __libc_realloc(void* memory, std::size_t size) noexcept;
+void* __libc_memalign(std::size_t alignment, std::size_t size) noexcept;
+void __libc_free(void* memory) noexcept;
+
+void* malloc(std::size_t size) noexcept {
+  if (!refuses()) return counted(__libc_malloc(size));
+  errno = ENOMEM;
+  return nullptr;
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  if (!refuses()) return counted(__libc_calloc(count, size));
+  errno = ENOMEM;
+  return nullptr;
+}
+void* realloc(void* memory, std::size_t size) noexcept {
+  if (!refuses()) return memory == nullptr ? malloc(size) : __libc_realloc(memory, size);
+  errno = ENOMEM;
+  return nullptr;
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  if (!refuses()) return counted(__libc_memalign(alignment, size));
+  errno = ENOMEM;
+  return nullptr;
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  *memory = aligned_alloc(alignment, size);
+  return *memory == nullptr ? ENOMEM : 0;
+}
+void free(void* memory) noexcept {
+  if (memory != nullptr) --living;
+  __libc_free(memory);
+}
+}
+#else
+namespace {
+void* allocate(std::size_t size) {
+  return refuses() ? nullptr : counted(std::malloc(size > 0 ? size : 1));
+}
+void give_back(void* memory) {
+  if (memory != nullptr) --living;
+  std::free(memory);
+}
 }  // namespace
 
 void* operator new(std::size_t size) {
@@ -26,14 +91,15 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return allocate(size);
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
+#endif
 
 namespace beltrami {
 namespace {
@@ -41,20 +107,92 @@ namespace {
 using namespace host;
 using meshes::TriangleList;
 
+/// What a call returns whose allocations fail, some or one, after so many; and what it leaves.
+template <class Call>
+beltrami_status call_with(Fails which, long after, const Call& call) {
+  to_come = after;
+  fails = which;
+  const beltrami_status status = call();
+  fails = Fails::kNone;
+  return status;
+}
+
+template <class Call>
+long allocations_of(const Call& call) {
+  constexpr long kMany = 1L << 40;
+  EXPECT_EQ(call_with(Fails::kAllFrom, kMany, call), BELTRAMI_OK);
+  return kMany - to_come;
+}
+
 /// Calls `call` with 0, 1, 2, ... allocations allowed until it succeeds; it must fail with
 /// OUT_OF_MEMORY until then. Returns the number of failures.
 template <class Call>
-long failures_of(Call&& call) {
+long failures_of(const Call& call) {
   for (long allowance = 0; allowance < 100000; ++allowance) {
-    allowed = allowance;
-    const beltrami_status status = call();
-    allowed = -1;
+    const beltrami_status status = call_with(Fails::kAllFrom, allowance, call);
     if (status == BELTRAMI_OK) return allowance;
     EXPECT_EQ(status, BELTRAMI_E_OUT_OF_MEMORY) << "after " << allowance << " allocations";
     if (status != BELTRAMI_E_OUT_OF_MEMORY) return -1;
   }
   ADD_FAILURE() << "never succeeds";
   return -1;
+}
+
+/// Lets about `times` of the allocations of a call fail, each alone in a call of its own; what
+/// comes after it succeeds, as what a handler does. The call is to say so, to leave nothing behind
+/// and to change nothing, or to do without (std::stable_sort does); then it succeeds. `results` is
+/// what it has led to.
+template <class Call, class Results>
+void expect_status_wherever_memory_ends(const Call& call, long times, const Results& results) {
+  ASSERT_EQ(call(), BELTRAMI_OK);
+  const auto expected = results();
+  const long all = allocations_of(call), stride = std::max(1L, all / times);
+  long failures = 0;
+  for (long after = 0; after < all; after += stride) {
+    const long before = living;
+    const beltrami_status status = call_with(Fails::kOne, after, call);
+    if (status != BELTRAMI_OK) {
+      ++failures;
+      EXPECT_EQ(status, BELTRAMI_E_OUT_OF_MEMORY) << "after " << after << " of " << all;
+      EXPECT_EQ(living, before) << "after " << after << " of " << all;
+    }
+    ASSERT_TRUE(same_bits(results(), expected)) << "after " << after << " of " << all;
+  }
+  EXPECT_GE(failures, 5);
+  EXPECT_EQ(call(), BELTRAMI_OK);
+  EXPECT_TRUE(same_bits(results(), expected));
+}
+
+beltrami_surface surface_view(const TriangleList& mesh) {
+  auto surface = sized<beltrami_surface>();
+  surface.vertex_count = mesh.positions.size();
+  surface.face_count = mesh.faces.size();
+  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
+  return surface;
+}
+
+/// Two triangles apart, each a chart.
+struct TwoCharts {
+  std::vector<std::array<double, 2>> uvs = {{0, 0}, {1, 0}, {0, 1}, {3, 0}, {4, 0}, {3, 1}};
+  std::vector<Triangle> faces = {{0, 1, 2}, {3, 4, 5}};
+
+  beltrami_uv_mesh view() const {
+    auto mesh = sized<beltrami_uv_mesh>();
+    mesh.uv_count = uvs.size();
+    mesh.face_count = faces.size();
+    mesh.uvs = host::view(uvs);
+    mesh.uv_indices = {faces.data(), 0, BELTRAMI_U32, 0};
+    return mesh;
+  }
+};
+
+/// A context for small pages and one thread, or several.
+Context for_small_pages(std::uint64_t threads = 1) {
+  Context context = create();
+  set_option(context, BELTRAMI_OPTION_THREADS, threads);
+  set_option(context, BELTRAMI_OPTION_RESOLUTION, 64);
+  return context;
 }
 
 TEST(OutOfMemory, CreateAnswers) {
@@ -96,14 +234,67 @@ TEST(OutOfMemory, EveryStageAnswers) {
   beltrami_status status = BELTRAMI_E_INTERNAL;
   int failures = 0;
   for (long allowance = 0; status != BELTRAMI_OK; allowance += 1 + allowance / 8, ++failures) {
-    allowed = allowance;
-    status = run(context);
-    allowed = -1;
+    status = call_with(Fails::kAllFrom, allowance, [&] { return run(context); });
     if (status == BELTRAMI_OK) break;
     ASSERT_EQ(status, BELTRAMI_E_OUT_OF_MEMORY) << "after " << allowance << " allocations";
     EXPECT_NE(message(context), "");
   }
   EXPECT_GE(failures, 20);
+}
+
+TEST(OutOfMemory, ARunAnswersWhereverMemoryEnds) {
+  const TriangleList mesh = meshes::bumps(16, 16);
+  const Context context = whole_pipeline(mesh);
+  set_option(context, BELTRAMI_OPTION_THREADS, 1);
+  expect_status_wherever_memory_ends([&] { return run(context); }, 60,
+                                     [&] { return uvs(context, mesh.positions.size()); });
+}
+
+TEST(OutOfMemory, AnAtlasAnswersWhereverMemoryEnds) {
+  const TriangleList mesh = meshes::cube();
+  const beltrami_surface surface = surface_view(mesh);
+  const Context context = for_small_pages();
+  expect_status_wherever_memory_ends(
+      [&] { return beltrami_unwrap(context.get(), &surface, nullptr, nullptr); }, 60,
+      [&] {
+        std::vector<std::array<double, 2>> uvs(3 * mesh.faces.size());
+        EXPECT_EQ(beltrami_get_corner_uvs(context.get(), uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
+        return uvs;
+      });
+}
+
+TEST(OutOfMemory, APackingAnswersWhereverMemoryEnds) {
+  const TwoCharts charts;
+  const beltrami_uv_mesh mesh = charts.view();
+  const beltrami_uv_mesh* const meshes[] = {&mesh};
+  const Context context = for_small_pages();
+  const auto pack = [&] { return beltrami_pack(context.get(), meshes, 1, nullptr, nullptr); };
+  const auto results = [&] {
+    std::vector<std::array<double, 2>> uvs(charts.uvs.size());
+    EXPECT_EQ(beltrami_get_packed_uvs(context.get(), 0, uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
+    return uvs;
+  };
+  expect_status_wherever_memory_ends(pack, 60, results);
+  // At a density that is given little is tried, and each allocation can fail, those for what is
+  // given back among them.
+  const beltrami_status sparse =
+      beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 4);
+  ASSERT_EQ(sparse, BELTRAMI_OK);
+  expect_status_wherever_memory_ends(pack, 1L << 40, results);
+}
+
+TEST(OutOfMemory, ThreadsAnswer) {
+  // Where a thread cannot be started for want of memory a run may go on with those that it has.
+  const TriangleList mesh = meshes::torus(12);
+  const beltrami_surface surface = surface_view(mesh);
+  const Context context = for_small_pages(3);
+  const auto unwrap = [&] { return beltrami_unwrap(context.get(), &surface, nullptr, nullptr); };
+  const long all = allocations_of(unwrap);
+  for (long after = 0; after < all; after += all / 40 + 1) {
+    const beltrami_status status = call_with(Fails::kOne, after, unwrap);
+    EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_OK) << after;
+  }
+  EXPECT_EQ(unwrap(), BELTRAMI_OK);
 }
 
 TEST(OutOfMemory, ChecksAnswer) {
@@ -121,12 +312,26 @@ TEST(OutOfMemory, ChecksAnswer) {
             2);
 }
 
+TEST(OutOfMemory, ChecksOfAtlasesAnswer) {
+  const TriangleList mesh = meshes::grid(4, 4);
+  std::vector<std::array<double, 2>> corners;
+  for (const Triangle& face : mesh.faces) {
+    for (const Index v : face) corners.push_back({mesh.positions[v].x(), mesh.positions[v].y()});
+  }
+  beltrami_surface surface = surface_view(mesh);
+  surface.corner_uvs = view(corners);
+  auto certificate = sized<beltrami_atlas_certificate>();
+  const auto check = [&] { return beltrami_check_atlas(&surface, 0, &certificate, nullptr, 0); };
+  EXPECT_GE(failures_of(check), 5);
+  expect_status_wherever_memory_ends(check, 1L << 40, [] { return std::vector<int>(); });
+}
+
 TEST(OutOfMemory, AMessageWithoutMemoryIsTheAdvice) {
   const Context context = create();
   for (long allowance = 0; allowance < 8; ++allowance) {
-    allowed = allowance;
-    const beltrami_status status = beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, 99);
-    allowed = -1;
+    const beltrami_status status = call_with(Fails::kAllFrom, allowance, [&] {
+      return beltrami_set_int(context.get(), BELTRAMI_OPTION_METHOD, 99);
+    });
     EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_E_INVALID_ARGUMENT);
     EXPECT_NE(message(context), "");
   }

@@ -155,14 +155,6 @@ TEST(Admit, SplitsAVertexWithTwoFans) {
   EXPECT_EQ(result.input_vertex, (std::vector<Index>{0, 0, 1, 2, 3, 4}));
 }
 
-TEST(Admit, PartsFacesAtACrowdedEdge) {
-  const TriangleList mesh = meshes::three_on_an_edge();
-  const Admitted result = admitted(mesh);
-  expect_every_corner(mesh, result);
-  EXPECT_EQ(result.counts.crowded_edges, 1);
-  EXPECT_EQ(result.counts.components, 3);
-}
-
 TEST(Admit, ClosedPartsThatTouchAlongAnEdgeStayClosed) {
   TriangleList mesh = meshes::together({meshes::cube(), meshes::cube()});
   for (Index v = 8; v < 16; ++v) mesh.positions[v] += Vec3(1, 1, 0);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/vectors.h"
@@ -89,6 +90,41 @@ TEST(FillHoles, LeavesADiskAsItIs) {
   }
 }
 
+TEST(FillHoles, NeverClosesTheLongestBoundary) {
+  // A flat ring, and a tube of equal ends.
+  TriangleList tube = meshes::annulus(12);
+  for (Vec3& p : tube.positions) {
+    const double radius = std::sqrt(p.squaredNorm());
+    p = {p.x() / radius, p.y() / radius, radius};
+  }
+  for (const TriangleList& mesh : {meshes::annulus(12), tube}) {
+    const FilledSurface result = filled(mesh, 1e9);
+    expect_sound(result);
+    EXPECT_EQ(result.filled_loops, 1);
+    EXPECT_TRUE(topology_of(result.surface, Work(1)).components[0].is_disk());
+  }
+  // Two bands of a torus that cross: with a handle, and one boundary, which is long.
+  TriangleList bands{meshes::torus(8).positions, {}};
+  for (Index cell = 0; cell < 64; ++cell) {
+    if (cell % 8 != 0 && cell / 8 != 0) continue;
+    for (const Index f : {2 * cell, 2 * cell + 1}) bands.faces.push_back(meshes::torus(8).faces[f]);
+  }
+  EXPECT_EQ(filled(bands, 1e9).filled_loops, 0);
+}
+
+TEST(FillHoles, FillsTheShorterBoundaryOfAFlatRing) {
+  const TriangleList mesh = meshes::annulus(12);
+  const FilledSurface result = filled(mesh, 1e9);
+  const Topology topology = topology_of(result.surface, Work(1));
+  ASSERT_EQ(topology.loops.count(), 1);
+  double farthest = 0, nearest = 1e9;
+  for (const Vec3& p : mesh.positions) farthest = std::max(farthest, p.norm());
+  for (const Index h : topology.loops.halfedge) {
+    nearest = std::min(nearest, result.surface.positions[result.surface.origin(h)].norm());
+  }
+  EXPECT_NEAR(nearest, farthest, 1e-12) << "the outer one is left";
+}
+
 TEST(FillHoles, LeavesALoopWithoutAreaOpen) {
   // An annulus whose inner boundary lies on a line.
   const TriangleList mesh{
@@ -101,7 +137,7 @@ TEST(FillHoles, LeavesALoopWithoutAreaOpen) {
        {1, 0, 0},
        {0.5, 0, 0}},
       {{0, 1, 5}, {1, 6, 5}, {1, 2, 6}, {2, 7, 6}, {2, 3, 7}, {3, 4, 7}, {3, 0, 4}, {0, 5, 4}}};
-  EXPECT_EQ(filled(mesh, 1e9).filled_loops, 1) << "the outer one has area";
+  EXPECT_EQ(filled(mesh, 1e9).filled_loops, 0);
 }
 
 }  // namespace

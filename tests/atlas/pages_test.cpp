@@ -232,6 +232,49 @@ TEST(PackUvs, SaysWhatCameFolded) {
   EXPECT_GE(result.pages.margin, 2);
 }
 
+TEST(PackUvs, FacesWithoutAreaAreNoCharts) {
+  const UvMesh alone = confetti(12);
+  const PackedUvs expected = pack_uvs(alone, small_page(), false, Work(1));
+  // Before the others a face that is a point, and after them one that is a line.
+  UvMesh mesh = alone;
+  const Index first = size_of(mesh.uvs);
+  mesh.uvs.insert(mesh.uvs.end(), {{0, 0}, {0, 0}, {0, 0}, {7, 7}, {8, 8}, {9, 9}});
+  mesh.faces.insert(mesh.faces.begin(), {first, first + 1, first + 2});
+  mesh.faces.push_back({first + 3, first + 4, first + 5});
+  mesh.excepted.assign(mesh.faces.size(), false);
+  mesh.excepted.front() = mesh.excepted.back() = true;
+  const PackedUvs result = pack_uvs(mesh, small_page(), false, Work(1));
+  EXPECT_EQ(result.outcome, Outcome::kOk);
+  EXPECT_EQ(result.pages.page_of_chart.size(), 12);
+  EXPECT_EQ(result.pages.margin, expected.pages.margin);
+  EXPECT_EQ(result.pages.texels_per_unit, expected.pages.texels_per_unit);
+  for (Index v = 0; v < size_of(mesh.uvs); ++v) {
+    EXPECT_EQ(result.uvs[v], expected.uvs[v < first ? v : 0]);
+  }
+}
+
+TEST(PackUvs, FacesWithoutAreaTieNoChartsTogether) {
+  UvMesh mesh = confetti(2);
+  mesh.faces.push_back({0, 0, 3});
+  mesh.excepted = {false, false, true};
+  const PackedUvs result = pack_uvs(mesh, small_page(), false, Work(1));
+  EXPECT_EQ(result.outcome, Outcome::kOk);
+  EXPECT_EQ(result.uvs, pack_uvs(confetti(2), small_page(), false, Work(1)).uvs);
+  EXPECT_EQ(result.chart_of_face, (std::vector<Index>{0, 1, 0}));
+  mesh.excepted.clear();
+  EXPECT_EQ(pack_uvs(mesh, small_page(), false, Work(1)).pages.page_of_chart.size(), 1)
+      << "one that may have an area on the surface does";
+}
+
+TEST(PackUvs, SaysThatThereAreNoCharts) {
+  try {
+    pack_uvs({.uvs = {{0.5, 0.5}}, .faces = {{0, 0, 0}}}, small_page(), false, Work(1));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kZeroArea);
+  }
+}
+
 TEST(PackUvs, SaysThatThereIsNoRoom) {
   PackOptions pack;
   pack.resolution = 16;
