@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {

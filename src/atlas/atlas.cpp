@@ -313,7 +313,8 @@ bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOption
   if (placed.size() != mapped.maps.size()) return false;  // they were split for their pages
   std::vector<Index> which;
   for (Index c = 0; c < size_of(placed); ++c) {
-    if (placed[c].outcome > Outcome::kNotConverged) which.push_back(c);
+    const bool is_sound = placed[c].outcome <= Outcome::kNotConverged && placed[c].fits_single;
+    if (!is_sound) which.push_back(c);
   }
   return split_charts(admitted, {options.admit.polygons, options.diagonals}, which, options.chart,
                       work.untimed(), mapped.charts, mapped.maps);

@@ -23,6 +23,7 @@ struct MappedChart {
   /// Per vertex, whether it is pinned, and lies in its place exactly; empty: the chart has no pins.
   std::vector<bool> held = {};
   double scale = 1;          ///< of a map with pins, see hold_pins; else 1
+  bool fits_single = true;   ///< on a page: injective when it is stored in single precision, too
   Index failed_pin = kNone;  ///< in the list of all pins: could not be met with those before it
 
   bool pinned() const { return !held.empty(); }

@@ -114,9 +114,10 @@ void round_on_page(const DiskMesh& mesh, const std::vector<Vec2>& placed, Index 
   Rounded single = round_to_steps(mesh, map.uvs, steps, work);
   if (float32) {
     take(std::move(single), true, Outcome::kNotInjectiveFloat32, map);
-  } else if (single.certificate.injective()) {
-    map.uvs = std::move(single.uvs);
+    return;
   }
+  map.fits_single = single.certificate.injective();
+  if (map.fits_single) map.uvs = std::move(single.uvs);
 }
 
 void round_pinned(const AtlasChart& part, const NumberFormat& format, const Work& work,
