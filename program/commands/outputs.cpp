@@ -84,6 +84,13 @@ std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
   return found;
 }
 
+void note_held(const beltrami_atlas_certificate& held, Report& report) {
+  if (held.injective != 0 || report.atlas_certificate->injective == 0) return;
+  report.notes.emplace_back(
+      "the UVs are injective, but not in the numbers that this format has for them where they lie: "
+      "have them on pages, without --pack none, --pins and --kept, or write .obj or .ply");
+}
+
 void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,
                    std::deque<AtomicFile>& outputs, Report& report) {
   const auto append = [](std::vector<std::string> lines, std::vector<std::string>& all) {

@@ -28,6 +28,10 @@ void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single)
 std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
                                                          const std::string& path, bool share);
 
+/// Notes in the report where what a file holds of an atlas that is injective is not; `held`: the
+/// verdict on it.
+void note_held(const beltrami_atlas_certificate& held, Report& report);
+
 /// Writes a mesh with its UVs, complete on the disk but not in place. Notes in the report what of
 /// it is not kept, and what else is to be known of it.
 void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,

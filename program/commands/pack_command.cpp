@@ -258,6 +258,7 @@ class PackRun {
   void judge_held(const PackedFile& mesh) {
     const auto found = judge_held_uvs(mesh.file, mesh.output, false);
     if (!found || found->injective != 0 || report_.atlas_certificate->injective == 0) return;
+    note_held(*found, report_);
     report_.status = beltrami_status_name(BELTRAMI_NOT_INJECTIVE);
     report_.atlas_certificate = found;
     report_.float32_injective = false;

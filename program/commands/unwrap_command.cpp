@@ -237,6 +237,7 @@ class Unwrapping {
     const bool share = options_.integer(BELTRAMI_OPTION_SHARE_COPIES) != 0;
     const auto found = judge_held_uvs(file_, arguments_.output, share);
     if (!found) return;
+    note_held(*found, report_);
     report_.atlas_certificate = found;
     report_.float32_injective = found->injective != 0;
     if (found->injective == 0) report_.status = beltrami_status_name(BELTRAMI_NOT_INJECTIVE);

@@ -59,7 +59,7 @@ TEST(Unwrap, PutsAnAtlasIntoGltf) {
                builder.indices<std::uint8_t>({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}));
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.glb", builder.glb()), out = directory.path("out.glb");
-  EXPECT_EQ(run({"unwrap", in, out, "--uv-set", "1"}).exit_code, kExitUnusable);
+  EXPECT_EQ(run({"unwrap", in, out, "--uv-set", "2"}).exit_code, kExitUnusable);
   const Outcome outcome = run({"unwrap", in, out});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(run({"check", out}).exit_code, 0);

@@ -211,7 +211,9 @@ enum {
 enum {
   BELTRAMI_PACK_FORCE_SIGNED_ = -1,
   /* On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
-   * page are in [0,1]^2. A surface with pins is not packed. */
+   * page are in [0,1]^2. Rounded to single precision their charts keep all faces, also where v is
+   * stored as 1 - v. With the option float32 they are multiples of 2^-24 (of more on further
+   * pages), of which v and 1 - v are exact. A surface with pins is not packed. */
   BELTRAMI_PACK_PAGES = 0,
   /* Side by side, in the surface's own unit of length. */
   BELTRAMI_PACK_NONE = 1

@@ -210,7 +210,9 @@ pub const BELTRAMI_OPTION_STRAIGHT_SEAMS: _bindgen_ty_3 = 39;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /** On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
- page are in [0,1]^2. A surface with pins is not packed.*/
+ page are in [0,1]^2. Rounded to single precision their charts keep all faces, also where v is
+ stored as 1 - v. With the option float32 they are multiples of 2^-24 (of more on further
+ pages), of which v and 1 - v are exact. A surface with pins is not packed.*/
 pub const BELTRAMI_PACK_PAGES: _bindgen_ty_4 = 0;
 /// Side by side, in the surface's own unit of length.
 pub const BELTRAMI_PACK_NONE: _bindgen_ty_4 = 1;

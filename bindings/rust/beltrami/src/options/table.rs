@@ -146,7 +146,10 @@ choice! {
     /// pins in any case). See [`UnwrapOptions::pack`].
     Pack {
         /// On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs
-        /// of a page are in \[0,1\]^2. A surface with pins is not packed.
+        /// of a page are in \[0,1\]^2. Rounded to single precision their charts keep all faces,
+        /// also where v is stored as 1 - v. With the option float32 they are multiples of 2^-24 (of
+        /// more on further pages), of which v and 1 - v are exact. A surface with pins is not
+        /// packed.
         Pages = "pages",
         /// Side by side, in the surface's own unit of length.
         None = "none",
