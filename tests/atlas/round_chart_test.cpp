@@ -9,6 +9,8 @@
 
 #include "atlas/map_charts.h"
 #include "atlas/pages.h"
+#include "base/types.h"
+#include "base/vectors.h"
 #include "exact/certificate.h"
 #include "repair/rounding.h"
 #include "support/disks.h"
