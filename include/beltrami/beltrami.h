@@ -669,7 +669,8 @@ typedef struct beltrami_atlas {
                                 * their longest edge, 1e-14): each gets a point */
   uint64_t copies;             /* triangles with the vertices of one before them: each lies in a
                                 * layer of its own, or shares the UVs of the first */
-  uint64_t crowded_edges;      /* of more than two triangles, which part there */
+  uint64_t crowded_edges;      /* of more than two triangles: those stay together that continue
+                                * each other */
   uint64_t one_sided_edges;    /* where the sides of a one-sided surface part */
   uint64_t split_vertices;     /* where fans of faces met in one point only */
   uint64_t reversed_faces;     /* triangles turned over to agree with most of their component */
@@ -841,11 +842,12 @@ typedef struct beltrami_uv_mesh {
  * options of pages say, and scaled, never mirrored. With charts that stay and no texels-per-unit
  * the others get the density that those have. The meshes are read, not kept, and so are the
  * context's mesh and other results; those of an earlier beltrami_pack stay if it fails. Charts that
- * are folded, flipped or lie on themselves are packed as they are. Returns OK, or with a result
+ * are folded, flipped or lie on themselves are packed as they are. Triangles without area between
+ * their UVs are no charts: they become points of another one. Returns OK, or with a result
  * NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
  * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted
- * in the mesh that the sentence names), NO_ROOM, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a
- * run), INTERNAL. */
+ * in the mesh that the sentence names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED,
+ * OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. */
 BELTRAMI_API beltrami_status beltrami_pack(beltrami_context* context,
                                            const beltrami_uv_mesh* const* meshes,
                                            uint64_t mesh_count, beltrami_progress progress,

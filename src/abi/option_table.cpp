@@ -296,7 +296,8 @@ const OptionEntry kOptions[] = {
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "fill-holes",
         .summary = "Holes whose boundary is no longer than this many roots of their component's "
-                   "area cost no seam, larger ones are joined to one; 0 joins all.",
+                   "area cost no seam, larger ones are joined to one; 0 joins all. The longest of "
+                   "a component is its outline.",
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::fill_holes>,
@@ -490,8 +491,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_PACK_TURNS,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "pack-turns",
-        .summary = "How charts may be turned on their page: any (as it fits best), quarter (by 90 "
-                   "degrees) or none; they are never mirrored.",
+        .summary = "How charts may be turned on their page: any (as it fits best), quarter (their "
+                   "least box along the texels) or none; they are never mirrored.",
         .minimum = 0,
         .maximum = std::size(kTurns) - 1,
         .choices = kTurns,

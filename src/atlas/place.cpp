@@ -81,12 +81,13 @@ void shift(const std::vector<MappedChart>& maps, bool unit_square, int& exponent
 
 int place_maps(const std::vector<AtlasChart>& charts, int exponent, bool unit_square, bool float32,
                std::vector<MappedChart>& maps, const Work& work) {
+  const bool stays = maps.size() == 1 && !unit_square;
   std::vector<std::vector<Vec2>> placed(maps.size());
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {
     const MappedChart& map = maps[c];
-    placed[c] = map.pinned() ? map.uvs : turned(upright(charts[c], map), map.uvs);
+    placed[c] = map.pinned() || stays ? map.uvs : turned(upright(charts[c], map), map.uvs);
   });
-  shift(maps, unit_square, exponent, placed);
+  if (!stays) shift(maps, unit_square, exponent, placed);
   const NumberFormat numbers{.exponent = exponent, .float32 = float32};
   const Work of_chart = maps.size() == 1 ? work : work.aside();
   parallel_for(work, size_of(maps), 1, [&](std::int64_t c, std::int64_t) {

@@ -13,6 +13,7 @@
 #include "base/vectors.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "flatten/laplacian.h"
+#include "linear/evaluated.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
 #include "mesh/rest_shape.h"
@@ -60,12 +61,12 @@ SparseMatrix bilaplacian(const SparseMatrix& laplacian, const Eigen::VectorXd& s
       stars.emplace_back(other, v, -spring);
     }
   }
-  SparseMatrix weighted = laplacian * softness.asDiagonal();
-  if (stars.empty()) return weighted * laplacian;
+  SparseMatrix weighted = evaluated(laplacian * softness.asDiagonal());
+  if (stars.empty()) return evaluated(weighted * laplacian);
   weighted.prune([&](Eigen::Index, Eigen::Index column, double) { return !is_hub[column]; });
   SparseMatrix of_hubs(laplacian.rows(), laplacian.cols());
   of_hubs.setFromTriplets(stars.begin(), stars.end());
-  return SparseMatrix(weighted * laplacian) + of_hubs;
+  return evaluated(evaluated(weighted * laplacian) + of_hubs);
 }
 
 double corner_angle(const RestTriangle& rest, int k) {
@@ -192,7 +193,7 @@ const ElasticModel::Sheet& ElasticModel::sheet() const {
   if (pinned_ == now_.pinned) return now_;
   if (!now_.solver) now_ = unpinned();
   now_.pinned.clear();
-  SparseMatrix held = lower_;
+  SparseMatrix held = evaluated(lower_);
   const double spring = kPinned * bilaplacian_.diagonal().mean();
   Eigen::VectorXd force = defect_;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {

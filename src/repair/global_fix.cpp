@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "exact/crossings.h"
+#include "linear/evaluated.h"
 #include "linear/mesh_matrix.h"
 #include "linear/shifted_factor.h"
 #include "linear/spd_solver.h"
@@ -79,7 +80,7 @@ Glued glue(const DiskMesh& mesh, const std::vector<Vec2>& uvs, const Work& work)
 /// A matrix of the same kind with symmetric weights, as its lower triangle: each weight the
 /// geometric mean of both. `matrix`: a diagonal of 1, less the weights of neighbours in each row.
 SparseMatrix symmetrised(const SparseMatrix& matrix) {
-  const SparseMatrix transposed = matrix.transpose();  // of the same pattern
+  const SparseMatrix transposed = evaluated(matrix.transpose());  // of the same pattern
   std::vector<double> diagonal(matrix.cols(), 1.0);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(matrix.nonZeros() / 2 + matrix.cols());

@@ -274,23 +274,24 @@ TEST(OutOfMemory, APackingAnswersWhereverMemoryEnds) {
     EXPECT_EQ(beltrami_get_packed_uvs(context.get(), 0, uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
     return uvs;
   };
-  expect_status_wherever_memory_ends(pack, 60, results);
+  expect_status_wherever_memory_ends(pack, 20, results);
   // At a density that is given little is tried, and each allocation can fail, those for what is
   // given back among them.
+  set_option(context, BELTRAMI_OPTION_RESOLUTION, 16);
   const beltrami_status sparse =
-      beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 4);
+      beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 2);
   ASSERT_EQ(sparse, BELTRAMI_OK);
   expect_status_wherever_memory_ends(pack, 1L << 40, results);
 }
 
 TEST(OutOfMemory, ThreadsAnswer) {
   // Where a thread cannot be started for want of memory a run may go on with those that it has.
-  const TriangleList mesh = meshes::torus(12);
+  const TriangleList mesh = meshes::torus(8);
   const beltrami_surface surface = surface_view(mesh);
   const Context context = for_small_pages(3);
   const auto unwrap = [&] { return beltrami_unwrap(context.get(), &surface, nullptr, nullptr); };
   const long all = allocations_of(unwrap);
-  for (long after = 0; after < all; after += all / 40 + 1) {
+  for (long after = 0; after < all; after += all / 20 + 1) {
     const beltrami_status status = call_with(Fails::kOne, after, unwrap);
     EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_OK) << after;
   }

@@ -5,12 +5,13 @@
 
 #include <cstdint>
 #include <numbers>
-#include <optional>
 #include <set>
 #include <vector>
 
 #include "admit/admit.h"
 #include "base/portable_math.h"
+#include "base/vectors.h"
+#include "base/work.h"
 #include "support/meshes.h"
 #include "support/solids.h"
 #include "support/surfaces.h"

@@ -240,7 +240,7 @@ TEST(Unwrap, HolesCostNoSeam) {
   const Atlas atlas = unwrapped(mesh);
   expect_sound(mesh, atlas);
   EXPECT_EQ(atlas.charts.size(), 1);
-  EXPECT_EQ(atlas.filled_holes, 3);
+  EXPECT_EQ(atlas.filled_holes, 2) << "the longest stays";
   EXPECT_EQ(atlas.admitted.components, 1);
   const Atlas joined = unwrapped(mesh, {.fill_limit = 0});
   expect_sound(mesh, joined);

@@ -130,7 +130,7 @@ TEST(UnwrapToATarget, HolesCostNoSeamAndPolygonsStayWhole) {
   const TriangleList holes = perforated();
   const Atlas atlas = unwrapped(holes, aiming_at(2.05));
   expect_sound(holes, atlas);
-  EXPECT_EQ(atlas.filled_holes, 3);
+  EXPECT_EQ(atlas.filled_holes, 2) << "the longest stays";
   EXPECT_LE(atlas.energy.symmetric_dirichlet, 2.05 + 1e-4);
   const TriangleList mesh = meshes::torus(10);
   std::vector<Index> polygons;

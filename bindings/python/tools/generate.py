@@ -84,7 +84,7 @@ WORDS = {
         "charts": "pieces of the layout",
         "unused_vertices": "vertices that no face names",
         "welded_vertices": "vertices that count as one with a vertex before them",
-        "crowded_edges": "edges of more than two triangles, which part there",
+        "crowded_edges": "edges of more than two triangles, where flat sheets stay whole",
         "one_sided_edges": "edges where the sides of a one-sided surface part",
         "split_vertices": "vertices where fans of faces met in one point only",
         "components": "connected pieces of the surface",

@@ -276,7 +276,7 @@ class AtlasReport:
         Triangles with the vertices of one before them: each lies in a layer of its own, or shares
         the UVs of the first.
     crowded_edges : int
-        Edges of more than two triangles, which part there.
+        Edges of more than two triangles, where flat sheets stay whole.
     one_sided_edges : int
         Edges where the sides of a one-sided surface part.
     split_vertices : int
