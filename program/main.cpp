@@ -4,12 +4,16 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "commands/command.h"
 #include "commands/options.h"
+#include "commands/spelling.h"
 #include "files/inside_folder.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
@@ -77,9 +81,9 @@ constexpr const char* kTransfer =
     "to\n"
     "the same side, so that thin walls keep their two sides; how many texels find none is said, "
     "and\n"
-    "it is refused where all do not. Pages of OLD behind the first are name.1001.png, "
-    "name.1002.png\n"
-    "and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
+    "it is refused where most do not. The pages of OLD, where there are several, are "
+    "name.1001.png,\n"
+    "name.1002.png and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
     "  beltrami unwrap painted.obj better.obj\n"
     "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
 
@@ -120,6 +124,12 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
       ->add_flag("--keep-scales", arguments.keep_scales,
                  "Charts keep their sizes to each other, whatever their areas in space")
       ->group("Pages");
+  command
+      ->add_flag(
+          "--mirrored", arguments.mirrored,
+          "Charts that are mirrored as a whole, as in UVs of two like halves, are no fault:\n"
+          "they stay mirrored, and the exit code is that of their mirror images")
+      ->group("Pages");
   add_masks(*command, arguments.masks);
   command
       ->add_option(
@@ -142,8 +152,17 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
   command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
       ->required();
-  command->add_option("TEXTURE", arguments.texture, "Texture to read: .png")->required();
+  command->add_option("TEXTURE", arguments.texture, "Texture to read: .png or .jpg")->required();
   command->add_option("OUT", arguments.output, "Texture to write: .png")->required();
+  command
+      ->add_option(
+          "--wrap", arguments.wrap,
+          "What UVs of OLD beyond [0,1]^2 show: TEXTURE again (repeat), again and mirrored\n"
+          "in turn (mirror), its edge (clamp), or the next of its tiles of UDIM (tiles);\n"
+          "auto takes the tiles where they are beside TEXTURE, else repeats it\n"
+          "[default auto]")
+      ->check(CLI::IsMember({"auto", "repeat", "mirror", "clamp", "tiles"}))
+      ->type_name("auto|repeat|mirror|clamp|tiles");
   command
       ->add_option("--resolution", arguments.resolution,
                    "Texels to the side of a page of OUT; 0 takes those of TEXTURE [0 to 32768]")
@@ -253,13 +272,101 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
                     "Judge vertices at one place and with one UV (to the last bit) as one");
   command->add_flag("--mirrored", arguments.mirrored,
                     "Take charts of an atlas that are mirrored as a whole for their mirror images");
+  command
+      ->add_option("--resolution", arguments.resolution,
+                   "Texels to the side of a page, which margin and density are said in\n"
+                   "[8 to 32768; default 1024]")
+      ->check(CLI::Range(8, 32768))
+      ->group("Pages")
+      ->type_name("N");
+  command
+      ->add_option("--margin", arguments.margin,
+                   "Fail where there are fewer texels between two charts, or half as many to the\n"
+                   "edge of a page [0 to 1024; default 0]")
+      ->check(CLI::Range(0.0, 1024.0))
+      ->group("Pages")
+      ->type_name("X");
+  command->add_flag("--within-page", arguments.within_page, "Fail where UVs leave [0,1]^2")
+      ->group("Pages");
+  command
+      ->add_flag("--within-tiles", arguments.within_tiles,
+                 "Fail where a chart is not within one of the tiles of UDIM")
+      ->group("Pages");
   command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
   command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  command->footer(kExitCodes);
+  command->footer(
+      std::string(kExitCodes) +
+      "\nUVs that are not as --margin, --within-page and --within-tiles ask end with 3.");
   return command;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// What an option of no command was to be, or whose it is.
+std::string unknown_option(const CLI::App& app, const CLI::App& command, const std::string& name) {
+  std::string text = "there is no option " + name + " of " + command.get_name();
+  const std::string nearest = nearest_spelling(name, option_names(command));
+  if (!nearest.empty()) return text + ": did you mean " + nearest + "?";
+  std::vector<std::string> others;
+  for (const CLI::App* other : app.get_subcommands({})) {
+    if (contains(option_names(*other), name)) others.push_back(other->get_name());
+  }
+  if (!others.empty()) return text + ": it is one of " + joined(others);
+  return text + ": see beltrami " + command.get_name() + " --help";
+}
+
+/// The first word of the command line that is no command or no option, with what it was to be; ""
+/// where there is none.
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* command = nullptr;
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    const std::string name = word.substr(0, word.find('='));
+    if (word.starts_with("--")) {
+      const CLI::App& owner = command != nullptr ? *command : app;
+      if (contains(option_names(owner), name)) continue;
+      if (command != nullptr) return unknown_option(app, owner, name);
+      const std::string nearest = nearest_spelling(name, option_names(app));
+      return "there is no option " + name + " before a command" +
+             (nearest.empty() ? "" : ": did you mean " + nearest + "?");
+    }
+    if (command != nullptr || word.starts_with("-")) continue;
+    const std::vector<std::string> names = command_names(app);
+    if (contains(names, word)) {
+      command = app.get_subcommand(word);
+      continue;
+    }
+    const std::string nearest = nearest_spelling(word, names);
+    return "there is no command '" + word + "': " +
+           (nearest.empty() ? "the commands are " + joined(names)
+                            : "did you mean " + nearest + "?");
+  }
+  return "";
 }
 
 int run(int argc, char** argv) {
@@ -287,6 +394,8 @@ int run(int argc, char** argv) {
     const int code = app.exit(help, text, none);
     return print(text.str(), "the text", code);
   } catch (const CLI::ParseError& error) {
+    const std::string unknown = unknown_word(app, {argv + std::min(argc, 1), argv + argc});
+    if (!unknown.empty()) return tell(kExitUnusable, {"beltrami: ", unknown});
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }
   if (pack_app->parsed()) return pack_command(pack, of_pack);

@@ -1,10 +1,12 @@
 // beltrami check: judge the UVs that a file carries.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <new>
 #include <optional>
 
 #include "commands/command.h"
+#include "commands/page_layout.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
@@ -59,6 +61,9 @@ void round_to_float32(std::vector<double>& uvs) {
   for (double& value : uvs) value = static_cast<double>(static_cast<float>(value));
 }
 
+/// Texels: what doubles take of a distance that was made as wide as it is asked for.
+constexpr double kRounding = 1e-6;
+
 class Check {
  public:
   Check(const CheckArguments& arguments, Report& report)
@@ -69,12 +74,14 @@ class Check {
     read();
     judge();
     measure();
+    measure_pages();
     return write_files();
   }
 
  private:
   void require_files() const {
     format_of(arguments_.input);
+    require_png_name(arguments_.picture);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
     if (!arguments_.quiet) require_apart_from_stdout({arguments_.report, arguments_.picture});
     for (const std::string& path : {arguments_.report, arguments_.picture}) {
@@ -111,6 +118,7 @@ class Check {
     report_.faces = file_.polygons.size();
     report_.triangles = corners_.size() / 3;
     report_.welded_vertices = file_.welded_corners;
+    report_.short_faces = file_.short_faces;
   }
 
   TriangleView triangles() const { return surface_ ? surface_->view() : split_->view(); }
@@ -139,6 +147,12 @@ class Check {
     require_ok(status, arguments_.input, "", found.error_element_kind, found.error_element);
     report_.atlas_certificate = found;
     report_.status = beltrami_status_name(status);
+    if (status != BELTRAMI_OK && !arguments_.mirrored) {
+      beltrami_atlas_certificate mirrored{};
+      mirrored.struct_size = sizeof mirrored;
+      const bool passes = beltrami_check_atlas(&surface, 1, &mirrored, nullptr, 0) == BELTRAMI_OK;
+      if (passes && mirrored.mirrored_charts > 0) report_.advice = kMirroredAdvice;
+    }
     const std::vector<double> uvs(
         static_cast<const double*>(surface.corner_uvs.data),
         static_cast<const double*>(surface.corner_uvs.data) + 2 * surface.corner_count);
@@ -188,30 +202,54 @@ class Check {
     clock.finish();
   }
 
+  void measure_pages() {
+    throw_if_interrupted();
+    bar_.show(0.7, "pages");
+    StageClock clock(report_, "pages");
+    report_.layout = page_layout(file_, triangle_corners(file_), arguments_.resolution);
+    const PageLayout& found = *report_.layout;
+    if (arguments_.within_page && found.outside > 0) {
+      report_.unmet.push_back("--within-page: " + std::to_string(found.outside) +
+                              " charts leave [0,1]^2");
+    }
+    if (arguments_.within_tiles && found.astride > 0) {
+      report_.unmet.push_back("--within-tiles: " + std::to_string(found.astride) +
+                              " charts leave the tiles of UDIM");
+    }
+    if (found.margin < arguments_.margin - kRounding) {
+      report_.unmet.push_back(
+          "--margin: charts, or a chart and the edge of its page, are too close");
+    }
+    clock.finish();
+  }
+
+  int exit_code() const {
+    return report_.injective() && report_.unmet.empty() ? kExitInjective : kExitNotInjective;
+  }
+
   /// Returns the exit code.
   int write_files() {
     throw_if_interrupted();
-    std::optional<AtomicFile> picture, report;
+    std::deque<AtomicFile> outputs;
     if (!arguments_.picture.empty()) {
       bar_.show(0.8, "picture");
       StageClock clock(report_, "picture");
-      picture.emplace(arguments_.picture)
+      outputs.emplace_back(arguments_.picture)
           .write(encode_png(render_picture(triangles(), face_energies_)));
-      picture->close();
+      outputs.back().close();
       clock.finish();
     }
     report_.seconds = seconds_so_far();
     if (!arguments_.report.empty()) {
-      report.emplace(arguments_.report).write(to_json(report_));
-      report->close();
+      outputs.emplace_back(arguments_.report).write(to_json(report_));
+      outputs.back().close();
     }
     const std::string summary = arguments_.quiet ? std::string() : to_summary(report_, "");
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
-    if (picture) picture->commit();
-    if (report) report->commit();
-    return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
+    commit(outputs);
+    return print(summary, "the summary", exit_code());
   }
 
   const CheckArguments& arguments_;
@@ -230,8 +268,13 @@ int check_command(const CheckArguments& arguments) {
   Report report;
   report.command = "check";
   report.input_path = arguments.input;
-  report.options = {
-      {"float32", arguments.float32}, {"mirrored", arguments.mirrored}, {"weld", arguments.weld}};
+  report.options = {{"float32", arguments.float32},
+                    {"mirrored", arguments.mirrored},
+                    {"weld", arguments.weld},
+                    {"resolution", static_cast<std::int64_t>(arguments.resolution)},
+                    {"margin", arguments.margin},
+                    {"within-page", arguments.within_page},
+                    {"within-tiles", arguments.within_tiles}};
   return run_guarded(report, arguments.report, {arguments.input, arguments.picture},
                      [&] { return Check(arguments, report).run(); });
 }

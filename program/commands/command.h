@@ -46,6 +46,7 @@ struct PackArguments {
   std::string masks;                 ///< as for unwrap
   std::uint64_t kept = 0;            ///< the charts of so many inputs stay where they are
   bool keep_scales = false;          ///< charts keep their sizes to each other
+  bool mirrored = false;             ///< charts that are mirrored as a whole are no fault
   std::uint32_t uv_set = 0;          ///< of glTF
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
@@ -53,18 +54,23 @@ struct PackArguments {
 
 struct TransferArguments {
   std::string old_mesh, new_mesh, texture, output;
-  int resolution = 0;  ///< of the output; 0: of the texture
-  int margin = 2;      ///< texels of gutters
+  std::string wrap = "auto";  ///< what the texture shows beyond its edges, or that it has tiles
+  int resolution = 0;         ///< of the output; 0: of the texture
+  int margin = 2;             ///< texels of gutters
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };
 
 struct CheckArguments {
   std::string input;
-  std::string report, picture;  ///< paths, or "" for none
-  bool float32 = false;         ///< judge the UVs rounded to single precision
-  bool weld = false;            ///< vertices at one place and with one UV count as one
-  bool mirrored = false;        ///< charts that are mirrored as a whole are no fault
+  std::string report, picture;      ///< paths, or "" for none
+  bool float32 = false;             ///< judge the UVs rounded to single precision
+  bool weld = false;                ///< vertices at one place and with one UV count as one
+  bool mirrored = false;            ///< charts that are mirrored as a whole are no fault
+  std::uint64_t resolution = 1024;  ///< texels to the side of a page
+  double margin = 0;                ///< texels that there have to be
+  bool within_page = false;         ///< all UVs have to be in [0,1]^2
+  bool within_tiles = false;        ///< each chart has to be in a tile of UDIM
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };
@@ -127,6 +133,10 @@ inline bool says_no_disk(beltrami_status status) {
 /// and a report at `report_path`, unless that is "" or one of `others`, which must not be lost.
 int run_guarded(Report& report, const std::string& report_path,
                 const std::vector<std::string>& others, const std::function<int()>& body);
+
+/// Said where the one fault of a map is that charts are mirrored as a whole.
+inline constexpr const char* kMirroredAdvice =
+    "its faults are charts that are mirrored as a whole: where that is meant, give --mirrored";
 
 /// Seconds since the program started.
 double seconds_so_far();

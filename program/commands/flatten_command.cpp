@@ -1,4 +1,5 @@
 // beltrami flatten: read, flatten, write, report.
+#include <deque>
 #include <memory>
 #include <optional>
 
@@ -51,6 +52,7 @@ class Flattening {
   void require_files() const {
     format_of(arguments_.input);
     require_writable_format(arguments_.output);
+    require_png_name(arguments_.picture);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
     require_distinct({arguments_.output, arguments_.report, arguments_.picture});
     const std::vector<std::string> written = {arguments_.output, arguments_.report,
@@ -171,7 +173,8 @@ class Flattening {
   int write_files() {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
-    AtomicFile output(arguments_.output);
+    std::deque<AtomicFile> outputs;
+    AtomicFile& output = outputs.emplace_back(arguments_.output);
     write_mesh(file_, arguments_.output, [&](std::string_view bytes) {
       throw_if_interrupted();
       output.write(bytes);
@@ -179,12 +182,11 @@ class Flattening {
     output.close();
     clock.finish();
 
-    std::optional<AtomicFile> picture, report;
-    if (!arguments_.picture.empty()) write_picture(picture.emplace(arguments_.picture));
+    if (!arguments_.picture.empty()) write_picture(outputs.emplace_back(arguments_.picture));
     report_.seconds = seconds_so_far();
     if (!arguments_.report.empty()) {
-      report.emplace(arguments_.report).write(to_json(report_));
-      report->close();
+      outputs.emplace_back(arguments_.report).write(to_json(report_));
+      outputs.back().close();
     }
     std::string note, summary;
     if (!arguments_.quiet) {
@@ -194,9 +196,7 @@ class Flattening {
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
-    output.commit();
-    if (picture) picture->commit();
-    if (report) report->commit();
+    commit(outputs);
     remark(note);
     return print(summary, "the summary",
                  report_.certificate->injective ? kExitInjective : kExitNotInjective);

@@ -20,13 +20,20 @@ namespace beltrami::cli {
 
 void require_output_format(const std::string& input, const std::string& output) {
   const MeshFormat format = format_of(input);
-  if (format_of(output) != MeshFormat::kGltf) {
+  if (!is_gltf_name(output)) {
     require_writable_format(output);
   } else if (format != MeshFormat::kGltf) {
     throw Failure(output +
                   ": glTF is written from glTF alone, with all that a scene has: use the "
                   "extension .obj or .ply");
   }
+}
+
+void require_uv_set_of_gltf(std::uint32_t uv_set, const std::string& output) {
+  if (uv_set == 0 || is_gltf_name(output)) return;
+  throw Failure("--uv-set " + std::to_string(uv_set) + ": " + output +
+                " has one set of UVs, as all formats but glTF have: leave the option out, or write "
+                ".gltf or .glb");
 }
 
 void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single) {
@@ -59,7 +66,8 @@ std::vector<std::uint32_t> corners_of_first_copies(const MeshFile& file) {
 }  // namespace
 
 std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
-                                                         const std::string& path, bool share) {
+                                                         const std::string& path, bool share,
+                                                         bool mirrored) {
   const UvNumbers numbers = uv_numbers(format_of(path), file.single_uvs);
   const std::vector<double>& uvs = file.corner_uvs.values;
   bool kept = true;
@@ -79,7 +87,8 @@ std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
   const beltrami_surface surface = view.surface();
   beltrami_atlas_certificate found{};
   found.struct_size = sizeof found;
-  const beltrami_status status = beltrami_check_atlas(&surface, 0, &found, nullptr, 0);
+  const beltrami_status status =
+      beltrami_check_atlas(&surface, mirrored ? 1 : 0, &found, nullptr, 0);
   require_ok(status, file.path, "", found.error_element_kind, found.error_element);
   return found;
 }

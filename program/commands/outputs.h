@@ -19,14 +19,19 @@ namespace beltrami::cli {
 /// glTF.
 void require_output_format(const std::string& input, const std::string& output);
 
+/// Throws Failure for a set of UVs other than the first where `output` is not glTF.
+void require_uv_set_of_gltf(std::uint32_t uv_set, const std::string& output);
+
 /// Gives a mesh these UVs, u v for each corner, instead of those that it has.
 void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single);
 
 /// The verdict on the numbers that a file at `path` holds of the corner UVs of `file`; nothing
 /// where it holds them exactly. `share`: faces that have the UVs of another one are copies, and
-/// overlap it on purpose. Throws Failure with the path of the input.
+/// overlap it on purpose. `mirrored`: charts that are mirrored as a whole are no fault. Throws
+/// Failure with the path of the input.
 std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
-                                                         const std::string& path, bool share);
+                                                         const std::string& path, bool share,
+                                                         bool mirrored);
 
 /// Notes in the report where what a file holds of an atlas that is injective is not; `held`: the
 /// verdict on it.

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <deque>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands/command.h"
@@ -15,11 +17,12 @@
 #include "commands/pages.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
+#include "commands/uv_mesh.h"
 #include "files/atomic_file.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
-#include "files/point_numbers.h"
 #include "files/polygons.h"
+#include "files/surface_view.h"
 #include "files/triangulate.h"
 #include "picture/page_picture.h"
 #include "picture/picture.h"
@@ -34,9 +37,7 @@ struct PackedFile {
   std::string input, output;
   MeshFile file;
   std::vector<std::uint32_t> corners;     ///< of the file's faces, three for each triangle
-  std::vector<double> uvs;                ///< u v of each UV vertex, on its page where it is kept
-  std::vector<std::uint32_t> uv_indices;  ///< per corner of triangles
-  std::vector<std::uint32_t> vertices;    ///< per corner of triangles
+  UvMesh plane;                           ///< of the triangles, on their pages where they are kept
   std::vector<std::uint32_t> kept_pages;  ///< per triangle; empty: none is kept
   std::vector<std::uint64_t> charts;      ///< per triangle
 };
@@ -45,6 +46,7 @@ void note_options(const PackArguments& arguments, const Options& options, Report
   report.options = options.values();
   report.options.emplace_back("keep-scales", arguments.keep_scales);
   report.options.emplace_back("kept", static_cast<std::int64_t>(arguments.kept));
+  report.options.emplace_back("mirrored", arguments.mirrored);
   report.options.emplace_back("masks", arguments.masks);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
@@ -74,6 +76,8 @@ class PackRun {
     }
     fetch_report();
     for (std::size_t i = 0; i < files_.size(); ++i) fetch_uvs(i);
+    judge_mirrored();
+    for (const PackedFile& mesh : files_) judge_held(mesh);
     return write_files();
   }
 
@@ -83,6 +87,7 @@ class PackRun {
     if (outputs.empty() && inputs.size() == 2) {
       outputs = {inputs.back()};
       inputs.pop_back();
+      require_meant_as_output(inputs.front(), outputs.front());
     }
     if (inputs.size() != outputs.size()) {
       throw Failure(
@@ -100,10 +105,34 @@ class PackRun {
     }
   }
 
+  /// Two names may be two meshes to pack together: the second is written over only where it cannot
+  /// be meant so, or --output says it.
+  void require_meant_as_output(const std::string& input, const std::string& output) const {
+    if (!same_file(input, output) && !has_uvs(output)) return;
+    throw Failure(output +
+                  ": is a mesh with UVs, which could be meant to be packed, too: to write over it, "
+                  "put --output in front of it; to pack several meshes, give all of them, and as "
+                  "many names behind --output");
+  }
+
+  bool has_uvs(const std::string& path) const {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return false;
+    try {
+      read_mesh(path, Content::kUvs, arguments_.reach);
+      return true;
+    } catch (const Failure&) {
+      throw_if_interrupted();
+      return false;
+    }
+  }
+
   void require_files() const {
+    require_png_name(arguments_.picture);
     std::vector<std::string> written = {arguments_.report, arguments_.picture};
     for (const PackedFile& mesh : files_) {
       require_output_format(mesh.input, mesh.output);
+      require_uv_set_of_gltf(arguments_.uv_set, mesh.output);
       require_distinct({mesh.input, arguments_.report, arguments_.picture});
       written.push_back(mesh.output);
     }
@@ -129,10 +158,11 @@ class PackRun {
       for (const std::string& path : gltf_output_paths(file, mesh.output)) require_writable(path);
     }
     mesh.corners = triangle_corners(file);
-    number_uvs(mesh);
+    mesh.plane = uv_mesh_of(file, mesh.corners);
     if (kept) keep(mesh);
     report_.vertices = report_.vertices.value_or(0) + file.vertex_count();
     report_.faces = report_.faces.value_or(0) + file.polygons.size();
+    report_.short_faces = report_.short_faces.value_or(0) + file.short_faces;
     report_.triangles = report_.triangles.value_or(0) + mesh.corners.size() / 3;
     clock.finish();
   }
@@ -141,50 +171,31 @@ class PackRun {
     return format_of(mesh.output) == MeshFormat::kGltf;
   }
 
-  /// Corners at one place in space with one UV share a UV vertex, however the file numbers them:
-  /// where they do not, charts end.
-  static void number_uvs(PackedFile& mesh) {
-    const MeshFile& file = mesh.file;
-    const auto& [values, of_corner] = file.corner_uvs;
-    PointNumbers<5> points;
-    for (const std::uint32_t corner : mesh.corners) {
-      const std::uint32_t vertex = file.polygons.corners()[corner];
-      const double* p = &file.positions[3 * std::size_t{vertex}];
-      const double* uv = of_corner.empty() ? &file.uvs[2 * std::size_t{vertex}]
-                                           : &values[2 * std::size_t{of_corner[corner]}];
-      mesh.uv_indices.push_back(points.number({p[0], p[1], p[2], uv[0], uv[1]}));
-      mesh.vertices.push_back(vertex);
-    }
-    const std::vector<double> numbers = points.take_coordinates();
-    for (std::size_t i = 0; i < numbers.size(); i += 5) {
-      mesh.uvs.insert(mesh.uvs.end(), {numbers[i + 3], numbers[i + 4]});
-    }
-  }
-
   /// Charts stay in the tile that the centres of their faces are in.
   void keep(PackedFile& mesh) const {
-    std::vector<double> moved = mesh.uvs;
-    for (std::size_t i = 0; i < mesh.uv_indices.size(); i += 3) {
+    std::vector<double> moved = mesh.plane.uvs;
+    for (std::size_t i = 0; i < mesh.plane.uv_indices.size(); i += 3) {
       std::array<double, 2> tile{};
       for (std::size_t d = 0; d < 2; ++d) {
         double sum = 0;
-        for (std::size_t k = 0; k < 3; ++k) sum += mesh.uvs[2 * mesh.uv_indices[i + k] + d];
+        for (std::size_t k = 0; k < 3; ++k)
+          sum += mesh.plane.uvs[2 * mesh.plane.uv_indices[i + k] + d];
         tile[d] = std::floor(sum / 3);
       }
       const bool is_page = tile[0] >= 0 && tile[0] < double(kPagesInARow) && tile[1] >= 0;
-      if (!is_page || tile[1] >= 100) {
+      if (!is_page || tile[1] >= double(kMostRowsOfPages)) {
         throw Failure(mesh.input +
                       ": --kept: its UVs are beside the pages of a texture, [0,1]^2 "
                       "and the tiles of UDIM");
       }
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t uv = 2 * std::size_t{mesh.uv_indices[i + k]};
-        for (std::size_t d = 0; d < 2; ++d) moved[uv + d] = mesh.uvs[uv + d] - tile[d];
+        const std::size_t uv = 2 * std::size_t{mesh.plane.uv_indices[i + k]};
+        for (std::size_t d = 0; d < 2; ++d) moved[uv + d] = mesh.plane.uvs[uv + d] - tile[d];
       }
       mesh.kept_pages.push_back(
           static_cast<std::uint32_t>(tile[0] + double(kPagesInARow) * tile[1]));
     }
-    mesh.uvs = moved;
+    mesh.plane.uvs = moved;
   }
 
   void pack() {
@@ -194,14 +205,14 @@ class PackRun {
       beltrami_uv_mesh& view = meshes.emplace_back();
       view = {};
       view.struct_size = sizeof view;
-      view.uv_count = mesh.uvs.size() / 2;
-      view.face_count = mesh.uv_indices.size() / 3;
-      view.uvs = {mesh.uvs.data(), 0, BELTRAMI_F64, 0};
-      view.uv_indices = {mesh.uv_indices.data(), 0, BELTRAMI_U32, 0};
+      view.uv_count = mesh.plane.uvs.size() / 2;
+      view.face_count = mesh.plane.uv_indices.size() / 3;
+      view.uvs = {mesh.plane.uvs.data(), 0, BELTRAMI_F64, 0};
+      view.uv_indices = {mesh.plane.uv_indices.data(), 0, BELTRAMI_U32, 0};
       if (!arguments_.keep_scales) {
         view.vertex_count = mesh.file.vertex_count();
         view.positions = {mesh.file.positions.data(), 0, BELTRAMI_F64, 0};
-        view.indices = {mesh.vertices.data(), 0, BELTRAMI_U32, 0};
+        view.indices = {mesh.plane.vertices.data(), 0, BELTRAMI_U32, 0};
       }
       if (!mesh.kept_pages.empty()) {
         view.kept_pages = {mesh.kept_pages.data(), 0, BELTRAMI_U32, 0};
@@ -238,25 +249,67 @@ class PackRun {
 
   void fetch_uvs(std::size_t index) {
     PackedFile& mesh = files_[index];
-    require(beltrami_get_packed_uvs(context_.get(), index, mesh.uvs.data(), BELTRAMI_F64, 0));
-    mesh.charts.resize(mesh.uv_indices.size() / 3);
+    require(beltrami_get_packed_uvs(context_.get(), index, mesh.plane.uvs.data(), BELTRAMI_F64, 0));
+    mesh.charts.resize(mesh.plane.uv_indices.size() / 3);
     require(beltrami_get_packed_charts(context_.get(), index, mesh.charts.data(), BELTRAMI_U64, 0));
     std::vector<std::uint64_t> pages(report_.packing->charts);
     require(beltrami_get_chart_pages(context_.get(), pages.data(), BELTRAMI_U64, 0));
     std::vector<double> corner_uvs(2 * mesh.file.polygons.corners().size());
     for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
       const auto [u, v] = corner_of_page(pages[mesh.charts[i / 3]]);
-      const double* uv = &mesh.uvs[2 * std::size_t{mesh.uv_indices[i]}];
+      const double* uv = &mesh.plane.uvs[2 * std::size_t{mesh.plane.uv_indices[i]}];
       corner_uvs[2 * std::size_t{mesh.corners[i]}] = uv[0] + u;
       corner_uvs[2 * std::size_t{mesh.corners[i]} + 1] = uv[1] + v;
     }
     set_corner_uvs(mesh.file, corner_uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
-    judge_held(mesh);
+  }
+
+  /// The verdict with charts that are mirrored as a whole taken for their mirror images: on all
+  /// meshes as one, for a chart of one may lie on that of another.
+  void judge_mirrored() {
+    if (report_.atlas_certificate->injective != 0 && report_.float32_injective == true) return;
+    MeshFile all;
+    for (const PackedFile& mesh : files_) append_for_verdict(mesh.file, all);
+    beltrami_atlas_certificate found{};
+    const beltrami_status status = check_mirrored(all, found);
+    if (!arguments_.mirrored) {
+      if (status == BELTRAMI_OK && found.mirrored_charts > 0) report_.advice = kMirroredAdvice;
+      return;
+    }
+    report_.status = beltrami_status_name(status);
+    report_.atlas_certificate = found;
+    for (double& x : all.corner_uvs.values) x = static_cast<double>(static_cast<float>(x));
+    beltrami_atlas_certificate single{};
+    report_.float32_injective = check_mirrored(all, single) == BELTRAMI_OK;
+  }
+
+  static void append_for_verdict(const MeshFile& file, MeshFile& all) {
+    const auto vertices = static_cast<std::uint32_t>(all.vertex_count());
+    const auto uvs = static_cast<std::uint32_t>(all.corner_uvs.values.size() / 2);
+    all.positions.insert(all.positions.end(), file.positions.begin(), file.positions.end());
+    for (std::uint64_t i = 0; i < file.polygons.size(); ++i) {
+      for (const std::uint32_t vertex : file.polygons[i])
+        all.polygons.add_corner(vertices + vertex);
+      all.polygons.end_polygon();
+    }
+    const auto& [values, of_corner] = file.corner_uvs;
+    all.corner_uvs.values.insert(all.corner_uvs.values.end(), values.begin(), values.end());
+    for (const std::uint32_t uv : of_corner) all.corner_uvs.of_corner.push_back(uvs + uv);
+  }
+
+  beltrami_status check_mirrored(const MeshFile& all, beltrami_atlas_certificate& found) const {
+    const SurfaceView view(all);
+    const beltrami_surface surface = view.surface();
+    found = {};
+    found.struct_size = sizeof found;
+    const beltrami_status status = beltrami_check_atlas(&surface, 1, &found, nullptr, 0);
+    require_ok(status, "the meshes", "", found.error_element_kind, found.error_element);
+    return status;
   }
 
   /// The last verdict is on the numbers that the file gets.
   void judge_held(const PackedFile& mesh) {
-    const auto found = judge_held_uvs(mesh.file, mesh.output, false);
+    const auto found = judge_held_uvs(mesh.file, mesh.output, false, arguments_.mirrored);
     if (!found || found->injective != 0 || report_.atlas_certificate->injective == 0) return;
     note_held(*found, report_);
     report_.status = beltrami_status_name(BELTRAMI_NOT_INJECTIVE);

@@ -9,8 +9,6 @@
 namespace beltrami::cli {
 namespace {
 
-constexpr std::uint64_t kFirstTile = 1001;
-
 void require(beltrami_context* context, beltrami_status status) {
   require_ok(status, "the pages", beltrami_error_message(context), BELTRAMI_ELEMENT_NONE,
              BELTRAMI_NO_ELEMENT);
@@ -30,13 +28,17 @@ beltrami_packing packing_of(beltrami_context* context) {
 }  // namespace
 
 std::string path_of_page(const std::string& path, std::uint64_t page) {
+  const bool is_picture = std::filesystem::path(path).extension() == ".png";
+  return texture_of_page(is_picture ? path : path + ".png", page);
+}
+
+std::string texture_of_page(const std::string& path, std::uint64_t page) {
   std::filesystem::path name(path);
-  if (name.extension() == ".png") name.replace_extension();
-  std::string with_tile = name.string();
-  with_tile += '.';
-  with_tile += std::to_string(kFirstTile + page);
-  with_tile += ".png";
-  return with_tile;
+  const std::string extension = name.extension().string();
+  name.replace_extension();
+  const std::string first = '.' + std::to_string(kFirstTile);
+  if (name.extension() == first) name.replace_extension();
+  return name.string() + '.' + std::to_string(kFirstTile + page) + extension;
 }
 
 void report_pages(beltrami_context* context, Report& report) {

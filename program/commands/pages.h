@@ -16,6 +16,10 @@ namespace beltrami::cli {
 
 /// Pages in a row of UDIM.
 inline constexpr std::uint64_t kPagesInARow = 10;
+/// Rows of them that numbers of four digits have.
+inline constexpr std::uint64_t kMostRowsOfPages = 100;
+/// The number of the first page.
+inline constexpr std::uint64_t kFirstTile = 1001;
 
 /// The least u and v of a page in a file.
 inline std::pair<double, double> corner_of_page(std::uint64_t page) {
@@ -23,8 +27,10 @@ inline std::pair<double, double> corner_of_page(std::uint64_t page) {
   return {static_cast<double>(column), static_cast<double>(row)};
 }
 
-/// "folder/name.1001.png" for "folder/name.png" or "folder/name".
+/// "folder/name.1002.png" of page 1 for "folder/name.png", "folder/name.1001.png", "folder/name".
 std::string path_of_page(const std::string& path, std::uint64_t page);
+/// The same for a picture to read, which keeps its extension.
+std::string texture_of_page(const std::string& path, std::uint64_t page);
 
 /// Puts what was packed last into the report.
 void report_pages(beltrami_context* context, Report& report);

@@ -63,7 +63,8 @@ Json input_json(const Report& report) {
       {"degenerate_faces", report.result ? Json(report.result->degenerate_faces) : Json(nullptr)},
       {"first_degenerate_face",
        report.result ? element(report.result->first_degenerate_face) : Json(nullptr)},
-      {"welded_vertices", optional(report.welded_vertices)}};
+      {"welded_vertices", optional(report.welded_vertices)},
+      {"short_faces", optional(report.short_faces)}};
 }
 
 Json options_json(const Report& report) {
@@ -184,7 +185,28 @@ Json packing_json(const Report& report) {
           {"unsplit_utilisation", number(found.unsplit_utilisation)}};
 }
 
+Json layout_json(const Report& report) {
+  if (!report.layout) return nullptr;
+  const PageLayout& found = *report.layout;
+  return {
+      {"bounds", {found.low[0], found.low[1], found.high[0], found.high[1]}},
+      {"tiles", found.tiles},
+      {"outside", found.outside},
+      {"astride", found.astride},
+      {"resolution", found.resolution},
+      {"margin", number(found.margin)},
+      {"chart_distance", found.chart_distance ? number(*found.chart_distance) : Json(nullptr)},
+      {"edge_distance", number(found.edge_distance)},
+      {"texels_per_unit", found.density ? number(*found.density) : Json(nullptr)},
+      {"least_texels_per_unit", found.least_density ? number(*found.least_density) : Json(nullptr)},
+      {"greatest_texels_per_unit",
+       found.greatest_density ? number(*found.greatest_density) : Json(nullptr)},
+      {"utilisation", number(found.utilisation)},
+      {"unmet", report.unmet}};
+}
+
 Json charts_json(const Report& report) {
+  if (report.layout) return report.layout->charts;
   if (report.atlas) return report.atlas->charts;
   return report.packing ? Json(report.packing->charts) : Json(nullptr);
 }
@@ -290,9 +312,49 @@ void append_packing(const Report& report, std::string& text) {
          100 * (found.utilisation - found.unsplit_utilisation));
 }
 
+/// "1001", "1001 to 1004" or "1001, 1003 and 12 more".
+std::string tiles_text(const std::vector<std::uint64_t>& tiles) {
+  constexpr std::size_t kMost = 4;  // named one by one
+  if (tiles.empty()) return "none";
+  if (tiles.size() > 2 && tiles.back() - tiles.front() == tiles.size() - 1) {
+    return std::to_string(tiles.front()) + " to " + std::to_string(tiles.back());
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(tiles.size(), kMost); ++i) {
+    text += (text.empty() ? "" : ", ") + std::to_string(tiles[i]);
+  }
+  if (tiles.size() > kMost) text += " and " + std::to_string(tiles.size() - kMost) + " more";
+  return text;
+}
+
+void append_layout(const Report& report, std::string& text) {
+  const PageLayout& found = *report.layout;
+  append(text, "charts     %llu\n", static_cast<unsigned long long>(found.charts));
+  append(text, "bounds     u from %.6g to %.6g, v from %.6g to %.6g\n", found.low[0], found.high[0],
+         found.low[1], found.high[1]);
+  text += "tiles      " + tiles_text(found.tiles);
+  if (found.outside > 0) {
+    append(text, "; %llu charts leave [0,1]^2, %llu the tiles of UDIM",
+           static_cast<unsigned long long>(found.outside),
+           static_cast<unsigned long long>(found.astride));
+  }
+  append(text, "\nmargin     %.3f texels at %llu a side: ", found.margin,
+         static_cast<unsigned long long>(found.resolution));
+  if (found.chart_distance) append(text, "%.3f between charts, ", *found.chart_distance);
+  append(text, "%.3f to the edge of a page\n", found.edge_distance);
+  if (found.density) {
+    append(text, "density    %.4g texels per unit, charts from %.4g to %.4g; %.1f%% used\n",
+           *found.density, found.least_density.value_or(0), found.greatest_density.value_or(0),
+           100 * found.utilisation);
+  }
+  for (const std::string& what : report.unmet) text += "unmet      " + what + "\n";
+}
+
 /// What had to be done to the input, where that is anything.
-void append_admitted(const beltrami_atlas& atlas, std::string& text) {
+void append_admitted(const Report& report, std::string& text) {
+  const beltrami_atlas& atlas = *report.atlas;
   const std::pair<std::uint64_t, const char*> counts[] = {
+      {report.short_faces.value_or(0), "faces of fewer than three corners"},
       {atlas.welded_vertices, "vertices welded"},
       {atlas.unused_vertices, "vertices unused"},
       {atlas.repeated_faces, "faces with a vertex twice"},
@@ -352,6 +414,7 @@ void Report::set_input(const MeshFile& file, const Surface& surface) {
   faces = file.polygons.size();
   triangles = surface.view().face_count();
   welded_vertices = file.welded_corners + surface.welded_vertices();
+  short_faces = file.short_faces;
 }
 
 void Report::set_failure(const Failure& failure) {
@@ -381,6 +444,7 @@ std::string to_json(const Report& report) {
       {"target", target_json(report)},
       {"utilisation", utilisation_json(report)},
       {"packing", packing_json(report)},
+      {"layout", layout_json(report)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
       {"coarse_faces", optional(report.coarse_faces)},
@@ -429,10 +493,11 @@ std::string to_summary(const Report& report, const std::string& written) {
            report.energy->symmetric_dirichlet, report.energy->max);
   }
   if (report.atlas) {
-    append_admitted(*report.atlas, text);
+    append_admitted(report, text);
     append_atlas(report, text);
   }
   if (report.packing) append_packing(report, text);
+  if (report.layout) append_layout(report, text);
   if (report.certificate) append_verdict(report, text);
   if (report.atlas_certificate) append_atlas_verdict(report, text);
   if (!report.failed_charts.empty()) {
@@ -457,6 +522,7 @@ std::string to_summary(const Report& report, const std::string& written) {
   if (report.status == "BELTRAMI_NOT_CONVERGED") {
     append(text, "note       stopped at a limit of iterations or time before it converged\n");
   }
+  if (!report.advice.empty()) text += "note       " + report.advice + "\n";
   append(text, "time       %.2f s\n", report.seconds);
   append_memory(report, text);
   if (!written.empty()) text += "written    " + one_line(written) + "\n";

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "commands/page_layout.h"
 #include "files/mesh_file.h"
 #include "files/surface.h"
 #include "process/failure.h"
@@ -55,7 +56,7 @@ struct Report {
 
   std::string input_path;
   std::optional<std::uint64_t> vertices, faces, triangles, boundary_edges, unreferenced_vertices,
-      welded_vertices;
+      welded_vertices, short_faces;
   std::optional<double> area;
 
   OptionValues options;
@@ -69,10 +70,13 @@ struct Report {
   std::optional<Target> target;
   std::optional<beltrami_packing> packing;
   std::vector<double> page_utilisations;
+  std::optional<PageLayout> layout;  ///< check
+  std::vector<std::string> unmet;    ///< check: what was asked for and is not so, in words
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output
   std::vector<std::string> notes;     ///< what else is to be known of the output, in sentences
+  std::string advice;                 ///< for the summary: what else the user may want, or ""
   std::vector<StageTime> stages;
   std::optional<std::int64_t> threads;
   std::optional<std::uint64_t>

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands/command.h"
@@ -23,6 +23,7 @@
 #include "picture/nearest_face.h"
 #include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
+#include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -31,8 +32,6 @@ namespace {
 
 using Uv = std::array<double, 2>;
 using TriangleUvs = std::array<Uv, 3>;
-
-constexpr std::uint64_t kMostRows = 100;  // of pages
 
 /// Of the size of OLD: how far corners of the same face may be apart, as single precision and a few
 /// digits of a text leave them; and how far what a texel shows may be from it.
@@ -46,42 +45,44 @@ Uv uv_of_corner(const MeshFile& file, std::uint32_t corner) {
   return {uvs[2 * at], uvs[2 * at + 1]};
 }
 
-/// The page of a triangle, by its centre; and its UVs on it.
-std::uint64_t take_page(TriangleUvs& uvs, const std::string& path) {
-  std::array<double, 2> corner{};
+/// The tile of the plane that a triangle is in, by its centre: what is on an edge as a whole is in
+/// the tile below. Nothing where a UV is not finite.
+std::optional<Uv> tile_of(const TriangleUvs& uvs) {
+  Uv tile{};
   for (std::size_t k = 0; k < 2; ++k) {
-    corner[k] = std::floor((uvs[0][k] + uvs[1][k] + uvs[2][k]) / 3);
+    tile[k] = std::floor((uvs[0][k] + uvs[1][k] + uvs[2][k]) / 3);
+    if (!std::isfinite(tile[k])) return std::nullopt;
+    const bool on_edge = std::max({uvs[0][k], uvs[1][k], uvs[2][k]}) == tile[k];
+    if (on_edge && tile[k] > 0) tile[k] -= 1;
   }
-  const bool is_page = corner[0] >= 0 && corner[0] < double(kPagesInARow) && corner[1] >= 0 &&
-                       corner[1] < double(kMostRows);
-  if (!is_page) {
-    throw Failure(path +
-                  ": a face has its UVs beside the pages of a texture, [0,1]^2 and the "
-                  "tiles of UDIM: pack it first");
-  }
-  for (Uv& uv : uvs) {
-    for (std::size_t k = 0; k < 2; ++k) uv[k] -= corner[k];
-  }
-  return static_cast<std::uint64_t>(corner[0]) +
-         kPagesInARow * static_cast<std::uint64_t>(corner[1]);
+  return tile;
+}
+
+bool is_page(const Uv& tile) {
+  return tile[0] >= 0 && tile[0] < double(kPagesInARow) && tile[1] >= 0 &&
+         tile[1] < double(kMostRowsOfPages);
 }
 
 Pixels read_texture(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Failure(path + ": cannot be read");
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  std::optional<Pixels> image = read_png(bytes);
-  if (!image) throw Failure(path + ": is no PNG file that can be read");
+  if (is_gltf_name(path)) {
+    throw Failure(path + ": textures are read from files of their own: save it as .png or .jpg");
+  }
+  std::optional<Pixels> image = read_image(read_file(path));
+  if (!image) throw Failure(path + ": is no PNG or JPEG file that can be read");
   return *std::move(image);
 }
+
+constexpr std::uint64_t kNoPage = std::numeric_limits<std::uint64_t>::max();
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
 struct Textured {
   std::vector<PlacedTriangle> places;
-  std::vector<TriangleUvs> uvs;
-  std::vector<std::uint64_t> pages;
+  std::vector<TriangleUvs> uvs;      ///< on their pages
+  std::vector<std::uint64_t> pages;  ///< kNoPage for a triangle that no texture is on
+  bool tiled = false;                ///< a triangle is in another tile of the plane than [0,1]^2
 };
 
+/// With all triangles on page 0, and their UVs as they are.
 Textured textured(const MeshFile& file, const std::vector<std::uint32_t>& corners) {
   Textured mesh;
   for (std::size_t first = 0; first < corners.size(); first += 3) {
@@ -92,9 +93,42 @@ Textured textured(const MeshFile& file, const std::vector<std::uint32_t>& corner
       for (std::size_t d = 0; d < 3; ++d) place[k][d] = file.positions[3 * vertex + d];
       uvs[k] = uv_of_corner(file, corners[first + k]);
     }
-    mesh.pages.push_back(take_page(uvs, file.path));
+    const std::optional<Uv> tile = tile_of(uvs);
+    mesh.tiled = mesh.tiled || (tile && *tile != Uv{0, 0});
+    mesh.pages.push_back(tile ? 0 : kNoPage);
   }
   return mesh;
+}
+
+/// Puts triangles on the pages that the tiles of UDIM are. Throws Failure, with `advice`, where one
+/// is beside them.
+void part_into_pages(Textured& mesh, const std::string& path, const std::string& advice) {
+  for (std::size_t t = 0; t < mesh.uvs.size(); ++t) {
+    if (mesh.pages[t] == kNoPage) continue;
+    const Uv tile = *tile_of(mesh.uvs[t]);
+    if (!is_page(tile)) {
+      throw Failure(path + ": a face has its UVs beside [0,1]^2 and the tiles of UDIM: " + advice);
+    }
+    for (Uv& uv : mesh.uvs[t]) {
+      for (std::size_t k = 0; k < 2; ++k) uv[k] -= tile[k];
+    }
+    mesh.pages[t] =
+        static_cast<std::uint64_t>(tile[0]) + kPagesInARow * static_cast<std::uint64_t>(tile[1]);
+  }
+}
+
+/// Those that have a triangle, ascending.
+std::vector<std::uint64_t> pages_in_use(const Textured& mesh) {
+  std::vector<std::uint64_t> pages = mesh.pages;
+  std::sort(pages.begin(), pages.end());
+  pages.erase(std::unique(pages.begin(), pages.end()), pages.end());
+  if (!pages.empty() && pages.back() == kNoPage) pages.pop_back();
+  return pages;
+}
+
+bool exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
 }
 
 bool same_polygons(const MeshFile& from, const MeshFile& to) {
@@ -131,7 +165,13 @@ class Transfer {
   int run() {
     require_distinct({arguments_.old_mesh, arguments_.texture, arguments_.output});
     require_distinct({arguments_.new_mesh, arguments_.texture, arguments_.output});
+    require_png_name(arguments_.output);
     read_triangles();
+    part_into_pages(to_, arguments_.new_mesh, "pack it first");
+    if (shows_tiles()) {
+      part_into_pages(from_, arguments_.old_mesh,
+                      "a texture that repeats is read with --wrap repeat");
+    }
     read_pages();
     return write_pages();
   }
@@ -171,6 +211,7 @@ class Transfer {
       at = *found;
       last_found_ = at.face;
     }
+    if (from_.pages[at.face] == kNoPage) return std::nullopt;
     Source source{from_.pages[at.face], 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       source.u += at.weights[k] * from_.uvs[at.face][k][0];
@@ -179,22 +220,44 @@ class Transfer {
     return source;
   }
 
+  /// Whether UVs of OLD beyond [0,1]^2 are on other pages, and not on the one texture again.
+  bool shows_tiles() const {
+    if (arguments_.wrap != "auto") return arguments_.wrap == "tiles";
+    if (!from_.tiled) return false;
+    for (const TriangleUvs& uvs : from_.uvs) {
+      const std::optional<Uv> tile = tile_of(uvs);
+      if (!tile || !is_page(*tile) || *tile == Uv{0, 0}) continue;
+      const auto page = static_cast<std::uint64_t>((*tile)[0] + double(kPagesInARow) * (*tile)[1]);
+      if (exists(texture_of_page(arguments_.texture, page))) return true;
+    }
+    return false;
+  }
+
+  Beyond beyond() const {
+    if (arguments_.wrap == "mirror") return Beyond::kMirror;
+    const bool repeats = arguments_.wrap == "repeat" || (arguments_.wrap == "auto" && repeats_);
+    return repeats ? Beyond::kRepeat : Beyond::kClamp;
+  }
+
   /// The texture of each page that is read.
   void read_pages() {
-    std::uint64_t pages = 0;
-    for (const std::uint64_t page : from_.pages) pages = std::max(pages, page + 1);
-    for (std::uint64_t page = 0; page < pages; ++page) {
-      const bool used =
-          std::find(from_.pages.begin(), from_.pages.end(), page) != from_.pages.end();
+    const std::vector<std::uint64_t> pages = pages_in_use(from_);
+    if (pages.empty()) throw Failure(arguments_.old_mesh + ": no face has UVs that are numbers");
+    repeats_ = pages.back() == 0 && from_.tiled;
+    textures_.resize(pages.back() + 1);
+    for (const std::uint64_t page : pages) {
+      const bool first = pages.size() == 1 && page == 0;
       const std::string path =
-          pages > 1 ? path_of_page(arguments_.texture, page) : arguments_.texture;
-      textures_.push_back(used ? read_texture(path) : Pixels{});
-      if (!used) continue;
-      if (components_ == 0) components_ = textures_.back().components;
-      if (textures_.back().components != components_) {
+          first ? arguments_.texture : texture_of_page(arguments_.texture, page);
+      // The first of several pages may have no number.
+      const bool unnumbered = page == 0 && !exists(path) && exists(arguments_.texture);
+      Pixels& texture = textures_[page];
+      texture = read_texture(unnumbered ? arguments_.texture : path);
+      if (components_ == 0) components_ = texture.components;
+      if (texture.components != components_) {
         throw Failure(path + ": has other components than the pages before it");
       }
-      side_ = std::max(side_, textures_.back().width);
+      side_ = std::max({side_, texture.width, texture.height});
     }
     if (arguments_.resolution > 0) side_ = arguments_.resolution;
     // An unused page has no texels, and none are read; but it is asked how many components it has.
@@ -216,35 +279,34 @@ class Transfer {
     const auto source_of = [&](std::size_t t, const std::array<double, 3>& weights) {
       return source(number[t], weights);
     };
-    return bake(triangles, source_of, textures_, side_, arguments_.margin);
+    return bake(triangles, source_of, textures_, beyond(), side_, arguments_.margin);
   }
 
   int write_pages() {
-    std::uint64_t pages = 0, covered = 0, without_source = 0;
-    for (const std::uint64_t page : to_.pages) pages = std::max(pages, page + 1);
+    const std::vector<std::uint64_t> pages = pages_in_use(to_);
+    std::uint64_t covered = 0, without_source = 0;
     std::deque<AtomicFile> outputs;
-    for (std::uint64_t page = 0; page < pages; ++page) {
+    for (const std::uint64_t page : pages) {
       throw_if_interrupted();
       const Baked baked = bake_page(page);
       covered += baked.covered;
       without_source += baked.without_source;
-      AtomicFile& file = outputs.emplace_back(pages > 1 ? path_of_page(arguments_.output, page)
-                                                        : arguments_.output);
+      AtomicFile& file = outputs.emplace_back(
+          pages.back() > 0 ? path_of_page(arguments_.output, page) : arguments_.output);
       file.write(png_bytes(side_, side_, components_, baked.image.values.data()));
       file.close();
     }
-    if (covered > 0 && without_source == covered) {
-      throw Failure(arguments_.new_mesh + ": no part of it is near " + arguments_.old_mesh +
-                    " and looks the same way: a texture goes to a mesh of the same shape, in the "
-                    "same place and at the same scale");
-    }
+    require_sources(covered, without_source);
     throw_if_interrupted();
-    for (AtomicFile& file : outputs) file.commit();
+    commit(outputs);
     if (arguments_.quiet) return kExitInjective;
     std::string summary =
-        "pages      " + std::to_string(pages) + " of " + std::to_string(side_) + " texels\n";
+        "pages      " + std::to_string(pages.size()) + " of " + std::to_string(side_) + " texels\n";
+    if (repeats_) summary += "texture    repeats: UVs of OLD go beyond [0,1]^2\n";
     if (surface_) {
       summary += "faces      others than those of OLD: the nearest places of it are taken\n";
+    }
+    if (without_source > 0 || surface_) {
       summary += "no source  " + std::to_string(without_source) + " of " + std::to_string(covered) +
                  " texels, which nothing of OLD is near\n";
     }
@@ -252,11 +314,25 @@ class Transfer {
     return print(summary, "the summary", kExitInjective);
   }
 
+  /// A texture of which most was made up is no transfer, and nobody would look for it in one.
+  void require_sources(std::uint64_t covered, std::uint64_t without_source) const {
+    if (covered == 0) {
+      throw Failure(arguments_.new_mesh +
+                    ": its UVs cover no texel: unwrap or pack it first, or raise --resolution");
+    }
+    if (2 * without_source <= covered) return;
+    throw Failure(arguments_.new_mesh + ": " + std::to_string(without_source) + " of its " +
+                  std::to_string(covered) + " texels are near nothing of " + arguments_.old_mesh +
+                  " that looks the same way: a texture goes to a mesh of the same shape, in the "
+                  "same place and at the same scale");
+  }
+
   const TransferArguments& arguments_;
   Textured from_, to_;
   std::optional<NearestFace> surface_;  ///< of OLD, where NEW has other faces
   std::size_t last_found_ = 0;          ///< neighbours are near one another
   std::vector<Pixels> textures_;
+  bool repeats_ = false;  ///< UVs of OLD go beyond the one texture
   int side_ = 0, components_ = 0;
 };
 

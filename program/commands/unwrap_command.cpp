@@ -73,6 +73,8 @@ class Unwrapping {
   /// Everything about files that can be told before the work.
   void require_files() const {
     require_output_format(arguments_.input, arguments_.output);
+    require_uv_set_of_gltf(arguments_.uv_set, arguments_.output);
+    require_png_name(arguments_.picture);
     if (writes_gltf() && arguments_.triangulate) {
       throw Failure(arguments_.output +
                     ": the faces of glTF are triangles, in the winding that they have: leave out "
@@ -129,6 +131,7 @@ class Unwrapping {
     if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
     report_.vertices = file_.vertex_count();
     report_.faces = file_.polygons.size();
+    report_.short_faces = file_.short_faces;
     clock.finish();
   }
 
@@ -235,7 +238,7 @@ class Unwrapping {
   /// The last verdict is on the numbers that the file gets.
   void judge_held() {
     const bool share = options_.integer(BELTRAMI_OPTION_SHARE_COPIES) != 0;
-    const auto found = judge_held_uvs(file_, arguments_.output, share);
+    const auto found = judge_held_uvs(file_, arguments_.output, share, false);
     if (!found) return;
     note_held(*found, report_);
     report_.atlas_certificate = found;
@@ -254,12 +257,11 @@ class Unwrapping {
     if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     clock.finish();
 
-    std::optional<AtomicFile> picture, report;
-    if (!arguments_.picture.empty()) write_picture(picture.emplace(arguments_.picture));
+    if (!arguments_.picture.empty()) write_picture(outputs.emplace_back(arguments_.picture));
     report_.seconds = seconds_so_far();
     if (!arguments_.report.empty()) {
-      report.emplace(arguments_.report).write(to_json(report_));
-      report->close();
+      outputs.emplace_back(arguments_.report).write(to_json(report_));
+      outputs.back().close();
     }
     std::string note, summary;
     if (!arguments_.quiet) {
@@ -270,8 +272,6 @@ class Unwrapping {
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
     commit(outputs);
-    if (picture) picture->commit();
-    if (report) report->commit();
     remark(note);
     return print(summary, "the summary", report_.injective() ? kExitInjective : kExitNotInjective);
   }

@@ -18,6 +18,8 @@
 #include <io.h>
 #else
 #include <unistd.h>
+
+#include <csignal>
 #endif
 
 namespace beltrami::cli {
@@ -63,6 +65,26 @@ fs::path temporary_beside(const fs::path& target) {
   return target.parent_path() / ("." + name + "." + std::to_string(random()) + ".tmp");
 }
 
+#if defined(_WIN32)
+class HoldSignals {};  // a console's handlers run on a thread of their own
+#else
+/// While it lives, signals wait.
+class HoldSignals {
+ public:
+  HoldSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~HoldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  HoldSignals(const HoldSignals&) = delete;
+  HoldSignals& operator=(const HoldSignals&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+#endif
+
 /// Of what is at `path`, links followed. Throws Failure for a directory.
 fs::file_status status_of(const std::string& path) {
   if (path.empty()) throw Failure("an output path is empty");
@@ -89,7 +111,8 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   target_ = target.string();
   folder_ = target.has_parent_path() ? target.parent_path().string() : ".";
   // Renaming would replace a write-protected file; the user protected it for a reason.
-  if (fs::exists(status) && !may_write(target_.c_str())) fail("cannot be written");
+  replaces_ = fs::exists(status);
+  if (replaces_ && !may_write(target_.c_str())) fail("cannot be written");
   // Before it exists: a signal may come between any two steps.
   temporary_.emplace(temporary_beside(target).string());
   descriptor_ = open(temporary_->path().c_str(), kFlags | O_CREAT | O_EXCL, 0666);
@@ -97,8 +120,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
     temporary_->keep();
     fail("cannot be written");
   }
-  is_new_ = !fs::exists(status);
-  if (!is_new_) set_permissions(descriptor_, status.permissions());
+  if (replaces_) set_permissions(descriptor_, status.permissions());
 }
 
 AtomicFile::~AtomicFile() {
@@ -121,23 +143,63 @@ void AtomicFile::close() {
 
 void AtomicFile::commit() {
   close();
+  put_in_place();
+  finish();
+}
+
+void AtomicFile::keep_old() {
+  if (!temporary_ || !replaces_) return;
+  old_.emplace(temporary_beside(target_).string());
+  // A second name costs nothing, and is there at any moment. Not every file system has such: then
+  // the old file cannot come back.
+  std::error_code error;
+  fs::create_hard_link(target_, old_->path(), error);
+  if (!error) return;
+  old_->keep();
+  old_.reset();
+}
+
+void AtomicFile::put_in_place() {
   if (!temporary_) return;
 #if defined(_WIN32)
   fs::rename(temporary_->path(), target_);  // the C library's does not replace
 #else
   if (std::rename(temporary_->path().c_str(), target_.c_str()) != 0) fail("cannot be replaced");
 #endif
+  in_place_ = true;
   temporary_->keep();
   temporary_.reset();
-  made_ = is_new_;
-  for (const std::string& path : obsolete_) std::remove(path.c_str());
   // The file has its name now. That the name outlives a power cut is asked for, but where a folder
   // cannot be opened or synchronised, nothing is wrong with the file.
   sync_directory(folder_.c_str());
 }
 
+void AtomicFile::finish() noexcept {
+  old_.reset();
+  for (const std::string& path : obsolete_) std::remove(path.c_str());
+}
+
 void AtomicFile::take_back() noexcept {
-  if (std::exchange(made_, false)) std::remove(target_.c_str());
+  if (!in_place_) return;
+  if (!replaces_) {
+    std::remove(target_.c_str());
+  } else if (old_ && std::rename(old_->path().c_str(), target_.c_str()) == 0) {
+    old_->keep();
+  }
+  in_place_ = false;
+}
+
+void commit(std::deque<AtomicFile>& files) {
+  for (AtomicFile& file : files) file.close();
+  for (AtomicFile& file : files) file.keep_old();
+  const HoldSignals hold;
+  try {
+    for (AtomicFile& file : files) file.put_in_place();
+  } catch (...) {
+    for (AtomicFile& file : files) file.take_back();
+    throw;
+  }
+  for (AtomicFile& file : files) file.finish();
 }
 
 void AtomicFile::fail(const char* what) const {
@@ -145,15 +207,6 @@ void AtomicFile::fail(const char* what) const {
   if (number == ENOMEM) throw std::bad_alloc();
   if (number == EINTR) throw Failure(BELTRAMI_E_CANCELLED, "cancelled");
   throw Failure(path_ + ": " + what + ": " + std::strerror(number));
-}
-
-void commit(std::deque<AtomicFile>& files) {
-  try {
-    for (AtomicFile& file : files) file.commit();
-  } catch (...) {
-    for (AtomicFile& file : files) file.take_back();
-    throw;
-  }
 }
 
 void require_writable(const std::string& path) {

@@ -33,10 +33,15 @@ class AtomicFile {
   void remove_then(std::string path) { obsolete_.push_back(std::move(path)); }
   /// Closes, and replaces the target. Needs no memory after a close().
   void commit();
-  /// Removes the target again if commit() made it where no file was.
-  void take_back() noexcept;
 
  private:
+  friend void commit(std::deque<AtomicFile>& files);
+  /// Keeps what is at the target for take_back(), where the file system can.
+  void keep_old();
+  void put_in_place();
+  /// Removes what nothing needs any more.
+  void finish() noexcept;
+  void take_back() noexcept;
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;    ///< as the user gave it, for messages
@@ -44,13 +49,15 @@ class AtomicFile {
   std::string folder_;  ///< of the target
   std::optional<Leftover> temporary_;
   std::vector<std::string> obsolete_;
+  std::optional<Leftover> old_;  ///< another name of what is at the target
+  bool replaces_ = false;        ///< something is there
+  bool in_place_ = false;
   int descriptor_ = -1;
-  bool is_new_ = false;  ///< there is no target
-  bool made_ = false;    ///< commit() made one
 };
 
-/// Commits all of them in order. Where one cannot be, those before it that are new are taken back,
-/// so that no part of a model stays of which the rest is missing.
+/// Commits all files, in their order, or none: where one cannot be put in place, those before it
+/// are taken back, and what was there is there again. No signal but SIGKILL comes between. Throws
+/// Failure; needs no memory once something is replaced.
 void commit(std::deque<AtomicFile>& files);
 
 /// Throws Failure unless `path` could be written now: told before minutes of work, not after. What

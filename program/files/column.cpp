@@ -106,4 +106,15 @@ const Column* find_column(const std::vector<Column>& columns, std::string_view n
   return nullptr;
 }
 
+Column picked(const Column& column, const std::vector<std::uint64_t>& places) {
+  Column result(column.name(), column.type(), column.is_list());
+  for (const std::uint64_t place : places) {
+    for (std::uint64_t i = column.begin(place); i < column.end(place); ++i) {
+      result.append(column[i]);
+    }
+    if (column.is_list()) result.end_list();
+  }
+  return result;
+}
+
 }  // namespace beltrami::cli

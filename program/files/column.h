@@ -60,6 +60,9 @@ class Column {
   std::vector<std::uint64_t> ends_;  ///< of lists
 };
 
+/// The items of a column at these places.
+Column picked(const Column& column, const std::vector<std::uint64_t>& places);
+
 /// Items that are neither vertices nor faces.
 struct Table {
   std::string name;

@@ -57,7 +57,7 @@ class ExtraNumbers {
     return false;
   }
 
- private:
+  /// The numbers of row `row`, up to kWidth; rows come in order.
   void add(std::uint64_t row, std::span<const double> numbers) {
     if (numbers.empty()) return;
     if (numbers.size() > width_) widen(numbers.size());
@@ -66,6 +66,7 @@ class ExtraNumbers {
     values_.resize((row + 1) * width_, std::numeric_limits<double>::quiet_NaN());
   }
 
+ private:
   void widen(std::size_t width) {
     std::vector<double> wide;
     for (std::size_t i = 0; i < values_.size(); ++i) {

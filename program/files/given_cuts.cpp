@@ -10,6 +10,7 @@
 
 #include "files/column.h"
 #include "files/polygons.h"
+#include "files/text_cursor.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 
@@ -41,6 +42,33 @@ std::vector<std::uint64_t> by_statements(const MeshFile& file, std::string_view 
   return labels;
 }
 
+/// Blanks, line ends, comments, and what lists of pairs are written with: commas, brackets.
+void skip_separators(TextCursor& cursor) {
+  constexpr std::string_view kSeparators = ",;()[]{}";
+  for (cursor.skip_to_word(); !cursor.at_end(); cursor.skip_to_word()) {
+    if (kSeparators.find(cursor.peek()) == std::string_view::npos) return;
+    cursor.advance();
+  }
+}
+
+/// The digits here; Failure where anything else stands here or joins them.
+std::uint64_t read_vertex_number(TextCursor& cursor) {
+  constexpr std::size_t kMostDigits = 19;  // of 64 bits
+  const auto is_digit = [&] { return cursor.peek() >= '0' && cursor.peek() <= '9'; };
+  std::string digits;
+  for (; !cursor.at_end() && is_digit() && digits.size() < kMostDigits; cursor.advance()) {
+    digits += cursor.peek();
+  }
+  constexpr std::string_view kEnds = " \t\r\n\v\f#,;()[]{}";
+  if (digits.empty() || (!cursor.at_end() && kEnds.find(cursor.peek()) == std::string_view::npos)) {
+    cursor.fail("'" + digits + std::string(cursor.word().substr(0, 40)) +
+                "' is no vertex: seams are pairs of vertex numbers, counted from 0");
+  }
+  std::uint64_t vertex = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), vertex);
+  return vertex;
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name,
@@ -70,17 +98,14 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
 std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file) {
   const std::string text = read_file(path);
   std::vector<std::uint32_t> ends;
-  const char *at = text.data(), *end = at + text.size();
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  while ((at = std::find_if(at, end, is_digit)) != end) {
-    std::uint64_t vertex = 0;
-    const auto [past, error] = std::from_chars(at, end, vertex);
-    if (error != std::errc() || vertex >= file.vertex_count()) {
-      throw Failure(path + ": there is no vertex " + std::string(at, past) + ": " + file.path +
-                    " has " + std::to_string(file.vertex_count()) + ", counted from 0");
+  TextCursor cursor(text, path);
+  for (skip_separators(cursor); !cursor.at_end(); skip_separators(cursor)) {
+    const std::uint64_t vertex = read_vertex_number(cursor);
+    if (vertex >= file.vertex_count()) {
+      cursor.fail("there is no vertex " + std::to_string(vertex) + ": " + file.path + " has " +
+                  std::to_string(file.vertex_count()) + ", counted from 0");
     }
     ends.push_back(static_cast<std::uint32_t>(vertex));
-    at = past;
   }
   if (ends.size() % 2 == 1) {
     throw Failure(path + ": seams are pairs of vertices, and these are " +

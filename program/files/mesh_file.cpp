@@ -1,6 +1,7 @@
 #include "files/mesh_file.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 
 #include "process/descriptor.h"
@@ -16,12 +17,26 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-/// Brings text from other systems into the one form that the readers know.
-void normalise_text(std::string& text) {
+/// Brings the text in front of `end` from other systems into the one form that the readers know.
+void normalise_text(std::string& text, std::size_t end) {
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.replace(0, 3, 3, ' ');
-  const bool lone_returns =
-      text.find('\n') == std::string::npos && text.find('\r') != std::string::npos;
-  if (lone_returns) std::replace(text.begin(), text.end(), '\r', '\n');
+  const std::string_view head = std::string_view(text).substr(0, end);
+  if (head.find('\n') != std::string_view::npos) return;
+  std::replace(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(head.size()), '\r', '\n');
+}
+
+/// Where the text of a file ends: what follows the header of a PLY file may be binary, as may all
+/// of an STL file.
+std::size_t text_end(MeshFormat format, std::string_view text) {
+  if (format == MeshFormat::kObj || format == MeshFormat::kOff) return text.size();
+  if (format == MeshFormat::kStl) {
+    return text.find('\0') == std::string_view::npos ? text.size() : 0;
+  }
+  if (format != MeshFormat::kPly) return 0;
+  constexpr std::string_view kEnd = "end_header";
+  const std::size_t end = text.find(kEnd);
+  if (end == std::string_view::npos || text.find("format ascii") < end) return text.size();
+  return std::min(text.size(), end + kEnd.size() + 1);
 }
 
 /// Whether this is a surface of the Montreal Neurological Institute: "P" and five numbers, where
@@ -35,7 +50,7 @@ MeshFile read_text(const std::string& path, Content content, Reach reach) {
   const MeshFormat format = format_of(path);
   std::string text = read_file(path);
   if (text.empty()) throw Failure(path + ": the file is empty");
-  if (format == MeshFormat::kObj || format == MeshFormat::kOff) normalise_text(text);
+  normalise_text(text, text_end(format, text));
   switch (format) {
     case MeshFormat::kObj:
       return is_mni(text) ? read_mni(text, path, content) : read_obj(text, path, content);
@@ -58,7 +73,7 @@ MeshFormat format_of(const std::string& path) {
   if (extension == ".off") return MeshFormat::kOff;
   if (extension == ".ply") return MeshFormat::kPly;
   if (extension == ".stl") return MeshFormat::kStl;
-  if (extension == ".gltf" || extension == ".glb") return MeshFormat::kGltf;
+  if (is_gltf_name(path)) return MeshFormat::kGltf;
   throw Failure(path +
                 ": the format is unknown: use the extension .obj, .off, .ply, .stl, .gltf or .glb");
 }
@@ -66,7 +81,20 @@ MeshFormat format_of(const std::string& path) {
 void require_writable_format(const std::string& path) {
   const std::string extension = extension_of(path);
   if (extension == ".obj" || extension == ".ply") return;
-  throw Failure(path + ": results are written as OBJ or PLY: use the extension .obj or .ply");
+  throw Failure(path +
+                ": cannot be written: use the extension .obj or .ply, or, where the input is glTF, "
+                ".gltf or .glb");
+}
+
+bool is_gltf_name(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".gltf" || extension == ".glb";
+}
+
+void require_png_name(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension.empty() || extension == ".png") return;
+  throw Failure(path + ": pictures are written as PNG: use the extension .png");
 }
 
 void unite_corner_uvs(MeshFile& mesh) {
@@ -96,6 +124,7 @@ void require_whole(const MeshFile& mesh) {
 MeshFile read_mesh(const std::string& path, Content content, Reach reach) {
   MeshFile mesh = read_text(path, content, reach);
   mesh.path = path;
+  mesh.reach = reach;
   return mesh;
 }
 

@@ -52,13 +52,15 @@ struct Statement {
 
 /// A mesh as its file has it. What is computed on is its Surface (surface.h).
 struct MeshFile {
-  std::string path;                  ///< of the file, for messages
+  std::string path;                  ///< of the file, for messages; "" where it was never one
+  Reach reach = Reach::kItsFolder;   ///< of names in it
   std::vector<double> positions;     ///< x y z per vertex, in file order
   Polygons polygons;                 ///< in file order
   std::vector<double> uvs;           ///< u v per vertex; empty where not asked for
   CornerUvs corner_uvs;              ///< instead of these
   bool single_uvs = false;           ///< single precision holds them: PLY stores them so
   std::uint64_t welded_corners = 0;  ///< STL: corners that fell together with an earlier one
+  std::uint64_t short_faces = 0;     ///< of fewer than three corners, which are set aside
 
   /// What the file carries beside these, in the names of PLY: colours are red, green, blue and
   /// alpha, normals nx, ny and nz.
@@ -87,8 +89,13 @@ enum class Content {
 /// The format that the extension of `path` names, in any case. Throws Failure for others.
 MeshFormat format_of(const std::string& path);
 
-/// Throws Failure unless `path` has the extension of a format that can hold UVs: OBJ or PLY.
+/// Throws Failure, which lists the formats that can be written, unless `path` has the extension of
+/// one that holds UVs of any mesh: OBJ or PLY.
 void require_writable_format(const std::string& path);
+/// Whether `path` has the extension of glTF.
+bool is_gltf_name(const std::string& path);
+/// Throws Failure where `path` names a picture of another format than PNG, the one that is written.
+void require_png_name(const std::string& path);
 
 /// Reads `path`, and what it names within `reach`. Throws Failure for anything unreadable, and for
 /// indices out of range; std::bad_alloc. A PLY file that ends amid its faces is read as far as it

@@ -7,13 +7,26 @@
 namespace beltrami::cli {
 namespace {
 
+/// More elements, or properties of one, than any file has: each is looked up among the others.
+constexpr std::size_t kMostNames = 4096;
+/// Of a keyword that is passed over, and only named.
+constexpr std::size_t kLongestKeyword = 64;
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 std::string_view next_word(TextCursor& cursor) {
   cursor.skip_blanks();
   return cursor.word();
 }
 
 Scalar read_type(const TextCursor& cursor, std::string_view word) {
-  const std::optional<Scalar> type = scalar_named(word);
+  const std::optional<Scalar> type = scalar_named(lower(word));
   if (!type) cursor.fail("unknown property type '" + std::string(word.substr(0, 40)) + "'");
   return *type;
 }
@@ -21,7 +34,7 @@ Scalar read_type(const TextCursor& cursor, std::string_view word) {
 PlyProperty read_property(TextCursor& cursor) {
   PlyProperty property;
   std::string_view word = next_word(cursor);
-  if (word == "list") {
+  if (lower(word) == "list") {
     property.count_type = read_type(cursor, next_word(cursor));
     word = next_word(cursor);
   }
@@ -32,11 +45,11 @@ PlyProperty read_property(TextCursor& cursor) {
 }
 
 PlyEncoding read_encoding(TextCursor& cursor) {
-  const std::string_view word = next_word(cursor);
+  const std::string word = lower(next_word(cursor));
   if (word == "ascii") return PlyEncoding::kText;
   if (word == "binary_little_endian") return PlyEncoding::kLittle;
   if (word == "binary_big_endian") return PlyEncoding::kBig;
-  cursor.fail("unknown PLY format '" + std::string(word.substr(0, 40)) + "'");
+  cursor.fail("unknown PLY format '" + word.substr(0, 40) + "'");
 }
 
 PlyElement read_element(TextCursor& cursor) {
@@ -57,6 +70,9 @@ void add_named(const TextCursor& cursor, const char* what, Item item, std::vecto
   const bool known = std::any_of(items.begin(), items.end(),
                                  [&](const Item& other) { return other.name == item.name; });
   if (known) cursor.fail(std::string("a second ") + what + " '" + item.name.substr(0, 40) + "'");
+  if (items.size() == kMostNames) {
+    cursor.fail("more than " + std::to_string(kMostNames) + " of a kind: " + what);
+  }
   items.push_back(std::move(item));
 }
 
@@ -90,7 +106,9 @@ const PlyElement* PlyHeader::find(std::string_view name) const {
 }
 
 PlyHeader read_ply_header(TextCursor& cursor) {
-  if (cursor.word() != "ply") cursor.fail("this is not a PLY file: it does not begin with 'ply'");
+  cursor.skip_blanks();
+  if (lower(cursor.word()) != "ply")
+    cursor.fail("this is not a PLY file: it does not begin with 'ply'");
   PlyHeader header;
   bool has_format = false;
   cursor.skip_line();
@@ -98,7 +116,7 @@ PlyHeader read_ply_header(TextCursor& cursor) {
     if (cursor.at_end()) cursor.fail("the header has no end_header");
     cursor.skip_blanks();
     const char* begin = cursor.position();
-    const std::string_view keyword = cursor.word();
+    const std::string keyword = lower(cursor.word());
     if (keyword == "end_header") break;
     if (keyword == "comment" || keyword == "obj_info") {
       cursor.skip_line();
@@ -113,8 +131,8 @@ PlyHeader read_ply_header(TextCursor& cursor) {
     } else if (keyword == "property") {
       if (header.elements.empty()) cursor.fail("a property before the first element");
       add_named(cursor, "property", read_property(cursor), header.elements.back().properties);
-    } else if (!keyword.empty()) {
-      cursor.fail("unknown keyword '" + std::string(keyword.substr(0, 40)) + "' in the header");
+    } else if (!keyword.empty() && header.unknown.size() < kMostNames) {
+      header.unknown.push_back(keyword.substr(0, kLongestKeyword));
     }
     cursor.skip_line();
   }

@@ -34,13 +34,15 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;
   std::vector<std::string> comments;  ///< whole lines: "comment by hand", "obj_info x"
+  std::vector<std::string> unknown;   ///< keywords of lines that are passed over
 
   /// The element called `name`, or null.
   const PlyElement* find(std::string_view name) const;
 };
 
-/// Reads the header, and leaves the cursor on the first byte after the line of end_header. Throws
-/// Failure for what is not PLY, and for names that are used twice.
+/// Reads the header, keywords in any case, and leaves the cursor on the first byte after the line
+/// of end_header. Throws Failure for what is not PLY, for names that are used twice, and for
+/// thousands of them.
 PlyHeader read_ply_header(TextCursor& cursor);
 
 }  // namespace beltrami::cli

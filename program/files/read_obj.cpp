@@ -7,6 +7,7 @@
 
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
+#include "files/notes.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 
@@ -142,47 +143,60 @@ class ObjReader {
       return;
     } else {
       require_text(keyword);
-      note_unknown(keyword);
+      note_unknown(mesh_.not_kept, "statements", keyword);
     }
     cursor_.skip_line();
   }
 
-  void note_unknown(std::string_view keyword) {
-    constexpr std::size_t kMostNames = 8;
-    const std::string note = "statements '" + std::string(keyword.substr(0, 40)) + "'";
-    auto& notes = mesh_.not_kept;
-    if (notes.size() > kMostNames || std::find(notes.begin(), notes.end(), note) != notes.end())
-      return;
-    notes.push_back(notes.size() == kMostNames ? "statements of other kinds" : note);
-  }
-
   /// A polyline or points, with its numbers made absolute: they must not depend on where it stands.
+  /// No run needs them, so wrong ones are left out, and not refused.
   void read_line(std::string_view keyword) {
     std::string line(keyword);
+    bool good = true;
     for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
-      const std::int64_t number = cursor_.integer("a vertex number");
-      const std::int64_t index = index_of(number, mesh_.vertex_count());
-      if (index < 0) cursor_.fail("there is no vertex number " + std::to_string(number));
+      const std::optional<std::int64_t> number = cursor_.integer_if_any();
+      const std::int64_t index = number ? index_of(*number, mesh_.vertex_count()) : -1;
+      if (index < 0) {
+        good = false;
+        break;
+      }
       line += ' ';
       line += std::to_string(index + 1);
       if (cursor_.peek() != '/') continue;
       cursor_.advance();
-      if (names_number()) cursor_.integer("a texture number");
+      good = good && (!names_number() || cursor_.integer_if_any());
+      if (!good) break;
       line += '/';
       line += std::to_string(index + 1);
     }
-    mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+    bad_lines_ |= !good;
+    if (good) mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
   }
 
   void read_face() {
     for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) read_corner();
-    const std::uint64_t face = mesh_.polygons.size(), corners = mesh_.polygons.open_corners();
-    if (corners < 3) {
-      cursor_.fail("face " + std::to_string(face) + " (counted from 0) has only " +
-                       std::to_string(corners) + " corners: a face needs 3 or more",
-                   BELTRAMI_ELEMENT_FACE, face);
+    if (mesh_.polygons.open_corners() >= 3) return mesh_.polygons.end_polygon();
+    set_aside();
+  }
+
+  /// A face of fewer than three corners is none: exporters write edges so. It becomes a line, or a
+  /// point, where its vertices are there already.
+  void set_aside() {
+    const std::vector<std::uint32_t>& corners = mesh_.polygons.corners();
+    const std::uint64_t count = mesh_.polygons.open_corners();
+    std::string line = count == 2 ? "l" : "p";
+    bool known = count > 0 && wants_attributes();
+    for (std::uint64_t c = corners.size() - count; c < corners.size(); ++c) {
+      known = known && corners[c] < mesh_.vertex_count();
+      line += ' ' + std::to_string(std::uint64_t{corners[c]} + 1);
     }
-    mesh_.polygons.end_polygon();
+    if (known) mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+    mesh_.polygons.drop_open_corners();
+    if (wants_uvs()) corner_textures_.resize(corners.size());
+    std::vector<std::uint32_t>& normals = mesh_.normals.of_corner;
+    normals.resize(std::min(normals.size(), corners.size()));
+    aside_.push_back(mesh_.polygons.size());
+    ++mesh_.short_faces;
   }
 
   /// After a slash: whether something stands there. Some writers leave slashes behind nothing.
@@ -264,18 +278,21 @@ class ObjReader {
   /// A cursor on the line of a face, found by walking the file again: lines are not stored.
   TextCursor at_face(std::uint64_t face) const {
     TextCursor cursor(text_, path_, true);
-    for (std::uint64_t seen = 0;; cursor.skip_line()) {
+    const auto aside = std::upper_bound(aside_.begin(), aside_.end(), face) - aside_.begin();
+    const std::uint64_t statement = face + static_cast<std::uint64_t>(aside);
+    for (std::uint64_t seen = 0; !cursor.at_end(); cursor.skip_line()) {
       cursor.skip_blanks();
-      if (cursor.peek() != 'f') continue;
       const std::string_view keyword = cursor.word();
-      if ((keyword == "f" || keyword == "fo") && seen++ == face) return cursor;
+      if ((keyword == "f" || keyword == "fo") && seen++ == statement) break;
     }
+    return cursor;
   }
 
   void finish_attributes() {
     if (other_encoding_) {
       mesh_.not_kept.emplace_back("the encoding of names (Latin-1 becomes UTF-8)");
     }
+    if (bad_lines_) mesh_.not_kept.emplace_back("lines and points that name what is no vertex");
     CornerNormals& normals = mesh_.normals;
     for (const std::uint32_t normal : normals.of_corner) {
       bad_normals_ |= normal != kNoNormal && normal >= normals.values.size() / 3;
@@ -333,6 +350,8 @@ class ObjReader {
   ExtraNumbers extra_;                          ///< after the coordinates of vertices
   bool unknown_numbers_ = false;                ///< something else stands behind those
   bool other_encoding_ = false;                 ///< a name is no UTF-8
+  bool bad_lines_ = false;                      ///< a line names what is no vertex
+  std::vector<std::uint64_t> aside_;            ///< per face set aside: faces before it
   bool bad_normals_ = false;                    ///< a normal is no number, or not there
   std::vector<double> textures_;                ///< u v per vt statement
   std::vector<std::uint32_t> corner_textures_;  ///< one per corner, kNoTexture for none

@@ -1,99 +1,81 @@
-// Geomview OFF in text: the header, three counts, a line per vertex, a line per face. Normals and
-// colours of vertices are kept, those of faces passed over.
+// Geomview OFF: the header, three counts, the vertices, the faces. Normals, colours and texture
+// coordinates of vertices are kept, colours of faces passed over.
+//
+// The format is one of words, which may be broken into lines anywhere. But many writers put
+// colours behind coordinates without a word of it in the header, which only the ends of lines tell
+// from the next vertex. So where each vertex has a line, its line is read, else its words.
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstddef>
 
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
+#include "files/off_header.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 
 namespace beltrami::cli {
 namespace {
 
-/// What follows the coordinates of a vertex, in this order.
-struct Layout {
-  bool normals = false, colours = false, uvs = false;
-};
-
-Layout read_header(TextCursor& cursor) {
-  cursor.skip_to_word();
-  const std::string_view header = cursor.word();
-  std::string_view rest = header;
-  const auto take = [&](std::string_view prefix) {
-    if (rest.substr(0, prefix.size()) != prefix) return false;
-    rest.remove_prefix(prefix.size());
-    return true;
-  };
-  Layout layout;
-  layout.uvs = take("ST");
-  layout.colours = take("C");
-  layout.normals = take("N");
-  if (rest != "OFF") cursor.fail("this is not an OFF file of three-dimensional vertices");
-  cursor.skip_blanks();
-  if (cursor.peek() == 'B') cursor.fail("binary OFF is not read");
-  return layout;
-}
-
-std::uint64_t read_count(TextCursor& cursor, const char* what) {
-  cursor.skip_to_word();
-  const std::int64_t count = cursor.integer(what);
-  if (count < 0 || count > kMaxIndex) {
-    cursor.fail(std::string(what) + " is out of range: " + std::to_string(count));
+/// Words of the line that the cursor is on, which it leaves.
+std::uint64_t words_of_line(TextCursor& cursor) {
+  std::uint64_t words = 0;
+  for (cursor.skip_blanks(); !cursor.at_line_end(); cursor.skip_blanks()) {
+    // A backslash ends a word for other formats; here it is a word of no meaning.
+    if (cursor.word().empty()) cursor.advance();
+    ++words;
   }
-  return static_cast<std::uint64_t>(count);
-}
-
-/// Returns whether something stands behind the corners: a colour.
-bool read_face(TextCursor& cursor, MeshFile& mesh) {
-  cursor.skip_to_word();
-  const std::uint64_t face = mesh.polygons.size();
-  const std::int64_t corners = cursor.integer("a corner count");
-  const auto name = [&] { return "face " + std::to_string(face) + " (counted from 0)"; };
-  if (corners < 3) {
-    cursor.fail(name() + " has " + std::to_string(corners) + " corners: a face needs 3 or more",
-                BELTRAMI_ELEMENT_FACE, face);
-  }
-  const auto vertices = static_cast<std::int64_t>(mesh.vertex_count());
-  for (std::int64_t k = 0; k < corners; ++k) {
-    const std::int64_t index = cursor.integer("a vertex number");
-    if (index < 0 || index >= vertices) {
-      throw Failure(BELTRAMI_E_INDEX_OUT_OF_RANGE,
-                    cursor.place() + name() + " names vertex " + std::to_string(index) +
-                        ", but the file has " + std::to_string(vertices),
-                    BELTRAMI_ELEMENT_FACE, face);
-    }
-    mesh.polygons.add_corner(static_cast<std::uint32_t>(index));
-  }
-  mesh.polygons.end_polygon();
-  cursor.skip_blanks();
-  const bool more = !cursor.at_line_end();
   cursor.skip_line();
-  return more;
+  return words;
+}
+
+/// Whether each vertex and each face begins a line. `cursor` is a copy, before the first vertex.
+bool has_lines(TextCursor cursor, const OffHeader& header) {
+  std::uint64_t lines = 0;
+  bool places = true, whole = true;  // each line of a vertex has coordinates, and all numbers
+  for (cursor.skip_to_word(); !cursor.at_end(); cursor.skip_to_word(), ++lines) {
+    const std::uint64_t words = words_of_line(cursor);
+    if (lines >= header.vertices) continue;
+    places = places && words >= header.coordinates();
+    whole = whole && words >= header.least_numbers();
+  }
+  const std::uint64_t items = header.vertices + header.faces;
+  // Faces may be broken into more lines than one. Some writers leave numbers out that the header
+  // has: then the lines are those of vertices only if there is one for each item.
+  return lines >= items && (whole || (places && lines == items));
 }
 
 class OffVertices {
  public:
-  explicit OffVertices(Layout layout) : layout_(layout) {}
+  OffVertices(const OffHeader& header, bool lines) : header_(header), lines_(lines) {}
 
   void read(TextCursor& cursor, MeshFile& mesh) {
-    cursor.skip_to_word();
-    for (int k = 0; k < 3; ++k) mesh.positions.push_back(cursor.number("a coordinate"));
-    unknown_ |= extra_.read(cursor, mesh.vertex_count() - 1);
-    cursor.skip_line();
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back(next(cursor, "a coordinate"));
+    if (header_.homogeneous) divide(cursor, mesh);
+    const std::uint64_t row = mesh.vertex_count() - 1;
+    if (lines_) {
+      unknown_ |= extra_.read(cursor, row);
+      cursor.skip_line();
+      return;
+    }
+    std::array<double, ExtraNumbers::kWidth> numbers;
+    const std::size_t count = header_.numbers_behind();
+    for (std::size_t k = 0; k < count; ++k) numbers[k] = next(cursor, "a number of a vertex");
+    extra_.add(row, std::span(numbers).first(count));
   }
 
-  void finish(MeshFile& mesh) const {
+  void finish(MeshFile& mesh, bool wants_uvs) const {
     const std::uint64_t rows = mesh.vertex_count();
     std::size_t at = 0;
-    if (layout_.normals && extra_.width() >= 3) {
+    if (header_.normals && extra_.width() >= 3) {
       for (const char* name : {"nx", "ny", "nz"}) {
         mesh.vertex_columns.push_back(extra_.column(at++, name, rows));
       }
     }
     const std::size_t last =
-        extra_.width() - std::min(extra_.width(), std::size_t(2 * layout_.uvs));
-    if (layout_.colours && (last == at + 3 || last == at + 4)) {
+        extra_.width() - std::min(extra_.width(), std::size_t(2 * header_.uvs));
+    if (header_.colours && (last == at + 3 || last == at + 4)) {
       const double scale = extra_.exceeds_one(at) ? 1.0 / 255 : 1;
       mesh.unit_colours = true;
       constexpr std::array<const char*, 4> kNames = {"red", "green", "blue", "alpha"};
@@ -102,37 +84,122 @@ class OffVertices {
       }
     }
     if (unknown_ || at < last) mesh.not_kept.emplace_back("numbers after the coordinates");
+    if (wants_uvs) take_uvs(mesh, last);
   }
 
  private:
-  Layout layout_;
+  static double next(TextCursor& cursor, const char* what) {
+    cursor.skip_to_word();
+    return cursor.number(what);
+  }
+
+  /// The fourth coordinate divides the others.
+  static void divide(TextCursor& cursor, MeshFile& mesh) {
+    const double weight = next(cursor, "the fourth coordinate");
+    for (std::size_t k = 1; k <= 3; ++k) mesh.positions[mesh.positions.size() - k] /= weight;
+  }
+
+  void take_uvs(MeshFile& mesh, std::size_t first) const {
+    if (extra_.width() < first + 2) return;
+    const std::uint64_t rows = mesh.vertex_count();
+    const Column u = extra_.column(first, "s", rows), v = extra_.column(first + 1, "t", rows);
+    for (std::uint64_t i = 0; i < rows; ++i) mesh.uvs.insert(mesh.uvs.end(), {u[i], v[i]});
+  }
+
+  OffHeader header_;
+  bool lines_;
   ExtraNumbers extra_;
   bool unknown_ = false;  ///< something else stands behind the numbers
+};
+
+class OffFaces {
+ public:
+  OffFaces(TextCursor& cursor, const OffHeader& header, bool lines, MeshFile& mesh)
+      : cursor_(cursor), header_(header), lines_(lines), mesh_(mesh) {}
+
+  void read() {
+    for (std::uint64_t i = 0; i < header_.faces; ++i) {
+      cursor_.skip_to_word();
+      if (!cursor_.at_end() && read_face(i)) continue;
+      mesh_.polygons.drop_open_corners();
+      mesh_.truncated = "the file is truncated: it ends in face " + std::to_string(i) +
+                        " (counted from 0) of " + std::to_string(header_.faces);
+      break;
+    }
+    if (colours_) mesh_.not_kept.emplace_back("colours of faces");
+  }
+
+ private:
+  /// Returns false where the file ends first.
+  bool read_face(std::uint64_t face) {
+    const std::int64_t corners = cursor_.integer("a corner count");
+    if (corners < 0) {
+      cursor_.fail(name_of(face) + " has " + std::to_string(corners) + " corners",
+                   BELTRAMI_ELEMENT_FACE, face);
+    }
+    for (std::int64_t k = 0; k < corners; ++k) {
+      cursor_.skip_to_word();
+      if (cursor_.at_end()) return false;
+      add_corner(face);
+    }
+    if (corners < 3) {
+      mesh_.polygons.drop_open_corners();
+      ++mesh_.short_faces;
+    } else {
+      mesh_.polygons.end_polygon();
+    }
+    if (!lines_) return true;
+    cursor_.skip_blanks();
+    colours_ |= !cursor_.at_line_end();
+    cursor_.skip_line();
+    return true;
+  }
+
+  void add_corner(std::uint64_t face) {
+    const auto vertices = static_cast<std::int64_t>(mesh_.vertex_count());
+    const std::int64_t index = cursor_.integer("a vertex number");
+    if (index < 0 || index >= vertices) {
+      throw Failure(BELTRAMI_E_INDEX_OUT_OF_RANGE,
+                    cursor_.place() + name_of(face) + " names vertex " + std::to_string(index) +
+                        ", but the file has " + std::to_string(vertices),
+                    BELTRAMI_ELEMENT_FACE, face);
+    }
+    mesh_.polygons.add_corner(static_cast<std::uint32_t>(index));
+  }
+
+  static std::string name_of(std::uint64_t face) {
+    return "face " + std::to_string(face) + " (counted from 0)";
+  }
+
+  TextCursor& cursor_;
+  const OffHeader& header_;
+  bool lines_;
+  MeshFile& mesh_;
+  bool colours_ = false;  ///< something stands behind the corners
 };
 
 }  // namespace
 
 MeshFile read_off(std::string_view text, const std::string& path, Content content) {
-  if (content != Content::kSurface) {
-    throw Failure(path + ": OFF files carry no texture coordinates: use OBJ or PLY");
-  }
   TextCursor cursor(text, path);
-  OffVertices reader(read_header(cursor));
-  const std::uint64_t vertices = read_count(cursor, "the vertex count");
-  const std::uint64_t faces = read_count(cursor, "the face count");
-  cursor.skip_line();  // the edge count, which nobody fills in
-  if (vertices == 0) throw Failure(path + ": no vertices");
-  if (faces == 0) throw Failure(path + ": no faces");
+  const OffHeader header = read_off_header(cursor);
+  const bool wants_uvs = content != Content::kSurface;
+  if (wants_uvs && !header.uvs) {
+    throw Failure(path + ": this OFF file carries no texture coordinates: use OBJ or PLY");
+  }
+  if (header.vertices == 0) throw Failure(path + ": no vertices");
+  if (header.faces == 0) throw Failure(path + ": no faces");
+  const bool lines = has_lines(cursor, header);
 
   MeshFile mesh;
-  // A line has two bytes at least: a wrong count must not make us reserve what is not there.
-  mesh.positions.reserve(3 * std::min<std::uint64_t>(vertices, text.size() / 6));
-  mesh.polygons.reserve(std::min<std::uint64_t>(faces, text.size() / 8));
-  for (std::uint64_t i = 0; i < vertices; ++i) reader.read(cursor, mesh);
-  reader.finish(mesh);
-  bool colours = false;
-  for (std::uint64_t i = 0; i < faces; ++i) colours |= read_face(cursor, mesh);
-  if (colours) mesh.not_kept.emplace_back("colours of faces");
+  // A word has two bytes at least: a wrong count must not make us reserve what is not there.
+  mesh.positions.reserve(3 * std::min<std::uint64_t>(header.vertices, text.size() / 6));
+  mesh.polygons.reserve(std::min<std::uint64_t>(header.faces, text.size() / 8));
+  OffVertices vertices(header, lines);
+  for (std::uint64_t i = 0; i < header.vertices; ++i) vertices.read(cursor, mesh);
+  vertices.finish(mesh, wants_uvs);
+  OffFaces(cursor, header, lines, mesh).read();
+  if (mesh.polygons.empty()) throw Failure(path + ": no faces");
   return mesh;
 }
 

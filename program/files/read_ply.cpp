@@ -9,9 +9,11 @@
 
 #include "files/column.h"
 #include "files/mesh_file.h"
+#include "files/notes.h"
 #include "files/ply_header.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
+#include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -24,6 +26,7 @@ class Values {
 
   /// False at the end of the file.
   bool next(Scalar type, double& value) {
+    throw_if_interrupted();
     if (encoding_ == PlyEncoding::kText) {
       cursor_.skip_to_word();
       if (cursor_.at_end()) return false;
@@ -102,6 +105,9 @@ class PlyReader {
     if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
     require_indices();
     if (!mesh_.corner_uvs.of_corner.empty()) unite_corner_uvs(mesh_);
+    for (const std::string& keyword : header_.unknown) {
+      note_unknown(mesh_.not_kept, "header lines", keyword);
+    }
     mesh_.comments = std::move(header_.comments);
     return std::move(mesh_);
   }
@@ -219,7 +225,9 @@ class PlyReader {
     if (!with_columns && element.properties.size() > 1) {
       mesh_.not_kept.emplace_back("face properties beside triangle strips");
     }
+    std::vector<std::uint64_t> rows;  // of the faces, where some rows are none
     for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::uint64_t before = mesh_.polygons.size();
       for (const Target& target : targets) {
         if (target.property == &corners) {
           read_face(corners, element, i);
@@ -229,8 +237,26 @@ class PlyReader {
           read_value(target, element, i, mesh_.face_columns, nullptr);
         }
       }
-      if (wants_uvs() && with_columns && textures != nullptr) require_corner_uvs(i);
+      if (mesh_.polygons.size() == before) {
+        set_aside(i, rows);
+      } else {
+        if (mesh_.short_faces > 0) rows.push_back(i);
+        if (wants_uvs() && with_columns && textures != nullptr) require_corner_uvs(i);
+      }
     }
+    if (mesh_.short_faces == 0) return;
+    for (Column& column : mesh_.face_columns) column = picked(column, rows);
+  }
+
+  /// A row of fewer than three corners is no face: exporters write edges so.
+  void set_aside(std::uint64_t row, std::vector<std::uint64_t>& rows) {
+    if (mesh_.short_faces++ == 0) {
+      for (std::uint64_t i = 0; i < row; ++i) rows.push_back(i);
+    }
+    CornerUvs& uvs = mesh_.corner_uvs;
+    const std::size_t corners = mesh_.polygons.corners().size();
+    uvs.values.resize(std::min(uvs.values.size(), 2 * corners));
+    uvs.of_corner.resize(std::min(uvs.of_corner.size(), corners));
   }
 
   /// The corners of a face may come before their UVs or after them.
@@ -255,14 +281,10 @@ class PlyReader {
 
   void read_face(const PlyProperty& property, const PlyElement& element, std::uint64_t item) {
     const std::uint64_t count = read_list_size(property, element, item);
-    if (count < 3) {
-      throw Failure(values_.place(path_) + face_name() + " has " + std::to_string(count) +
-                        " corners: a face needs 3 or more",
-                    BELTRAMI_ELEMENT_FACE, mesh_.polygons.size());
-    }
     for (std::uint64_t k = 0; k < count; ++k) {
       mesh_.polygons.add_corner(to_vertex(next(property.type, element, item)));
     }
+    if (count < 3) return mesh_.polygons.drop_open_corners();
     mesh_.polygons.end_polygon();
   }
 
@@ -350,10 +372,6 @@ class PlyReader {
                                   std::to_string(element.count));
     }
     return value;
-  }
-
-  std::string face_name() const {
-    return "face " + std::to_string(mesh_.polygons.size()) + " (counted from 0)";
   }
 
   /// What cannot be a vertex fails here, and what is not one too where the vertices came first, as

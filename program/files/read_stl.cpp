@@ -1,13 +1,17 @@
 // STL, text and binary. STL repeats the coordinates of every corner: corners with the same
 // coordinates become one vertex, numbered by first appearance. Names of solids and attributes of
 // binary facets are kept; normals of facets are not, being those of their corners.
+#include <array>
 #include <bit>
+#include <limits>
 
 #include "files/column.h"
 #include "files/mesh_file.h"
+#include "files/notes.h"
 #include "files/point_numbers.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
+#include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -41,20 +45,35 @@ std::uint32_t little_u32(const char* bytes) {
   return value;
 }
 
-/// The size is the only certain mark: many binary files begin with "solid".
+/// How many facets the header of a binary file counts. Writers that did not come back to count
+/// left nothing there, or all bits.
+std::uint64_t counted_facets(std::string_view text) {
+  const std::uint32_t count = little_u32(text.data() + kHeaderBytes - 4);
+  const std::uint64_t room = (text.size() - kHeaderBytes) / kFacetBytes;
+  const bool uncounted = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
+  return uncounted && (text.size() - kHeaderBytes) % kFacetBytes == 0 ? room : count;
+}
+
+/// A count that fits the size is the only certain mark: many binary files begin with "solid", and
+/// some have bytes behind their facets. In text four characters stand there, which are a count of
+/// gigabytes.
 bool is_binary(std::string_view text) {
-  return text.size() >= kHeaderBytes &&
-         text.size() == kHeaderBytes + kFacetBytes * std::uint64_t{little_u32(text.data() + 80)};
+  if (text.size() < kHeaderBytes + kFacetBytes) return false;
+  const std::uint64_t count = counted_facets(text);
+  return count > 0 && count <= (text.size() - kHeaderBytes) / kFacetBytes;
 }
 
 MeshFile read_binary(std::string_view text, const std::string& path) {
   MeshFile mesh;
   Corners corners(mesh, path);
-  const std::uint64_t faces = (text.size() - kHeaderBytes) / kFacetBytes;
+  const std::uint64_t faces = counted_facets(text);
+  const std::uint64_t behind = text.size() - kHeaderBytes - kFacetBytes * faces;
+  if (behind > 0) mesh.not_kept.push_back(std::to_string(behind) + " bytes behind the facets");
   mesh.polygons.reserve(faces);
   Column attributes("attributes", Scalar::kU16);
   bool any = false;
   for (std::uint64_t i = 0; i < faces; ++i) {
+    throw_if_interrupted();
     const char* facet = text.data() + kHeaderBytes + kFacetBytes * i + 12;  // after the normal
     for (int k = 0; k < 3; ++k, facet += 12) {
       corners.add(std::bit_cast<float>(little_u32(facet)),
@@ -72,6 +91,15 @@ MeshFile read_binary(std::string_view text, const std::string& path) {
   return mesh;
 }
 
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+/// Keywords in any case. What is no keyword is passed over with its line.
 class TextReader {
  public:
   TextReader(std::string_view text, const std::string& path)
@@ -79,37 +107,61 @@ class TextReader {
 
   MeshFile read() {
     for (cursor_.skip_to_word(); !cursor_.at_end(); cursor_.skip_to_word()) read_statement();
-    if (in_solid_) cursor_.fail("the file is truncated: it has no endsolid");
+    end_of_file();
     corners_.finish();
     return std::move(mesh_);
   }
 
  private:
   void read_statement() {
-    const std::string_view keyword = cursor_.word();
+    const std::string keyword = lower(cursor_.word());
     if (keyword == "vertex") {
-      const double x = cursor_.number("a coordinate"), y = cursor_.number("a coordinate");
-      corners_.add(x, y, cursor_.number("a coordinate"));
-    } else if (keyword == "endloop" || keyword == "facet" || keyword == "endsolid") {
-      end_face(keyword == "endloop" ? 3 : 0);
-      if (keyword != "endloop") cursor_.skip_line();  // a normal or a name
-      if (keyword == "endsolid") in_solid_ = false;
+      read_vertex();
+    } else if (keyword == "endloop" || keyword == "endfacet" || keyword == "facet") {
+      end_face();
+      in_facet_ = keyword == "facet";
+      if (keyword == "facet") cursor_.skip_line();  // a normal
+    } else if (keyword == "endsolid") {
+      end_face();
+      in_solid_ = in_facet_ = false;
+      cursor_.skip_line();  // a name
     } else if (keyword == "solid") {
       in_solid_ = true;
       read_name();
-    } else if (keyword != "outer" && keyword != "loop" && keyword != "endfacet") {
-      cursor_.fail("unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
+    } else if (keyword != "outer" && keyword != "loop") {
+      note_unknown(mesh_.not_kept, "lines", keyword);
+      cursor_.skip_line();
     }
   }
 
-  void end_face(std::uint64_t expected) {
-    const std::uint64_t face = mesh_.polygons.size(), found = mesh_.polygons.open_corners();
-    if (found != expected) {
-      cursor_.fail("face " + std::to_string(face) + " (counted from 0) has " +
-                       std::to_string(found) + " corners instead of 3",
-                   BELTRAMI_ELEMENT_FACE, face);
+  void read_vertex() {
+    std::array<double, 3> place{};
+    for (double& coordinate : place) {
+      cursor_.skip_blanks();
+      if (cursor_.at_end()) return;  // and the facet ends early
+      coordinate = cursor_.number("a coordinate");
     }
-    if (expected > 0) mesh_.polygons.end_polygon();
+    corners_.add(place[0], place[1], place[2]);
+  }
+
+  /// The vertices since the last face are one.
+  void end_face() {
+    const std::uint64_t corners = mesh_.polygons.open_corners();
+    if (corners == 0) return;
+    if (corners >= 3) return mesh_.polygons.end_polygon();
+    mesh_.polygons.drop_open_corners();
+    ++mesh_.short_faces;
+  }
+
+  /// Some writers leave the last line out; but a copy that was cut short ends so, too.
+  void end_of_file() {
+    if (in_facet_ || mesh_.polygons.open_corners() > 0) {
+      mesh_.polygons.drop_open_corners();
+      mesh_.truncated = "the file is truncated: it ends in face " +
+                        std::to_string(mesh_.polygons.size()) + " (counted from 0)";
+    } else if (in_solid_) {
+      mesh_.not_kept.emplace_back("what may be missing of the input (it has no endsolid)");
+    }
   }
 
   /// The name of a solid is an object of the mesh.
@@ -127,8 +179,18 @@ class TextReader {
   TextCursor cursor_;
   MeshFile mesh_;
   Corners corners_;
-  bool in_solid_ = false;
+  bool in_solid_ = false, in_facet_ = false;
 };
+
+/// Whether the text begins as STL does, solids or facets alone, in any case and behind blanks. The
+/// header of a binary file that is cut short may do so, too, but its count has zero bytes.
+bool is_text(std::string_view text, const std::string& path) {
+  if (text.substr(0, kHeaderBytes).find('\0') != std::string_view::npos) return false;
+  TextCursor cursor(text, path);
+  cursor.skip_to_word();
+  const std::string word = lower(cursor.word());
+  return word == "solid" || word == "facet";
+}
 
 }  // namespace
 
@@ -139,7 +201,7 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
   MeshFile mesh;
   if (is_binary(text)) {
     mesh = read_binary(text, path);
-  } else if (text.substr(0, 5) == "solid") {
+  } else if (is_text(text, path)) {
     mesh = TextReader(text, path).read();
   } else {
     throw Failure(path + (text.size() < kHeaderBytes
@@ -148,7 +210,9 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
                                     std::to_string(little_u32(text.data() + 80)) +
                                     " faces do not fit its size"));
   }
-  if (mesh.polygons.empty()) throw Failure(path + ": no faces");
+  if (mesh.polygons.empty()) {
+    throw Failure(path + ": " + (mesh.truncated.empty() ? "no faces" : mesh.truncated));
+  }
   return mesh;
 }
 

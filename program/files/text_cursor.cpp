@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "process/failure.h"
+#include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -25,6 +26,19 @@ bool ends_number(const char* at, const char* end) {
   }
 }
 
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// Whether a comment begins on this line: it ends with it, whatever its last character is, for
+/// names of folders end in a backslash. Within a word # is a part of a name.
+bool has_comment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at == 0 || is_blank(line[at - 1])) return true;
+  }
+  return false;
+}
+
 /// from_chars leaves numbers beyond the range of a double alone; strtod rounds them, to zero, a
 /// subnormal or infinity. The program never sets a locale, so strtod reads a point.
 double round_extreme(const char* begin, const char* end) {
@@ -43,7 +57,7 @@ bool TextCursor::skip_continuation() {
 }
 
 void TextCursor::skip_line() {
-  const bool comment = peek() == '#';
+  throw_if_interrupted();
   while (at_ != end_) {
     const void* found = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
     if (!found) {
@@ -53,7 +67,8 @@ void TextCursor::skip_line() {
     const char* newline = static_cast<const char*>(found);
     const char* last = newline;
     if (last != at_ && last[-1] == '\r') --last;
-    const bool continued = continuations_ && !comment && last != at_ && last[-1] == '\\';
+    const bool continued = continuations_ && last != at_ && last[-1] == '\\' &&
+                           !has_comment({at_, static_cast<std::size_t>(last - at_)});
     at_ = newline + 1;
     ++line_;
     if (!continued) return;
@@ -67,6 +82,7 @@ std::string_view TextCursor::word() {
 }
 
 std::optional<double> TextCursor::number_if_any() {
+  throw_if_interrupted();
   skip_blanks();
   const char* begin = at_;
   if (at_ != end_ && *at_ == '+' && at_ + 1 != end_ && at_[1] != '-') ++begin;
@@ -84,16 +100,23 @@ double TextCursor::number(const char* what) {
   return *value;
 }
 
-std::int64_t TextCursor::integer(const char* what) {
+std::optional<std::int64_t> TextCursor::integer_if_any() {
+  throw_if_interrupted();
   skip_blanks();
   const char* begin = at_;
   if (at_ != end_ && *at_ == '+' && at_ + 1 != end_ && at_[1] != '-') ++begin;
   std::int64_t value = 0;
   const auto [past, error] = std::from_chars(begin, end_, value);
   const bool ended = past != end_ && *past == '/' ? true : ends_number(past, end_);
-  if (error != std::errc() || !ended) fail_word(what);
+  if (error != std::errc() || !ended) return std::nullopt;
   at_ = past;
   return value;
+}
+
+std::int64_t TextCursor::integer(const char* what) {
+  const std::optional<std::int64_t> value = integer_if_any();
+  if (!value) fail_word(what);
+  return *value;
 }
 
 void TextCursor::fail_word(const char* what) {

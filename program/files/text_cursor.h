@@ -9,7 +9,8 @@
 namespace beltrami::cli {
 
 /// Words are separated by blanks; a carriage return is a blank, so that CRLF needs no other care.
-/// With continuations, a backslash before a line end is a blank too (OBJ).
+/// With continuations, a backslash before a line end is a blank too (OBJ). Whatever moves over
+/// words, numbers or lines throws the Failure of a cancelled command where interrupted().
 class TextCursor {
  public:
   /// `text` and `path` must outlive the cursor.
@@ -65,6 +66,8 @@ class TextCursor {
 
   /// The whole number here. It ends at a blank, a line end or a slash.
   std::int64_t integer(const char* what);
+  /// The same; where none stands here, nothing, and the cursor is before what does.
+  std::optional<std::int64_t> integer_if_any();
 
   /// "path: line n: ", the start of messages.
   std::string place() const;

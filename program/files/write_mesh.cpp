@@ -10,26 +10,14 @@ namespace beltrami::cli {
 void write_mesh(const MeshFile& mesh, const std::string& path, const Sink& sink) {
   Writer out(sink);
   if (format_of(path) == MeshFormat::kPly) {
-    write_ply(mesh, out);
+    write_ply(mesh, path, out);
   } else {
-    write_obj(mesh, out);
+    write_obj(mesh, path, out);
   }
   out.flush();
 }
 
 namespace {
-
-/// The items of a column at these places.
-Column picked(const Column& column, const std::vector<std::uint64_t>& places) {
-  Column result(column.name(), column.type(), column.is_list());
-  for (const std::uint64_t place : places) {
-    for (std::uint64_t i = column.begin(place); i < column.end(place); ++i) {
-      result.append(column[i]);
-    }
-    if (column.is_list()) result.end_list();
-  }
-  return result;
-}
 
 std::vector<std::uint32_t> picked(const std::vector<std::uint32_t>& values,
                                   const std::vector<std::uint32_t>& places) {
@@ -70,11 +58,15 @@ void replace_faces(MeshFile& mesh, std::vector<std::uint32_t> corners) {
 
 std::vector<std::string> not_kept(const MeshFile& mesh, const std::string& path) {
   std::vector<std::string> found = mesh.not_kept;
+  if (mesh.short_faces > 0) {
+    found.push_back(std::to_string(mesh.short_faces) +
+                    (mesh.short_faces == 1 ? " face" : " faces") + " of fewer than three corners");
+  }
   const MeshFormat format = format_of(path);
   if (format == MeshFormat::kGltf) return found;  // write_gltf says the rest
   if (mesh.gltf) found.emplace_back("all of glTF but its triangles");
   const bool ply = format == MeshFormat::kPly;
-  for (std::string& what : ply ? not_in_ply(mesh) : not_in_obj(mesh)) {
+  for (std::string& what : ply ? not_in_ply(mesh, path) : not_in_obj(mesh, path)) {
     found.push_back(std::move(what));
   }
   return found;

@@ -10,11 +10,12 @@
 
 namespace beltrami::cli {
 
-void write_obj(const MeshFile& mesh, Writer& out);
-void write_ply(const MeshFile& mesh, Writer& out);
+/// `path`: of the output, to which names of other files are to lead on.
+void write_obj(const MeshFile& mesh, const std::string& path, Writer& out);
+void write_ply(const MeshFile& mesh, const std::string& path, Writer& out);
 
 /// What write_obj and write_ply leave out.
-std::vector<std::string> not_in_obj(const MeshFile& mesh);
-std::vector<std::string> not_in_ply(const MeshFile& mesh);
+std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& path);
+std::vector<std::string> not_in_ply(const MeshFile& mesh, const std::string& path);
 
 }  // namespace beltrami::cli

@@ -6,6 +6,7 @@
 
 #include "files/column.h"
 #include "files/mesh_file.h"
+#include "files/moved_names.h"
 #include "files/writer.h"
 
 namespace beltrami::cli {
@@ -137,13 +138,14 @@ std::string without_uvs(const std::string& line) {
 
 }  // namespace
 
-void write_obj(const MeshFile& mesh, Writer& out) {
+void write_obj(const MeshFile& mesh, const std::string& path, Writer& out) {
+  MovedNames names(mesh, path);
   const bool per_vertex = mesh.corner_uvs.of_corner.empty();
   out.text(per_vertex ? "# UVs by beltrami: one vt per vertex, in vertex order\n"
                       : "# UVs by beltrami\n");
   auto next = mesh.statements.begin();
   const auto write_statement = [&] {
-    out.text(per_vertex || !is_line(*next) ? next->text : without_uvs(next->text));
+    out.text(per_vertex || !is_line(*next) ? names.line(next->text) : without_uvs(next->text));
     out.text("\n");
     ++next;
   };
@@ -161,10 +163,12 @@ void write_obj(const MeshFile& mesh, Writer& out) {
   while (next != end) write_statement();
 }
 
-std::vector<std::string> not_in_obj(const MeshFile& mesh) {
+std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& path) {
   std::vector<const Column*> kept = extra_columns(mesh);
   for (const Column* column : normal_columns(mesh)) kept.push_back(column);
-  std::vector<std::string> found;
+  MovedNames names(mesh, path);
+  for (const Statement& statement : mesh.statements) names.line(statement.text);
+  std::vector<std::string> found = names.notes();
   for (const Column& column : mesh.vertex_columns) {
     if (std::find(kept.begin(), kept.end(), &column) != kept.end()) continue;
     found.push_back("vertex property " + column.name());

@@ -9,6 +9,7 @@
 
 #include "files/column.h"
 #include "files/mesh_file.h"
+#include "files/moved_names.h"
 #include "files/polygons.h"
 #include "files/uv_numbers.h"
 #include "files/writer.h"
@@ -218,7 +219,7 @@ std::string subject_of(const Statement& statement) {
 
 }  // namespace
 
-void write_ply(const MeshFile& mesh, Writer& out) {
+void write_ply(const MeshFile& mesh, const std::string& path, Writer& out) {
   const std::vector<Column> normals = vertex_normals(mesh);
   const std::vector<Column> colours = colours_in_bytes(mesh);
   std::vector<const Column*> vertex_columns = pointers_to(mesh.vertex_columns);
@@ -236,9 +237,10 @@ void write_ply(const MeshFile& mesh, Writer& out) {
   out.text("ply\nformat binary_little_endian 1.0\n");
   out.text(kOwnComment);
   out.text("\n");
+  MovedNames names(mesh, path);
   for (const std::string& comment : mesh.comments) {
     if (comment == kOwnComment) continue;
-    out.text(comment);
+    out.text(names.line(comment));
     out.text("\n");
   }
   declare_element("vertex", mesh.vertex_count(), out);
@@ -268,8 +270,10 @@ void write_ply(const MeshFile& mesh, Writer& out) {
   }
 }
 
-std::vector<std::string> not_in_ply(const MeshFile& mesh) {
-  std::vector<std::string> found;
+std::vector<std::string> not_in_ply(const MeshFile& mesh, const std::string& path) {
+  MovedNames names(mesh, path);
+  for (const std::string& comment : mesh.comments) names.line(comment);
+  std::vector<std::string> found = names.notes();
   for (const Statement& statement : mesh.statements) {
     std::string subject = subject_of(statement);
     if (std::find(found.begin(), found.end(), subject) == found.end()) {

@@ -10,21 +10,30 @@
 namespace beltrami::cli {
 namespace {
 
-/// A component of a page at a place in [0, 1]^2, between the centres of texels; at the edges that
-/// of the outermost ones.
-double sample(const Pixels& page, double u, double v, int component) {
-  const double x = std::clamp(u * page.width - 0.5, 0.0, page.width - 1.0);
-  const double y = std::clamp((1 - v) * page.height - 0.5, 0.0, page.height - 1.0);
-  const int left = static_cast<int>(x), top = static_cast<int>(y);
-  const int right = std::min(left + 1, page.width - 1), bottom = std::min(top + 1, page.height - 1);
-  const auto at = [&](int column, int row) {
-    const std::size_t texel = static_cast<std::size_t>(row) * page.row_size() +
-                              static_cast<std::size_t>(column * page.components + component);
+/// The texel of a row of `count` at this place of it, which may be beyond its edges.
+int texel_at(double place, int count, Beyond beyond) {
+  const double size = count;
+  if (beyond == Beyond::kClamp) return static_cast<int>(std::clamp(place, 0.0, size - 1));
+  const double period = beyond == Beyond::kRepeat ? size : 2 * size;
+  const double first = place - period * std::floor(place / period);
+  // Rounding of a great number may leave the period.
+  const auto texel = static_cast<int>(std::clamp(first, 0.0, period - 1));
+  return texel < count ? texel : 2 * count - 1 - texel;
+}
+
+/// A component of a page at a place, between the centres of texels.
+double sample(const Pixels& page, double u, double v, int component, Beyond beyond) {
+  const double x = u * page.width - 0.5, y = (1 - v) * page.height - 0.5;
+  const double left = std::floor(x), top = std::floor(y);
+  const auto at = [&](double column, double row) {
+    const int i = texel_at(column, page.width, beyond), j = texel_at(row, page.height, beyond);
+    const std::size_t texel = static_cast<std::size_t>(j) * page.row_size() +
+                              static_cast<std::size_t>(i * page.components + component);
     return static_cast<double>(page.values[texel]);
   };
   const double s = x - left, t = y - top;
-  return (1 - t) * ((1 - s) * at(left, top) + s * at(right, top)) +
-         t * ((1 - s) * at(left, bottom) + s * at(right, bottom));
+  return (1 - t) * ((1 - s) * at(left, top) + s * at(left + 1, top)) +
+         t * ((1 - s) * at(left, top + 1) + s * at(left + 1, top + 1));
 }
 
 /// A step of the gutters: texels beside those that are filled become the mean of these.
@@ -63,7 +72,7 @@ void grow(Pixels& page, std::vector<bool>& filled) {
 }  // namespace
 
 Baked bake(const std::vector<BakedTriangle>& triangles, const SourceOf& source_of,
-           const std::vector<Pixels>& pages, int side, int margin) {
+           const std::vector<Pixels>& pages, Beyond beyond, int side, int margin) {
   Baked baked;
   Pixels& page = baked.image;
   page.width = page.height = side;
@@ -88,8 +97,8 @@ Baked bake(const std::vector<BakedTriangle>& triangles, const SourceOf& source_o
           for (int k = 0; k < page.components; ++k) {
             page.values[texel * static_cast<std::size_t>(page.components) +
                         static_cast<std::size_t>(k)] =
-                static_cast<std::uint8_t>(sample(pages[source->page], source->u, source->v, k) +
-                                          0.5);
+                static_cast<std::uint8_t>(
+                    sample(pages[source->page], source->u, source->v, k, beyond) + 0.5);
           }
         });
   }

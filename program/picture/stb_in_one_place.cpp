@@ -28,6 +28,7 @@ void* reallocate(void* old, std::size_t size) {
 #endif
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_JPEG
 #define STBI_ONLY_PNG
 #define STBI_NO_STDIO
 #define STBI_MALLOC(size) allocate(size)
@@ -60,7 +61,7 @@ std::string png_bytes(int width, int height, int components, const std::uint8_t*
   return bytes;
 }
 
-std::optional<Pixels> read_png(std::string_view bytes) {
+std::optional<Pixels> read_image(std::string_view bytes) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
   Pixels image;
   std::uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),

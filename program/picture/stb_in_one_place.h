@@ -1,4 +1,4 @@
-// What we use of the stb headers: PNG and a small pixel font.
+// What we use of the stb headers: PNG, JPEG to read, and a small pixel font.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ struct Pixels {
 /// The bytes of a PNG file of pixels with 1 to 4 components.
 std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels);
 
-/// What a PNG file shows, with 8 bits for each component; nothing where it is none.
-std::optional<Pixels> read_png(std::string_view bytes);
+/// What a PNG or JPEG file shows, with 8 bits for each component; nothing where it is none.
+std::optional<Pixels> read_image(std::string_view bytes);
 
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {

@@ -158,7 +158,7 @@ bool sync_directory(const char* path) noexcept {
 std::string read_file(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    throw Failure(path + ": is a directory, not a mesh file");
+    throw Failure(path + ": is a directory, not a file");
   }
   const int descriptor = open_binary(path.c_str(), O_RDONLY);
   if (descriptor < 0) fail(path, "cannot be opened");

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -15,8 +16,37 @@
 namespace beltrami::cli {
 namespace {
 
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+/// Bytes of a character of UTF-8 by its first one; 0 for what begins none.
+std::size_t size_of_character(unsigned char first) {
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first < 0xE0) return 2;
+  if (first >= 0xE0 && first < 0xF0) return 3;
+  return first >= 0xF0 && first < 0xF5 ? 4 : 0;
+}
+
+/// What a terminal obeys instead of showing it: control characters, also those of one byte in
+/// Latin-1; breaks of lines, and what turns the direction of writing.
+bool is_control(std::uint32_t character) {
+  return character < 0x20 || (character >= 0x7F && character < 0xA0) ||
+         (character >= 0x200E && character <= 0x200F) ||
+         (character >= 0x2028 && character <= 0x202E) ||
+         (character >= 0x2066 && character <= 0x2069);
+}
+
+/// Takes a character off `text`, and returns what a terminal may have of it.
+std::string_view take_shown(std::string_view& text) {
+  const auto first = static_cast<unsigned char>(text.front());
+  const std::size_t size = size_of_character(first);
+  std::uint32_t character = size > 1 ? first & (0xFFU >> (size + 1)) : first;
+  bool whole = size > 0 && size <= text.size();
+  for (std::size_t k = 1; whole && k < size; ++k) {
+    const auto next = static_cast<unsigned char>(text[k]);
+    whole = (next & 0xC0) == 0x80;
+    character = character << 6 | (next & 0x3F);
+  }
+  const std::string_view as_it_is = text.substr(0, whole ? size : 1);
+  text.remove_prefix(as_it_is.size());
+  return !whole ? "?" : is_control(character) ? " " : as_it_is;
 }
 
 /// Why the process is being terminated. Rethrowing needs no memory, other than copying would.
@@ -59,11 +89,10 @@ int exit_code_of(beltrami_status status) {
   }
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (is_control(c)) c = ' ';
-  }
-  return text;
+std::string one_line(std::string_view text) {
+  std::string line;
+  while (!text.empty()) line += take_shown(text);
+  return line;
 }
 
 int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept {
@@ -73,10 +102,12 @@ int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept 
   std::array<char, 4096>
       line;  // in one piece, if it fits, so that other programs' lines do not mix
   std::size_t used = 0;
-  for (const std::string_view part : parts) {
-    for (const char c : part) {
-      line[used++] = is_control(c) ? ' ' : c;
-      if (used == line.size()) write_all(kStandardError, {line.data(), std::exchange(used, 0)});
+  for (std::string_view part : parts) {
+    while (!part.empty()) {
+      for (const char c : take_shown(part)) {
+        line[used++] = c;
+        if (used == line.size()) write_all(kStandardError, {line.data(), std::exchange(used, 0)});
+      }
     }
   }
   line[used++] = '\n';

@@ -53,10 +53,11 @@ class Failure : public std::runtime_error {
   std::uint64_t element;
 };
 
-/// `text` on one line: control characters become spaces.
-std::string one_line(std::string text);
+/// `text` on one line, as a terminal may have it: control characters of all kinds become spaces,
+/// what is no UTF-8 question marks.
+std::string one_line(std::string_view text);
 
-/// Says why the process fails: `parts` as one line on stderr, control characters as spaces. Only
+/// Says why the process fails: `parts` as one line on stderr, shown as by one_line(). Only
 /// the first call says anything, since it names what is to be mended first. Returns the exit code
 /// of the first call. Needs no memory.
 int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept;

@@ -2,9 +2,14 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <initializer_list>
+
+#if !defined(_WIN32)
+#include <unistd.h>
+#endif
 
 #include "process/failure.h"
 #include "process/leftovers.h"
@@ -18,13 +23,49 @@ alignas(std::atomic_ref<std::int32_t>::required_alignment) std::int32_t number_f
 std::atomic<beltrami_context*> target{nullptr};
 static_assert(std::atomic<beltrami_context*>::is_always_lock_free);
 
-/// The process looks on when it next can.
+/// When the first signal came, in nanoseconds of a clock that only rises; 0 before.
+std::atomic<std::int64_t> first_at{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+/// A terminal, a job runner and its shell each send a signal of one request: so many nanoseconds
+/// after the first, a second one is of the same request.
+constexpr std::int64_t kOneRequest = 250'000'000;
+/// Seconds that a process has to end by itself once a second one of the same request has come.
+constexpr unsigned kGrace = 1;
+
+[[noreturn]] void end_now() {
+  remove_leftovers();
+  std::_Exit(kExitCancelled);
+}
+
+#if defined(_WIN32)
+
+void end_within_grace() {}
+
+#else
+
+extern "C" void on_end_of_grace(int) {
+  end_now();
+}
+
+void end_within_grace() {
+  struct sigaction action {};
+  action.sa_handler = on_end_of_grace;
+  sigaction(SIGALRM, &action, nullptr);
+  alarm(kGrace);
+}
+
+#endif
+
+/// The process looks on when it next can; a second request does not wait for that.
 void ask_for_an_end() {
-  // The first may be followed at once by a second: terminals and job runners both send one.
-  if (signals.fetch_add(1) >= 2) {
-    remove_leftovers();
-    std::_Exit(kExitCancelled);
+  const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
+  std::int64_t first = 0;
+  if (!first_at.compare_exchange_strong(first, now)) {
+    if (now - first > kOneRequest) end_now();
+    end_within_grace();
   }
+  signals.fetch_add(1);
   std::atomic_ref(number_for_library).store(1);
   beltrami_cancel(target.load());
 }

@@ -7,8 +7,9 @@
 
 namespace beltrami::cli {
 
-/// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU ask for an end, the third of them ends the
-/// process at once; other signals that kill, SIGKILL excepted, remove the temporaries first.
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU ask for an end, and a second of them ends the
+/// process, whatever it is at: at once, or after a second where it came together with the first;
+/// other signals that kill, SIGKILL excepted, remove the temporaries first.
 /// Writing where nobody reads any more, or beyond a limit, is an error of the write. What the
 /// parent process had ignored (nohup, background jobs of scripts) stays ignored, what it handles
 /// stays handled.

@@ -14,13 +14,15 @@ namespace beltrami::cli {
 namespace {
 
 constexpr std::size_t kLongestName = 4096;  // with its end
+/// Outputs of a run, and what each replaces; more pages than that are rare.
+constexpr std::size_t kMostFiles = 64;
 
 /// A handler reaches globals only, and may find them at any moment.
 struct Slot {
   std::atomic<bool> taken, filled;
   std::array<char, kLongestName> name;
 };
-std::array<Slot, 8> slots;
+std::array<Slot, kMostFiles> slots;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace beltrami::cli {
 void remove_leftovers() noexcept;
 
 /// A file that is removed when this ends, or by remove_leftovers() while it lives. Not so by the
-/// latter if its name has more than 4,095 bytes, or if there are more than eight at a time.
+/// latter if its name has more than 4,095 bytes, or if there are more than 64 at a time.
 class Leftover {
  public:
   /// The file need not exist yet.

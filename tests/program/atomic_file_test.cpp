@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <deque>
 #include <thread>
 
 #include "process/failure.h"
@@ -105,6 +106,37 @@ TEST(AtomicFile, TellsThePipesReaderNothingBeforeTheWrite) {
   reader.join();
   EXPECT_EQ(got, text);
   EXPECT_TRUE(fs::is_fifo(path));
+}
+
+TEST(Commit, ReplacesAllOrNone) {
+  const TemporaryDirectory directory;
+  directory.file("a.txt", "old");
+  fs::create_directory(directory.path("folder"));
+  const std::string last = directory.file("folder/c.txt", "old");
+  const auto write = [&](std::deque<AtomicFile>& files) {
+    for (const std::string& path : {directory.path("a.txt"), directory.path("b.txt"), last}) {
+      files.emplace_back(path).write("new");
+    }
+  };
+  {
+    std::deque<AtomicFile> files;
+    write(files);
+    // What is in the way of the last one comes after all were opened.
+    fs::remove(last);
+    fs::create_directories(last + "/full");
+    EXPECT_THROW(commit(files), Failure);
+    EXPECT_EQ(directory.read("a.txt"), "old");
+    EXPECT_FALSE(fs::exists(directory.path("b.txt")));
+  }
+  EXPECT_EQ(directory.names().size(), 2u) << "a temporary is left";
+  fs::remove_all(last);
+  std::deque<AtomicFile> files;
+  write(files);
+  commit(files);
+  for (const char* name : {"a.txt", "b.txt", "folder/c.txt"}) {
+    EXPECT_EQ(directory.read(name), "new") << name;
+  }
+  EXPECT_EQ(directory.names().size(), 3u) << "a temporary is left";
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // beltrami check, end to end.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "run_program.h"
 #include "temporary_directory.h"
@@ -112,6 +115,80 @@ TEST(Check, JudgesWhatIsNoDiskAsAnAtlas) {
   const std::string in = directory.file("in.obj", mirrored);
   EXPECT_EQ(run({"check", in}).exit_code, 3);
   EXPECT_EQ(run({"check", in, "--mirrored"}).exit_code, 0);
+}
+
+/// Two squares a tenth of a page apart, a twentieth from its edges, on the tile `u` to the right.
+std::string two_squares(const std::string& u) {
+  return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 0 0\nv 7 0 0\nv 7 2 0\nv 5 2 0\n"
+         "vt " +
+         u + ".05 .05\nvt " + u + ".45 .05\nvt " + u + ".45 .45\nvt " + u +
+         ".05 .45\n"
+         "vt " +
+         u + ".55 .05\nvt " + u + ".95 .05\nvt " + u + ".95 .45\nvt " + u +
+         ".55 .45\n"
+         "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n";
+}
+
+TEST(Check, SaysWhereChartsLieHowFarApartAndHowDense) {
+  const TemporaryDirectory directory;
+  for (const auto& [u, tile] : {std::pair<std::string, int>{"0", 1001}, {"3", 1004}}) {
+    const std::string in = directory.file("in.obj", two_squares(u));
+    const Outcome outcome =
+        run({"check", in, "--resolution", "200", "--report", directory.path("r.json")});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Json layout = Json::parse(directory.read("r.json"))["layout"];
+    EXPECT_NEAR(layout["bounds"][0], std::stod(u) + 0.05, 1e-12);
+    EXPECT_NEAR(layout["bounds"][3], 0.45, 1e-12);
+    EXPECT_EQ(layout["tiles"], Json::array({tile}));
+    EXPECT_NEAR(layout["chart_distance"], 20, 1e-9);
+    EXPECT_NEAR(layout["edge_distance"], 10, 1e-9);
+    EXPECT_NEAR(layout["margin"], 20, 1e-9);
+    EXPECT_NEAR(layout["greatest_texels_per_unit"], 80, 1e-9);
+    EXPECT_NEAR(layout["least_texels_per_unit"], 40, 1e-9);
+    EXPECT_NEAR(layout["texels_per_unit"], 200 * std::sqrt(0.32 / 5), 1e-9);
+    EXPECT_NEAR(layout["utilisation"], 0.32, 1e-9);
+    EXPECT_EQ(layout["outside"], u == "0" ? 0 : 2);
+    EXPECT_EQ(layout["astride"], 0);
+    EXPECT_NE(outcome.out.find("margin     20.000 texels at 200 a side"), std::string::npos)
+        << outcome.out;
+  }
+}
+
+TEST(Check, FailsWhereUvsAreNotAsAsked) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", two_squares("0")),
+                    tile = directory.file("tile.obj", two_squares("3"));
+  EXPECT_EQ(run({"check", in, "--within-page", "--within-tiles", "--margin", "102.4"}).exit_code,
+            0);
+  EXPECT_EQ(run({"check", in, "--margin", "102.5"}).exit_code, 3);
+  EXPECT_EQ(run({"check", tile, "--within-tiles"}).exit_code, 0);
+  const Outcome outside = run({"check", tile, "--within-page"});
+  EXPECT_EQ(outside.exit_code, 3);
+  EXPECT_NE(outside.out.find("unmet      --within-page: 2 charts"), std::string::npos)
+      << outside.out;
+  const std::string beyond = directory.file(
+      "beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1.185 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  EXPECT_EQ(run({"check", beyond}).exit_code, 0);
+  EXPECT_EQ(run({"check", beyond, "--within-page"}).exit_code, 3);
+  EXPECT_EQ(run({"check", beyond, "--within-tiles"}).exit_code, 3);
+  EXPECT_EQ(run({"check", beyond, "--margin", "1"}).exit_code, 3);
+}
+
+TEST(Check, AgreesWithThePackerOnItsMargin) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", torus_with_hole(12)),
+                    out = directory.path("out.obj");
+  ASSERT_EQ(run({"unwrap", in, out, "--cut", "minimal", "--resolution", "256", "--margin", "3",
+                 "--report", directory.path("u.json")})
+                .exit_code,
+            0);
+  EXPECT_EQ(run({"check", out, "--resolution", "256", "--margin", "3", "--within-page", "--report",
+                 directory.path("c.json")})
+                .exit_code,
+            0);
+  const Json packing = Json::parse(directory.read("u.json"))["packing"],
+             layout = Json::parse(directory.read("c.json"))["layout"];
+  EXPECT_NEAR(layout["margin"], packing["margin"], 1e-6);
 }
 
 TEST(Check, RefusesWhatItCannotJudge) {

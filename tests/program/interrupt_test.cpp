@@ -4,12 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "commands/command.h"
 #include "files/mesh_file.h"
 #include "files/surface.h"
+#include "process/failure.h"
+#include "process/leftovers.h"
 #include "run_program.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -150,15 +157,68 @@ TEST_P(Interrupt, IsNotHeardWhereTheParentIgnoresIt) {
   EXPECT_NE(waiting.directory.read("out.obj"), "precious");
 }
 
-TEST(Interrupts, TheThirdEndsTheProcessAtOnceAndLeavesNothing) {
+/// A process that does not look around, with a file that must not stay behind.
+template <class Wait>
+void never_look(int first, int second, const std::string& leftover, const Wait& wait) {
+  for (const int number : {first, second, SIGALRM}) std::signal(number, SIG_DFL);
+  install_signal_handlers();
+  const Leftover file(leftover);
+  raise(first);
+  wait();
+  raise(second);
+  for (;;) pause();
+}
+
+TEST(Interrupts, TheSecondEndsAProcessThatNeverLooksAndLeavesNothing) {
+  const TemporaryDirectory directory;
+  for (const auto& [first, second] : {std::pair(SIGTERM, SIGTERM), std::pair(SIGINT, SIGTERM)}) {
+    for (const int milliseconds : {0, 400}) {  // of the same request, and of another
+      const std::string leftover = directory.file("leftover", "x");
+      EXPECT_EXIT(never_look(first, second, leftover, [&] { usleep(1000 * milliseconds); }),
+                  testing::ExitedWithCode(130), "");
+      EXPECT_FALSE(std::filesystem::exists(leftover));
+    }
+  }
+}
+
+TEST(Interrupts, TwoOfOneRequestLetTheProcessEndByItself) {
   Waiting waiting;
   waiting.program.send(SIGSTOP);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) waiting.program.send(number);
-  waiting.program.send(SIGCONT);  // and all three are there
+  for (const int number : {SIGINT, SIGTERM}) waiting.program.send(number);
+  waiting.program.send(SIGCONT);  // and both are there
   const Outcome outcome = waiting.program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
-  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.err, "cancelled\n");
   waiting.expect_nothing_left();
+}
+
+TEST(Interrupts, IsHeardByTheReadersOfText) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 1 0 0 0 1 0 3 0 1 2";
+  EXPECT_EXIT(
+      {
+        std::signal(SIGTERM, SIG_DFL);
+        install_signal_handlers();
+        raise(SIGTERM);
+        int cancelled = 0;
+        const auto read = [&](auto reader, const std::string& text) {
+          try {
+            reader(text, "a", Content::kSurface);
+          } catch (const Failure& failure) {
+            cancelled += failure.exit_code == kExitCancelled;
+          }
+        };
+        read(read_obj, obj);
+        read(read_ply, ply);
+        read(read_off, "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2");
+        read(read_stl, "solid\nfacet normal 0 0 1\n");
+        read(read_stl, std::string(80, ' ') + std::string("\1\0\0\0", 4) + std::string(50, '\0'));
+        _exit(cancelled);
+      },
+      testing::ExitedWithCode(5), "");
 }
 
 TEST(Interrupts, SignalsThatKillLeaveNothing) {

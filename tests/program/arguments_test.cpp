@@ -1,0 +1,135 @@
+// What is misspelt, or could not be meant: said, and not taken in silence.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands/spelling.h"
+#include "process/failure.h"
+#include "run_program.h"
+#include "temporary_directory.h"
+#include "tiny_meshes.h"
+
+namespace beltrami::cli {
+namespace {
+
+TEST(NearestSpelling, IsFoundUpToAThirdOfTheLetters) {
+  const std::vector<std::string> known = {"unwrap", "flatten", "check", "pack", "transfer"};
+  EXPECT_EQ(nearest_spelling("unwarp", known), "unwrap");
+  EXPECT_EQ(nearest_spelling("chekc", known), "check");
+  EXPECT_EQ(nearest_spelling("flaten", known), "flatten");
+  EXPECT_EQ(nearest_spelling("pakc", known), "pack");
+  EXPECT_EQ(nearest_spelling("transfers", known), "transfer");
+  EXPECT_EQ(nearest_spelling("simplify", known), "");
+  EXPECT_EQ(nearest_spelling("model.obj", known), "");
+  EXPECT_EQ(nearest_spelling(std::string(100000, 'x'), known), "");
+}
+
+/// What the program says of arguments that it refuses.
+std::string refusal(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, kExitUnusable);
+  EXPECT_EQ(outcome.err_lines(), 1) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  return outcome.err;
+}
+
+TEST(Arguments, NameTheNearestSpelling) {
+  EXPECT_EQ(refusal({"unwarp", "a.obj", "b.obj"}),
+            "beltrami: there is no command 'unwarp': did you mean unwrap?\n");
+  EXPECT_EQ(refusal({"unwrap", "a.obj", "b.obj", "--reslution", "64"}),
+            "beltrami: there is no option --reslution of unwrap: did you mean --resolution?\n");
+  EXPECT_EQ(
+      refusal({"unwrap", "a.obj", "b.obj", "--target-enrgy=2.1"}),
+      "beltrami: there is no option --target-enrgy of unwrap: did you mean --target-energy?\n");
+  EXPECT_EQ(refusal({"transfer", "a.obj", "b.obj", "c.png", "d.png", "--kept", "1"}),
+            "beltrami: there is no option --kept of transfer: it is one of pack\n");
+  EXPECT_EQ(refusal({"check", "a.obj", "--no-such-thing"}),
+            "beltrami: there is no option --no-such-thing of check: see beltrami check --help\n");
+  EXPECT_EQ(refusal({"a.obj", "b.obj"}),
+            "beltrami: there is no command 'a.obj': the commands are unwrap, flatten, check, pack, "
+            "transfer\n");
+  EXPECT_EQ(refusal({"--vresion"}),
+            "beltrami: there is no option --vresion before a command: did you mean --version?\n");
+}
+
+TEST(Arguments, SeamsAreNumbersAndNothingElse) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kTetrahedron), out = directory.path("out.obj");
+  for (const std::string& seams : {std::string("0 1\n1 2 # and back\n"),
+                                   std::string("[[0,1],[1,2]]"), std::string("(0, 1); (1, 2)")}) {
+    EXPECT_EQ(run({"unwrap", in, out, "--seams", directory.file("s.txt", seams)}).exit_code, 0)
+        << seams;
+  }
+  const std::string text = directory.file("s.txt", "0 1\nvertices 1 and 2\n");
+  EXPECT_EQ(refusal({"unwrap", in, out, "--seams", text}),
+            "beltrami: " + text + ": line 2: 'vertices' is no vertex: seams are pairs of vertex " +
+                "numbers, counted from 0\n");
+  for (const char* bad : {"0 -1", "0 1.5", "0 1x", "0x1 2", "99999999999999999999 1", "v 0 1"}) {
+    const std::string error = refusal({"unwrap", in, out, "--seams", directory.file("s.txt", bad)});
+    EXPECT_NE(error.find("is no vertex"), std::string::npos) << bad << error;
+  }
+}
+
+TEST(Arguments, SetsOfUvsArePicturesArePngAndFormatsAreListed) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kSquareWithUvs), out = directory.path("out.obj");
+  for (const std::string command : {"unwrap", "pack"}) {
+    EXPECT_NE(refusal({command, in, out, "--uv-set", "1"}).find("--uv-set 1"), std::string::npos);
+    EXPECT_EQ(run({command, in, out, "--uv-set", "0"}).exit_code, 0);
+    std::filesystem::remove(out);
+  }
+  for (const std::string picture : {"p.jpg", "p.JPEG", "p.webp", "p.obj"}) {
+    const std::string path = directory.path(picture);
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"unwrap", in, out},
+                                                    {"flatten", in, out},
+                                                    {"pack", in, out},
+                                                    {"check", in}}) {
+      std::vector<std::string> arguments = command;
+      arguments.insert(arguments.end(), {"--picture", path});
+      EXPECT_EQ(refusal(arguments),
+                "beltrami: " + path + ": pictures are written as PNG: use the extension .png\n");
+    }
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
+  for (const std::string command : {"unwrap", "pack", "flatten"}) {
+    const std::string fbx = directory.path("out.fbx");
+    const std::string error = refusal({command, in, fbx});
+    for (const std::string format : {".obj", ".ply", ".gltf", ".glb"}) {
+      EXPECT_NE(error.find(format), std::string::npos) << error;
+    }
+    EXPECT_EQ(error.find(".stl"), std::string::npos) << error;
+  }
+}
+
+TEST(Arguments, AMeshWithUvsIsNotWrittenOverUnlessSaid) {
+  const TemporaryDirectory directory;
+  const std::string a = directory.file("a.obj", kSquareWithUvs);
+  const std::string b = directory.file("b.obj", kSquareWithUvs);
+  EXPECT_NE(refusal({"pack", a, b}).find("--output"), std::string::npos);
+  EXPECT_NE(refusal({"pack", a, a}).find("--output"), std::string::npos);
+  EXPECT_EQ(directory.read("b.obj"), kSquareWithUvs);
+  EXPECT_EQ(run({"pack", a, "--output", b}).exit_code, 0);
+  EXPECT_NE(directory.read("b.obj"), kSquareWithUvs);
+  EXPECT_EQ(run({"pack", a, "--output", a}).exit_code, 0) << "in place";
+  // What has no UVs cannot be meant to be packed.
+  EXPECT_EQ(run({"pack", a, directory.file("c.obj", kSquare)}).exit_code, 0);
+}
+
+TEST(Arguments, NamesFromFilesReachNoTerminalRaw) {
+  const TemporaryDirectory directory;
+  const std::string in =
+      directory.file("in.obj", "\x1b]0;x\x07 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.obj")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("statements ' ]0;x '"), std::string::npos) << outcome.err;
+  EXPECT_EQ((outcome.err + outcome.out).find('\x1b'), std::string::npos);
+  const Outcome missing = run({"check", directory.path("no\x1b[31m\nwhere.obj")});
+  EXPECT_EQ(missing.exit_code, kExitUnusable);
+  EXPECT_EQ(missing.err.find('\x1b'), std::string::npos);
+  EXPECT_EQ(missing.err_lines(), 1);
+}
+
+}  // namespace
+}  // namespace beltrami::cli
