@@ -6,7 +6,8 @@
 # beltrami_add_static_library(TARGET OBJECT_LIBRARY...)
 function(beltrami_add_static_library target)
   foreach(library IN LISTS ARGN)
-    list(APPEND objects $<TARGET_OBJECTS:${library}>)
+    # CMake counts a precompiled header among them.
+    list(APPEND objects $<FILTER:$<TARGET_OBJECTS:${library}>,EXCLUDE,gch$|pch$>)
   endforeach()
   set(one_object ${CMAKE_CURRENT_BINARY_DIR}/${target}${CMAKE_CXX_OUTPUT_EXTENSION})
   set(symbols ${PROJECT_SOURCE_DIR}/abi/symbols.txt)

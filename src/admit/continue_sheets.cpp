@@ -1,5 +1,6 @@
 #include "admit/continue_sheets.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
