@@ -61,8 +61,6 @@ void read_results(beltrami_context* context, ShapeAtlas& atlas) {
   for (const auto& [u, v] : single) atlas.single_uvs.push_back({u, v});
   atlas.pages.resize(counts.corners);
   beltrami_get_corner_pages(context, atlas.pages.data(), BELTRAMI_U32, 0);
-  atlas.uv_vertices.resize(counts.corners);
-  beltrami_get_corner_uv_vertices(context, atlas.uv_vertices.data(), BELTRAMI_U32, 0);
   for (const bool single_precision : {false, true}) {
     auto certificate = sized<beltrami_atlas_certificate>();
     beltrami_get_atlas_certificate(context, single_precision ? BELTRAMI_F32 : BELTRAMI_F64,

@@ -24,8 +24,7 @@ struct ShapeAtlas {
   std::vector<std::array<std::size_t, 3>> triangles;  ///< corners
   std::vector<Uv> uvs;                                ///< of corners
   std::vector<Uv> single_uvs;
-  std::vector<std::uint32_t> pages;        ///< of corners
-  std::vector<std::uint32_t> uv_vertices;  ///< of corners
+  std::vector<std::uint32_t> pages;  ///< of corners
 };
 
 /// A view of a shape, which must outlive it.

@@ -142,14 +142,26 @@ struct Border {
   Uv from, to;
 };
 
-std::vector<Border> borders(const ShapeAtlas& atlas, const std::vector<std::size_t>& faces) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>,
-           std::vector<std::pair<std::size_t, std::size_t>>>
+/// The UV vertex of each corner: those at one place in space and in the plane are one.
+std::vector<std::size_t> uv_vertices(const Shape& shape, const ShapeAtlas& atlas) {
+  std::map<std::pair<Point3, Uv>, std::size_t> names;
+  std::vector<std::size_t> out;
+  for (std::size_t c = 0; c < atlas.uvs.size(); ++c) {
+    const std::pair place = {shape.positions[shape.corners[c]], atlas.uvs[c]};
+    out.push_back(names.try_emplace(place, names.size()).first->second);
+  }
+  return out;
+}
+
+std::vector<Border> borders(const Shape& shape, const ShapeAtlas& atlas,
+                            const std::vector<std::size_t>& faces) {
+  const std::vector<std::size_t> names = uv_vertices(shape, atlas);
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<std::size_t, std::size_t>>>
       sides;
   for (const std::size_t t : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = atlas.uv_vertices[atlas.triangles[t][k]];
-      const std::uint32_t b = atlas.uv_vertices[atlas.triangles[t][(k + 1) % 3]];
+      const std::size_t a = names[atlas.triangles[t][k]];
+      const std::size_t b = names[atlas.triangles[t][(k + 1) % 3]];
       sides[std::minmax(a, b)].push_back({t, k});
     }
   }
@@ -216,7 +228,8 @@ void judge_page(const Shape& shape, const ShapeAtlas& atlas, const std::vector<s
     }
   }
   const double texels = shape.resolution, asked = shape.margin - kRounding;
-  const double between = texels * least_distance(borders(atlas, faces), shape.margin / texels);
+  const double between =
+      texels * least_distance(borders(shape, atlas, faces), shape.margin / texels);
   if (between < asked || 2 * texels * edge < asked) {
     findings.push_back({Fault::kMargin, text("%.4g texels between charts, twice %.4g to the edge, "
                                              "of %g; it says %.4g",
