@@ -166,11 +166,9 @@ Shape chaos(Random& random) {
                                1.0 * random.count(0, 2)}
                       : random_point(random, 1));
   }
-  const bool polygons = random.chance(0.2);
   for (int f = 0; f < faces; ++f) {
     std::vector<Vertex> face;
-    const auto size = static_cast<std::size_t>(polygons ? random.count(3, 6) : 3);
-    while (face.size() < std::min(size, static_cast<std::size_t>(vertices))) {
+    while (face.size() < 3) {
       const auto v = static_cast<Vertex>(random.count(0, vertices - 1));
       if (std::find(face.begin(), face.end(), v) == face.end()) face.push_back(v);
     }
