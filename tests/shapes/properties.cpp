@@ -122,7 +122,7 @@ void judge_injectivity(const Shape& shape, const ShapeAtlas& atlas,
   surface.corner_uvs = {atlas.uvs.data(), 0, BELTRAMI_F64, 0};
   const bool one_page = *std::max_element(atlas.pages.begin(), atlas.pages.end()) == 0;
   const beltrami_status checked = one_page
-                                      ? beltrami_check_atlas(&surface, 0, &certificate, nullptr, 0)
+                                      ? beltrami_check_atlas(&surface, 1, &certificate, nullptr, 0)
                                   : injective ? BELTRAMI_OK
                                               : BELTRAMI_NOT_INJECTIVE;
   if (injective != atlas.injective || single != atlas.injective_single ||
