@@ -73,10 +73,14 @@ double quality(const Point& a, const Point& b, const Point& c) {
   return std::isfinite(found) ? found : 0;
 }
 
-/// Whether `p` is in the closed triangle, but not at one of its corners.
-bool blocks(const Point& p, const Point& a, const Point& b, const Point& c) {
+/// Twice the area, of a polygon of unit size, that rounding gives three corners on a line.
+constexpr double kOnLine = 1e-12;
+
+/// Whether `p` is in the closed triangle, or beyond its side from `c` to `a` by a triangle of no
+/// more than `slack`, but not at one of its corners.
+bool blocks(const Point& p, const Point& a, const Point& b, const Point& c, double slack) {
   if (p == a || p == b || p == c) return false;
-  return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+  return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= -slack;
 }
 
 /// `fallback` for vectors without a direction.
@@ -180,11 +184,16 @@ class EarClipper {
   bool cut() {
     std::vector<std::uint32_t> reflex;
     for (std::uint32_t i = 0; i < left_; ++i) {
-      if (!(turn_at(i) > 0)) reflex.push_back(i);
+      if (!(turn_at(i) > kOnLine)) reflex.push_back(i);
     }
     reflex_.emplace(points_, reflex);
-    // A round looks at every ear that there is; corners that blocked one may be gone in the next.
-    while (left_ > 3 && clip_all(Wish::kProper)) {
+    // First with no corner on a cut, as far as rounding can tell: beyond it a triangle without area
+    // would part the polygon.
+    for (const double slack : {kOnLine, 0.0}) {
+      slack_ = slack;
+      // A round looks at every ear that there is; corners that blocked one may be gone in the next.
+      while (left_ > 3 && clip_all(Wish::kProper)) {
+      }
     }
     if (left_ > 3) clip_all(Wish::kFree);
     const bool is_free = left_ == 3;
@@ -213,7 +222,7 @@ class EarClipper {
 
   void offer(std::uint32_t i, Wish wish) {
     const double q = quality(point(previous_[i]), point(i), point(next_[i]));
-    if (q > 0 || wish != Wish::kProper) ears_.push({q, i, changes_[i]});
+    if ((q > 0 && turn_at(i) > slack_) || wish != Wish::kProper) ears_.push({q, i, changes_[i]});
   }
 
   /// Whether cutting the corner off makes no edge that is there already.
@@ -221,14 +230,14 @@ class EarClipper {
     return !edges_.contains(polygon_[previous_[i]], polygon_[next_[i]]);
   }
 
-  /// Whether no other corner is in the ear; only reflex ones can be.
+  /// Whether no other corner is in the ear or on its cut; only reflex ones can be.
   bool is_empty(std::uint32_t i) const {
     const Point &a = point(previous_[i]), &b = point(i), &c = point(next_[i]);
     const Point low = {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})};
     const Point high = {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})};
     return !reflex_->any(low, high, [&](std::uint32_t k) {
       return !is_cut(k) && k != previous_[i] && k != i && k != next_[i] &&
-             blocks(point(k), a, b, c);
+             blocks(point(k), a, b, c, slack_);
     });
   }
 
@@ -279,6 +288,7 @@ class EarClipper {
   std::vector<std::uint32_t> previous_, next_;  ///< of the corners that are left, a ring
   std::vector<std::uint32_t> changes_;          ///< of the neighbours of a corner
   std::uint32_t left_, some_corner_ = 0;        ///< how many, and one of them
+  double slack_ = 0;                            ///< twice the area of what is on a line
   std::optional<CornerGrid> reflex_;
   std::priority_queue<Ear> ears_;
   PollSometimes poll_;

@@ -14,6 +14,7 @@
 #include "chart/options.h"
 #include "chart/starts.h"
 #include "descend/newton.h"
+#include "descend/tutte.h"
 #include "energy/energy.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
@@ -68,11 +69,14 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
   std::vector<Vec2> uvs = start_map(mesh, rest, options, work);
   work.report(0.02);
+  scale_best(mesh, rest, options, work, uvs);
+  if (start_flat(mesh, rest, options, uvs, work)) {
+    const double energy = mean_energy(options.energy, mesh.faces, rest, uvs, work);
+    return {.uvs = std::move(uvs), .energy = energy, .converged = true, .in_contact = true};
+  }
   if (!non_positive_faces(mesh.faces, uvs, work).empty()) {
     return {.uvs = std::move(uvs), .converged = true};
   }
-  scale_best(mesh, rest, options, work, uvs);
-  start_flat(mesh, rest, options, uvs, work);
   NewtonOptions newton = newton_options(options);
   newton.tolerance = tolerance;
   const bool simple = keeps_boundary_simple(options);

@@ -10,6 +10,8 @@ namespace beltrami {
 namespace {
 
 constexpr double kLeastCell = 4;             // texels
+/// Cells along an edge of the mean length, at most: few long edges need no fine grid.
+constexpr double kMostPerEdge = 4;
 constexpr std::int64_t kMostPerSide = 4096;  // cells
 /// Cells of all pages up to which each has its list, those without an edge included.
 constexpr std::int64_t kMostInARow = 1 << 20;
@@ -18,13 +20,20 @@ constexpr std::int64_t kMostInARow = 1 << 20;
 
 EdgeGrid::EdgeGrid(const std::vector<PlacedOutline>& charts, double reach) {
   Eigen::AlignedBox2d box;
+  double length = 0;
+  std::int64_t edges = 0;
   for (const PlacedOutline& chart : charts) {
     for (const Vec2& p : chart.points) box.extend(p);
+    for (const auto& [from, to] : chart.edges) {
+      length += (chart.points[to] - chart.points[from]).norm();
+    }
+    edges += size_of(chart.edges);
   }
   if (box.isEmpty()) return;
   low_ = box.min() - Vec2::Constant(reach);
   const Vec2 size = box.sizes() + Vec2::Constant(2 * reach);
   cell_ = std::max({kLeastCell, 2 * reach, size.maxCoeff() / kMostPerSide});
+  if (edges > 0) cell_ = std::max(cell_, length / (kMostPerEdge * static_cast<double>(edges)));
   columns_ = static_cast<std::int64_t>(size.x() / cell_) + 1;
   rows_ = static_cast<std::int64_t>(size.y() / cell_) + 1;
 

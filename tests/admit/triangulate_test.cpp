@@ -54,6 +54,30 @@ TEST(TriangulatePolygons, SaysWhereAVertexIsNamedTwice) {
   EXPECT_EQ(result.first_repeating, 1);
 }
 
+// The letter A with a bridge to its hole, turned and rounded: the tip of the hole lies on the line
+// from a foot to the top, and the side of the hole on that of another cut.
+TEST(TriangulatePolygons, NoCutRunsThroughACorner) {
+  const std::vector<Vec3> letter = {
+      {0, 0, 0},
+      {-0.048392667098124426, -0.050464058788021432, -0.18738070482781635},
+      {0.19951637198994507, 0.0095485221376828966, -0.37430207457741405},
+      {0.15112370489182064, -0.040915536650338535, -0.56168277940523048},
+      {-0.14517800129437325, -0.15139217636406427, -0.56214211448344897},
+      {-0.1935706683924977, -0.20185623515208573, -0.74952281931126541},
+      {0.78603624104512793, 0.1579885540956632, -0.7792218198551728},
+      {0.83442890814325232, 0.20845261288368463, -0.59184111502735637},
+      {0.62882899283610239, 0.12639084327653055, -0.62337745588413829},
+      {0.24182549577086454, -0.012500666543766858, -0.59275978518379369},
+      {0.29021816286898894, 0.037963392244254573, -0.40537908035597725}};
+  const Polygons polygons{{5, 6, 7, 0, 1, 2, 3, 9, 10, 8, 9, 3, 4}, {13}};
+  const Triangulation result = triangulate(letter, polygons, Work(1));
+  expect_complete(polygons, result);
+  for (const Triangle& t : result.triangles) {
+    const auto at = [&](int k) { return letter[polygons.corners[t[k]]]; };
+    EXPECT_GT((at(1) - at(0)).cross(at(2) - at(0)).norm(), 1e-3);
+  }
+}
+
 TEST(TriangulatePolygons, RepeatsAnEdgeOnlyWhereThereIsNoOtherWay) {
   // Both diagonals of the square are edges of triangles.
   const Polygons crossed{{0, 1, 2, 3, 0, 2, 4, 1, 3, 4}, {4, 7, 10}};
