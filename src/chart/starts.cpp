@@ -14,6 +14,7 @@
 #include "exact/crossings.h"
 #include "mesh/boundary.h"
 #include "repair/repair.h"
+#include "repair/rounding.h"
 #include "repair/touching.h"
 
 namespace beltrami {
@@ -32,7 +33,7 @@ bool mend_slivers(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, c
   double area = 0;
   for (const Index f : folded) area += rest[f].area();
   if (!(area < kSliverShare * surface_area(mesh, work))) return false;
-  return repair(mesh, rest, uvs, {.global_fix = false}, work.part(0, 0)).flips_after == 0;
+  return unfold_nearby(mesh, {}, work, uvs);
 }
 
 /// Whether a flat start is the map: it has the lengths of the surface but for slivers, and a

@@ -128,7 +128,8 @@ class Rounding {
         attempt({start.x() + i * unit.x(), start.y() + j * unit.y()});
       }
     }
-    if (!mesh_.on_boundary[vertex]) {
+    // Far away, so only where nothing near serves.
+    if (best.bad > 0 && !mesh_.on_boundary[vertex]) {
       std::vector<Vec2> ring;
       mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
       if (const auto centre = kernel_centroid(ring)) attempt(*centre);
@@ -322,6 +323,12 @@ bool Numbers::hold(const std::vector<Vec2>& places, const Work& work) const {
   Eigen::AlignedBox2d box;
   for (const Eigen::AlignedBox2d& own : of_chunk) box.extend(own);
   return box.sizes().minCoeff() > 0;
+}
+
+bool unfold_nearby(const DiskMesh& mesh, const Numbers& numbers, const Work& work,
+                   std::vector<Vec2>& uvs) {
+  Rounding(mesh, {}, numbers, uvs, work).mend(non_positive_faces(mesh.faces, uvs, work));
+  return non_positive_faces(mesh.faces, uvs, work).empty();
 }
 
 Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,

@@ -38,6 +38,12 @@ struct Rounded {
   std::int64_t moved = 0;   ///< vertices that are not at the nearest number
 };
 
+/// Unfolds faces of hardly any area in place: vertices move by a few units in the last place of the
+/// numbers, or as far as round_map has it where that does not serve. Whether all faces are positive
+/// then; others never fold.
+bool unfold_nearby(const DiskMesh& mesh, const Numbers& numbers, const Work& work,
+                   std::vector<Vec2>& uvs);
+
 /// Rounds every coordinate of `placed` to nearest. Where that flips a face or makes the boundary
 /// cross itself, vertices nearby move: first by a few units in the last place, then into the kernel
 /// of their one-ring, then in patches that are untangled towards equilateral faces; crossings are

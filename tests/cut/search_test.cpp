@@ -42,7 +42,7 @@ Surface built(TriangleList mesh) {
 SearchedSeams searched(const Surface& surface, double energy, const EdgeMarks& locked = {},
                        int threads = 1, const SeamWeights& weights = {}) {
   return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), locked,
-                      {.energy = energy}, weights, {}, {}, Work(threads));
+                      {.energy = energy}, {}, weights, {}, {}, Work(threads));
 }
 
 double length(const Surface& surface, const EdgeMarks& marks) {
@@ -178,7 +178,7 @@ TEST(Search, FilledHolesWeighNothing) {
   ASSERT_EQ(filled.filled_loops, 3);
   const SearchedSeams found =
       search_seams(filled.surface, filled.real_faces, topology_of(filled.surface, Work(1)), {},
-                   {.energy = 2.05}, {}, {}, {}, Work(1));
+                   {.energy = 2.05}, {}, {}, {}, {}, Work(1));
   EXPECT_EQ(charts(filled.surface, found.seams), 1);
   EXPECT_LE(found.energy, 2.05);
 }
@@ -214,7 +214,7 @@ TEST(Search, GoesOnFromWhatWasFoundForAnotherTarget) {
   const Surface surface = built(meshes::torus(82));
   const auto go_on = [&](double energy, const BegunSearch& begun) {
     return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), {},
-                        {.energy = energy}, kLengths, {}, begun, Work(1));
+                        {.energy = energy}, {}, kLengths, {}, begun, Work(1));
   };
   const SearchedSeams found = go_on(2.05, {});
   ASSERT_FALSE(found.search.seams.seams.empty());
@@ -389,7 +389,7 @@ TEST(Search, GoesOnSymmetricallyForAnotherTarget) {
   const Surface surface = built_about_x(creature(6));
   const auto go_on = [&](double energy, const BegunSearch& begun) {
     return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), {},
-                        {.energy = energy}, kSymmetric, {}, begun, Work(1));
+                        {.energy = energy}, {}, kSymmetric, {}, begun, Work(1));
   };
   const SearchedSeams found = go_on(2.04, {});
   ASSERT_TRUE(found.search.mirror);
