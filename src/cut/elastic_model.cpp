@@ -11,6 +11,7 @@
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/vectors.h"
+#include "cut/bilaplacian.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "flatten/laplacian.h"
 #include "linear/evaluated.h"
@@ -37,37 +38,6 @@ constexpr int kMostAround = 40;
 constexpr double kNoise = 0.15, kLeastMean = 1e-4;
 /// What strain costs is within so many times of what it was taken for.
 constexpr double kMostPrice = 10;
-
-/// From so many entries of its row on a vertex is a hub.
-constexpr int kHub = 128;
-
-/// L M^-1 L with `softness` the diagonal of M^-1. A hub would make the rows of all vertices around
-/// it dense: for it, the square of its sum of differences is replaced by the sum of their squares,
-/// which is the same where all around is symmetric, and stiffer elsewhere.
-SparseMatrix bilaplacian(const SparseMatrix& laplacian, const Eigen::VectorXd& softness) {
-  std::vector<bool> is_hub(static_cast<std::size_t>(laplacian.cols()));
-  std::vector<Eigen::Triplet<double>> stars;
-  for (int v = 0; v < laplacian.cols(); ++v) {
-    is_hub[v] = laplacian.innerVector(v).nonZeros() > kHub;
-    if (!is_hub[v]) continue;
-    const double scale = softness[v] * laplacian.coeff(v, v);
-    for (SparseMatrix::InnerIterator entry(laplacian, v); entry; ++entry) {
-      const auto other = static_cast<int>(entry.row());
-      const double spring = scale * std::abs(entry.value());
-      if (other == v) continue;
-      stars.emplace_back(other, other, spring);
-      stars.emplace_back(v, v, spring);
-      stars.emplace_back(v, other, -spring);
-      stars.emplace_back(other, v, -spring);
-    }
-  }
-  SparseMatrix weighted = evaluated(laplacian * softness.asDiagonal());
-  if (stars.empty()) return evaluated(weighted * laplacian);
-  weighted.prune([&](Eigen::Index, Eigen::Index column, double) { return !is_hub[column]; });
-  SparseMatrix of_hubs(laplacian.rows(), laplacian.cols());
-  of_hubs.setFromTriplets(stars.begin(), stars.end());
-  return evaluated(evaluated(weighted * laplacian) + of_hubs);
-}
 
 double corner_angle(const RestTriangle& rest, int k) {
   const Complex to = rest.corner(next_corner(k)) - rest.corner(k);

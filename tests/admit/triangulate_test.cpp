@@ -1,6 +1,7 @@
 // Polygons into triangles: their corners, every one, whatever they name.
 #include "admit/triangulate.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,6 +1,5 @@
 #include "flatten/reduced/reduced_newton.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "descend/line_search.h"
 #include "descend/newton_loop.h"
 #include "exact/crossings.h"
+#include "flatten/reduced/reduced_system.h"
 #include "ring/ring_faces.h"
 
 namespace beltrami {
@@ -19,8 +19,6 @@ namespace {
 
 /// Of a sample that is left out, as symmetric Dirichlet energy: a bad face, not an infinite one.
 constexpr double kFlippedEnergy = 100;
-/// Columns of the Hessian that are formed together.
-constexpr Eigen::Index kTile = 32;
 
 /// Samples and scaffold as loose faces on one list of points. Point 0 is the origin, where every
 /// sample has its corner 0; then come the other corners of the samples, the meta vertices, and the
@@ -65,8 +63,6 @@ class Descent {
   double energy(const LooseFaces& loose, const std::vector<Vec2>& points) const;
   template <class Density>
   std::vector<FaceModel> model_faces(const LooseFaces& loose, const Density& density) const;
-  void assemble(const LooseFaces& loose, const std::vector<FaceModel>& models);
-  std::vector<Vec2> solve();
 
   const ReducedProblem& problem_;
   const bool scaffold_;
@@ -80,8 +76,6 @@ class Descent {
   std::vector<Index> loop_;
   DenseMatrix edges_;  // of the samples at x_
   double sample_energy_ = 0;
-  DenseMatrix hessian_;  // lower triangle; u of all metas, then v
-  Eigen::VectorXd gradient_;
 };
 
 DenseMatrix Descent::edges_of(const std::vector<Vec2>& places) const {
@@ -194,97 +188,24 @@ std::vector<FaceModel> Descent::model_faces(const LooseFaces& loose, const Densi
   return models;
 }
 
-/// Samples: E^T D E with the edges E and, per sample, the 4 x 4 block D of its corners 1 and 2,
-/// since an energy does not see translations. In tiles of columns, so that threads share no sums.
-void Descent::assemble(const LooseFaces& loose, const std::vector<FaceModel>& models) {
-  const Index samples = size_of(active_list_);
-  DenseMatrix edges(2 * samples, metas_), pull(2 * samples, 2);
-  parallel_for(work_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t m = begin; m < end; ++m) {
-      for (Index i = 0; i < samples; ++i) {
-        edges.col(m).segment<2>(2 * i) = problem_.edges.col(m).segment<2>(2 * active_list_[i]);
-      }
-    }
-  });
-  for (Index i = 0; i < samples; ++i) {
-    for (int corner = 0; corner < 2; ++corner) {
-      pull.row(2 * i + corner) = models[i].gradient.segment<2>(2 * corner + 2).transpose();
-    }
-  }
-  gradient_.resize(2 * metas_);
-  gradient_.head(metas_).noalias() = edges.transpose() * pull.col(0);
-  gradient_.tail(metas_).noalias() = edges.transpose() * pull.col(1);
-
-  hessian_.setZero(2 * metas_, 2 * metas_);
-  // (row, column) of D: u with u, v with u, v with v.
-  const std::array<std::array<int, 2>, 3> blocks = {{{0, 0}, {1, 0}, {1, 1}}};
-  parallel_for(work_, metas_, kTile, [&](std::int64_t begin, std::int64_t end) {
-    const Eigen::Index width = end - begin;
-    DenseMatrix scaled(2 * samples, width);
-    for (const auto& [r, c] : blocks) {
-      for (Eigen::Index m = 0; m < width; ++m) {
-        for (Index i = 0; i < samples; ++i) {
-          const Matrix6& d = models[i].hessian;
-          const double e1 = edges(2 * i, begin + m), e2 = edges(2 * i + 1, begin + m);
-          scaled(2 * i, m) = d(2 + r, 2 + c) * e1 + d(2 + r, 4 + c) * e2;
-          scaled(2 * i + 1, m) = d(4 + r, 2 + c) * e1 + d(4 + r, 4 + c) * e2;
-        }
-      }
-      const Eigen::Index top = r == c ? begin : 0;
-      hessian_.block(r * metas_ + top, c * metas_ + begin, metas_ - top, width).noalias() =
-          edges.rightCols(metas_ - top).transpose() * scaled;
-    }
-  });
-
-  const auto place = [&](Index point, int axis) { return axis * metas_ + point - first_meta(); };
-  for (Index f = samples; f < size_of(loose.faces); ++f) {
-    const Triangle& t = loose.faces[f];
-    for (int a = 0; a < 6; ++a) {
-      if (t[a / 2] >= first_meta() + metas_) continue;
-      const Index row = place(t[a / 2], a % 2);
-      gradient_[row] += models[f].gradient[a];
-      for (int b = 0; b < 6; ++b) {
-        if (t[b / 2] >= first_meta() + metas_) continue;
-        const Index column = place(t[b / 2], b % 2);
-        if (row >= column) hessian_(row, column) += models[f].hessian(a, b);
-      }
-    }
-  }
-}
-
-/// The Newton direction. A shift relative to the diagonal covers what is free or within the
-/// roundoff. Empty where none makes the system definite.
-std::vector<Vec2> Descent::solve() {
-  const Eigen::VectorXd diagonal = hessian_.diagonal();
-  const double floor = diagonal.maxCoeff() * newton::kShift;
-  std::vector<Vec2> direction;
-  for (double shift = newton::kShift; shift <= newton::kLargestShift; shift *= 1e2) {
-    hessian_.diagonal() = diagonal * (1 + shift) + Eigen::VectorXd::Constant(2 * metas_, floor);
-    const Eigen::LLT<DenseMatrix, Eigen::Lower> factor(hessian_);
-    if (factor.info() != Eigen::Success) continue;
-    const Eigen::VectorXd flat = factor.solve(-gradient_);
-    if (!flat.allFinite()) continue;
-    for (Index m = 0; m < metas_; ++m) direction.push_back({flat[m], flat[metas_ + m]});
-    break;
-  }
-  return direction;
-}
-
 NewtonStep Descent::step(bool proxy) {
   const LooseFaces loose = gather();
   const double before = energy(loose, loose.points);
-  with_density(problem_.energy, [&]<class Density>(Density density) {
-    assemble(loose,
-             proxy ? model_faces(loose, typename Density::Proxy{}) : model_faces(loose, density));
-  });
-  const std::vector<Vec2> direction = solve();
+  const std::vector<FaceModel> models =
+      with_density(problem_.energy, [&]<class Density>(Density density) {
+        return proxy ? model_faces(loose, typename Density::Proxy{}) : model_faces(loose, density);
+      });
+  ReducedSystem system =
+      assemble_reduced(problem_.edges, active_list_, loose.faces, models, metas_, work_);
+  const std::vector<Vec2> direction = newton_direction(system);
   NewtonStep result;
   if (direction.empty()) {
     result.predicted = std::numeric_limits<double>::infinity();
     return result;
   }
   for (Index m = 0; m < metas_; ++m) {
-    result.predicted -= gradient_[m] * direction[m].x() + gradient_[metas_ + m] * direction[m].y();
+    result.predicted -=
+        system.gradient[m] * direction[m].x() + system.gradient[metas_ + m] * direction[m].y();
   }
   if (!(result.predicted > newton::kNoGain * before)) return result;
 
