@@ -290,7 +290,9 @@ Shape t_vertices(Random& random) {
   Shape shape;
   shape.flat = true;
   const int depth = random.count(1, 6);
-  split_rectangle(shape, {0, 0, random.spread(0.5, 2), 1}, depth, random.chance(0.3), random);
+  const double wide = random.spread(0.5, 2);
+  const bool quads = random.chance(0.3);
+  split_rectangle(shape, {0, 0, wide, 1}, depth, quads, random);
   return joined(shape);
 }
 

@@ -84,8 +84,10 @@ Shape sliver(Random& random) {
     // Which edge is the first one.
     const auto first = shape.corners.begin() + static_cast<std::ptrdiff_t>(3 * face);
     std::rotate(first, first + random.count(0, 2), first + 3);
-    split_near_edge(shape, face, alike ? along : random.between(0.01, 0.99),
-                    0.9 * (alike ? height : random.spread(1e-15, 1)), gaps);
+    // Numbers are drawn in statements of their own: the order of arguments is the compiler's.
+    const double share = alike ? along : random.between(0.01, 0.99);
+    const double rise = 0.9 * (alike ? height : random.spread(1e-15, 1));
+    split_near_edge(shape, face, share, rise, gaps);
   }
   return shape;
 }

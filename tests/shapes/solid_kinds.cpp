@@ -18,8 +18,10 @@ constexpr double kUnit = 0x1p-10;  ///< of the grid that outlines are drawn on
 
 Loop outline(Random& random) {
   switch (random.count(0, 3)) {
-    case 0:
-      return rectangle(0, 0, random.count(100, 2000), random.count(100, 2000));
+    case 0: {
+      const int wide = random.count(100, 2000), high = random.count(100, 2000);
+      return rectangle(0, 0, wide, high);
+    }
     case 1:  // an L
       return {{0, 0},
               {1000, 0},
@@ -38,8 +40,10 @@ Loop outline(Random& random) {
       }
       return loop;
     }
-    default:
-      return ellipse({0, 0}, 1000, random.between(200, 1000), random.count(3, 60), 0);
+    default: {
+      const double high = random.between(200, 1000);
+      return ellipse({0, 0}, 1000, high, random.count(3, 60), 0);
+    }
   }
 }
 
@@ -57,7 +61,9 @@ Extrusion extrusion(Random& random) {
 }  // namespace
 
 Shape prism(Random& random) {
-  return extrude({outline(random), {}}, extrusion(random), random);
+  const Region region = {outline(random), {}};
+  const Extrusion how = extrusion(random);
+  return extrude(region, how, random);
 }
 
 Shape block(Random& random) {
@@ -68,8 +74,9 @@ Shape block(Random& random) {
     for (int j = 0; j < up; ++j) {
       if (i + j > 0 && random.chance(0.2)) continue;
       const double radius = random.between(60, 480);
-      region.holes.push_back(ellipse({1000 * i + 500, 1000 * j + 500}, radius, radius,
-                                     random.count(3, 32), random.between(0, 1)));
+      const int corners = random.count(3, 32);
+      const Point2 centre = {1000 * i + 500, 1000 * j + 500};
+      region.holes.push_back(ellipse(centre, radius, radius, corners, random.between(0, 1)));
     }
   }
   Extrusion how = extrusion(random);
@@ -78,7 +85,9 @@ Shape block(Random& random) {
 }
 
 Shape solid_letter(Random& random) {
-  return extrude(letter_region(random), extrusion(random), random);
+  const Region region = letter_region(random);
+  const Extrusion how = extrusion(random);
+  return extrude(region, how, random);
 }
 
 Shape blob(Random& random) {
