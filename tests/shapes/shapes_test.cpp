@@ -226,7 +226,7 @@ TEST_P(SmallShapes, HaveTheAtlasThatTheyAreOwed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, SmallShapes, testing::ValuesIn(kWays),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         [](const auto& way) { return std::string(name_of(way.param)); });
 
 }  // namespace
 }  // namespace beltrami::shapes
