@@ -147,7 +147,10 @@ Json atlas_energy_json(const beltrami_atlas& found) {
   return {{"symmetric_dirichlet", number(found.symmetric_dirichlet)},
           {"p99", number(found.p99)},
           {"max", number(found.max)},
-          {"left_out", found.left_out}};
+          {"left_out", found.left_out},
+          {"slivers", found.slivers},
+          {"with_slivers", number(found.symmetric_dirichlet_with_slivers)},
+          {"max_with_slivers", number(found.max_with_slivers)}};
 }
 
 double seam_over_root_area(const beltrami_atlas& atlas) {
@@ -168,7 +171,17 @@ Json energy_json(const Report& report) {
 
 Json target_json(const Report& report) {
   if (!report.atlas || !report.target) return nullptr;
-  return {{"energy", number(report.target->energy)}, {"reached", report.atlas->reached != 0}};
+  const beltrami_atlas& atlas = *report.atlas;
+  Json worst = nullptr;
+  if (atlas.missed_parts > 0) {
+    worst = {{"first_face", atlas.missed_face},
+             {"triangles", atlas.missed_triangles},
+             {"energy", number(atlas.missed_energy)}};
+  }
+  return {{"energy", number(report.target->energy)},
+          {"reached", atlas.reached != 0},
+          {"missed_parts", atlas.missed_parts},
+          {"worst_part", std::move(worst)}};
 }
 
 Json packing_json(const Report& report) {
@@ -287,6 +300,11 @@ void append_atlas(const Report& report, std::string& text) {
          static_cast<unsigned long long>(atlas.charts), seam_over_root_area(atlas));
   append(text, "energy     %.6g mean, %.6g at the 99th percentile, %.6g max (2 is isometric)\n",
          atlas.symmetric_dirichlet, atlas.p99, atlas.max);
+  if (atlas.slivers > 0) {
+    append(text,
+           "note       %llu slivers of no area to speak of do not count: with them %.6g mean\n",
+           static_cast<unsigned long long>(atlas.slivers), atlas.symmetric_dirichlet_with_slivers);
+  }
   if (!report.target) return;
   const Target& target = *report.target;
   append(text, "target     %s: %.6g mean", atlas.reached != 0 ? "reached" : "MISSED",
@@ -295,6 +313,22 @@ void append_atlas(const Report& report, std::string& text) {
   if (target.charts > 0) append(text, ", charts up to %lld", static_cast<long long>(target.charts));
   if (target.seams > 0) append(text, ", seams up to %.4g root areas", target.seams);
   text += "\n";
+  if (atlas.missed_parts > 0) {
+    append(text,
+           "note       %llu parts miss it, the worst with %.6g: %llu triangles from face %llu "
+           "(counted from 0)\n",
+           static_cast<unsigned long long>(atlas.missed_parts), atlas.missed_energy,
+           static_cast<unsigned long long>(atlas.missed_triangles),
+           static_cast<unsigned long long>(atlas.missed_face));
+  }
+}
+
+double asked_margin(const Report& report) {
+  for (const auto& [name, value] : report.options) {
+    if (name != "margin") continue;
+    if (const double* texels = std::get_if<double>(&value)) return *texels;
+  }
+  return 0;
 }
 
 void append_packing(const Report& report, std::string& text) {
@@ -306,6 +340,13 @@ void append_packing(const Report& report, std::string& text) {
          static_cast<unsigned long long>(found.pages),
          static_cast<unsigned long long>(found.resolution), 100 * found.utilisation, found.margin,
          found.texels_per_unit);
+  const double asked = asked_margin(report);
+  if (found.margin < asked) {
+    append(text,
+           "note       the margin is less than the %.4g texels that were asked for: raise "
+           "--resolution or lower --margin\n",
+           asked);
+  }
   if (found.splits == 0) return;
   append(text, "splits     %llu, of %.4g root areas, for %.1f%% more of the pages used\n",
          static_cast<unsigned long long>(found.splits), found.split_length,

@@ -1,5 +1,6 @@
 // The entry points that make an atlas and hand it out.
 #include <beltrami/beltrami.h>
+#include <algorithm>
 
 #include <cmath>
 #include <cstddef>
@@ -37,6 +38,20 @@ void describe_admitted(beltrami_atlas& report, const AdmitCounts& counts) {
   report.holes = count(counts.holes);
 }
 
+void describe_missed(const Unwrapped& result, beltrami_atlas& report) {
+  const std::vector<MissedTarget>& missed = result.atlas.missed;
+  report.missed_parts = missed.size();
+  report.missed_face = BELTRAMI_NO_ELEMENT;
+  if (missed.empty()) return;
+  const auto worst = std::max_element(missed.begin(), missed.end(),
+                                      [](const MissedTarget& a, const MissedTarget& b) {
+                                        return a.symmetric_dirichlet < b.symmetric_dirichlet;
+                                      });
+  report.missed_face = result.face_of(worst->first_face);
+  report.missed_triangles = count(worst->faces);
+  report.missed_energy = worst->symmetric_dirichlet;
+}
+
 beltrami_atlas describe(const Unwrapped& result) {
   const Atlas& atlas = result.atlas;
   beltrami_atlas report{};
@@ -63,6 +78,10 @@ beltrami_atlas describe(const Unwrapped& result) {
   report.searched = result.searched ? 1 : 0;
   report.reached = result.reached ? 1 : 0;
   report.pages = atlas.pages ? count(atlas.pages->count) : 0;
+  report.slivers = count(atlas.energy.slivers);
+  report.symmetric_dirichlet_with_slivers = atlas.energy.mean_with_slivers;
+  report.max_with_slivers = atlas.energy.max_with_slivers;
+  describe_missed(result, report);
   return report;
 }
 

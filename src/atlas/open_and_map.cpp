@@ -12,6 +12,7 @@
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
 #include "atlas/rescue.h"
+#include "atlas/seams.h"
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
@@ -317,7 +318,9 @@ void add_up(const std::vector<std::vector<StageStatistics>>& of_pieces, double s
 /// The charts of a piece, in the unit of the whole.
 void collect(const SurfacePiece& piece, const std::optional<SeamTarget>& target, Mapped mapped,
              const Admitted& admitted, MappedSurface& all) {
-  if (target && misses(mapped, *target)) {
+  const AtlasEnergy& energy = mapped.energy;
+  if (target && (energy.symmetric_dirichlet > target->energy + kEnergyTolerance ||
+                 misses(energy.p99, target->p99))) {
     Index first = first_input_face(mapped.opened.charts.front(), admitted);
     for (const AtlasChart& chart : mapped.opened.charts) {
       first = std::min(first, first_input_face(chart, admitted));

@@ -11,9 +11,6 @@ namespace {
 
 using Edge = std::array<Index, 2>;  // the lesser end first
 
-/// What a search takes for met, and so what it is judged by.
-constexpr double kEnergyTolerance = 1e-4;
-
 /// Calls body(from, to) for each side of a face that is judged.
 template <class Body>
 void for_each_side(const Atlas& atlas, const Body& body) {
@@ -70,7 +67,7 @@ std::vector<Edge> seams_of(const Atlas& atlas) {
 
 bool meets(const Atlas& atlas, const SeamTarget& target) {
   const Index components = atlas.admitted.components;
-  return atlas.outcome != Outcome::kNotInjective &&
+  return atlas.outcome != Outcome::kNotInjective && atlas.missed.empty() &&
          atlas.energy.symmetric_dirichlet <= target.energy + kEnergyTolerance &&
          (target.p99 == 0 || atlas.energy.p99 <= target.p99) &&
          (target.max_charts == 0 ||

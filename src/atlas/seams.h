@@ -15,6 +15,9 @@ namespace beltrami {
 /// once and in order. What has one side is an open border.
 std::vector<std::array<Index, 2>> seams_of(const Atlas& atlas);
 
+/// What a search takes for met, and so what it is judged by.
+inline constexpr double kEnergyTolerance = 1e-4;
+
 /// Whether the atlas is injective and meets all that was asked of its seams: the energy to 1e-4, to
 /// which they are searched for, and the number of charts but for one for each component.
 bool meets(const Atlas& atlas, const SeamTarget& target);

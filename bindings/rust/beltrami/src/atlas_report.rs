@@ -141,6 +141,22 @@ pub struct AtlasSummary {
     pub peak_memory_bytes: u64,
     /// Pages; 0 where the atlas is not packed.
     pub pages: usize,
+    /// Triangles that no energy counts: the worst ones, which together have less than a millionth
+    /// of the area.
+    pub slivers: usize,
+    /// The mean energy with them.
+    pub symmetric_dirichlet_with_slivers: f64,
+    /// The greatest energy with them.
+    pub max_with_slivers: f64,
+    /// Components, as the given cuts part them, that miss the energy or percentile that seams were
+    /// searched for: each is to have it.
+    pub missed_parts: usize,
+    /// The first face of the worst of them.
+    pub missed_face: Option<usize>,
+    /// Triangles of that part.
+    pub missed_triangles: usize,
+    /// Its mean energy; 0 where there is none.
+    pub missed_energy: f64,
 }
 
 impl AtlasSummary {
@@ -177,6 +193,13 @@ impl AtlasSummary {
             cpu_seconds: raw.cpu_seconds,
             peak_memory_bytes: raw.peak_memory_bytes,
             pages: count(raw.pages),
+            slivers: count(raw.slivers),
+            symmetric_dirichlet_with_slivers: raw.symmetric_dirichlet_with_slivers,
+            max_with_slivers: raw.max_with_slivers,
+            missed_parts: count(raw.missed_parts),
+            missed_face: element(raw.missed_face),
+            missed_triangles: count(raw.missed_triangles),
+            missed_energy: raw.missed_energy,
         }
     }
 }
