@@ -694,6 +694,15 @@ typedef struct beltrami_atlas {
   int32_t reached;            /* 1 where those meet what was asked for: energy (to 0.0001), p99,
                                * charts (or one for each component), seam length; else 0 */
   uint64_t pages;             /* 0 where it is not packed: beltrami_get_packing has the rest */
+  uint64_t slivers;           /* triangles that no energy above counts: the worst ones, which
+                               * together have less than a millionth of the area */
+  double symmetric_dirichlet_with_slivers; /* what it would be with them */
+  double max_with_slivers;                 /* likewise */
+  uint64_t missed_parts; /* components, as the cuts that are given part them, that miss the energy
+                          * or p99 that seams were searched for: each is to have it */
+  uint64_t missed_face;  /* the first face of the worst of them, or BELTRAMI_NO_ELEMENT */
+  uint64_t missed_triangles; /* of that part */
+  double missed_energy;      /* its mean */
 } beltrami_atlas;
 
 /* A chart: a connected piece of the surface. */

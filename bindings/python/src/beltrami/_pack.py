@@ -186,8 +186,8 @@ def pack(
         Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be. A
         number from 0 to 1,000.
     pack_turns : {"any", "quarter", "none"}, default "any"
-        How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
-        none; they are never mirrored.
+        How charts may be turned on their page: any (as it fits best), quarter (their least box
+        along the texels) or none; they are never mirrored.
     pack_block : int, default 1
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.

@@ -320,6 +320,22 @@ class AtlasReport:
         component), seam length.
     pages : int
         0 where the atlas is not packed: `Atlas.packing` has the rest.
+    slivers : int
+        Triangles that no energy above counts: the worst ones, which together have less than a
+        millionth of the area.
+    symmetric_dirichlet_with_slivers : float
+        What it would be with them.
+    max_with_slivers : float
+        Likewise.
+    missed_parts : int
+        Components, as the cuts that are given part them, that miss the energy or p99 that seams
+        were searched for: each is to have it.
+    missed_face : int | None
+        The first face of the worst of them, or None.
+    missed_triangles : int
+        Of that part.
+    missed_energy : float
+        Its mean.
     """
 
     vertices: int
@@ -355,6 +371,13 @@ class AtlasReport:
     searched: bool
     reached: bool
     pages: int
+    slivers: int
+    symmetric_dirichlet_with_slivers: float
+    max_with_slivers: float
+    missed_parts: int
+    missed_face: int | None
+    missed_triangles: int
+    missed_energy: float
 
 
 @dataclass(frozen=True)

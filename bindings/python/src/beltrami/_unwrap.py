@@ -239,7 +239,8 @@ def unwrap(
         A number from 0 to 1e+100.
     fill_holes : float, default 0.5
         Holes whose boundary is no longer than this many roots of their component's area cost no
-        seam, larger ones are joined to one; 0 joins all. A number from 0 to 1,000,000,000.
+        seam, larger ones are joined to one; 0 joins all. The longest of a component is its outline.
+        A number from 0 to 1,000,000,000.
     share_copies : bool, default False
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
@@ -288,8 +289,8 @@ def unwrap(
         Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be. A
         number from 0 to 1,000.
     pack_turns : {"any", "quarter", "none"}, default "any"
-        How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
-        none; they are never mirrored.
+        How charts may be turned on their page: any (as it fits best), quarter (their least box
+        along the texels) or none; they are never mirrored.
     pack_block : int, default 1
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.

@@ -1180,7 +1180,8 @@ pub struct beltrami_atlas {
     /** triangles with the vertices of one before them: each lies in a
  layer of its own, or shares the UVs of the first*/
     pub copies: u64,
-    /// of more than two triangles, which part there
+    /** of more than two triangles: those stay together that continue
+ each other*/
     pub crowded_edges: u64,
     /// where the sides of a one-sided surface part
     pub one_sided_edges: u64,
@@ -1224,11 +1225,27 @@ pub struct beltrami_atlas {
     pub reached: i32,
     /// 0 where it is not packed: beltrami_get_packing has the rest
     pub pages: u64,
+    /** triangles that no energy above counts: the worst ones, which
+ together have less than a millionth of the area*/
+    pub slivers: u64,
+    /// what it would be with them
+    pub symmetric_dirichlet_with_slivers: f64,
+    /// likewise
+    pub max_with_slivers: f64,
+    /** components, as the cuts that are given part them, that miss the energy
+ or p99 that seams were searched for: each is to have it*/
+    pub missed_parts: u64,
+    /// the first face of the worst of them, or BELTRAMI_NO_ELEMENT
+    pub missed_face: u64,
+    /// of that part
+    pub missed_triangles: u64,
+    /// its mean
+    pub missed_energy: f64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 264usize];
+    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 320usize];
     ["Alignment of beltrami_atlas"][::core::mem::align_of::<beltrami_atlas>() - 8usize];
     [
         "Offset of field: beltrami_atlas::struct_size",
@@ -1335,6 +1352,28 @@ const _: () = {
     [
         "Offset of field: beltrami_atlas::pages",
     ][::core::mem::offset_of!(beltrami_atlas, pages) - 256usize];
+    [
+        "Offset of field: beltrami_atlas::slivers",
+    ][::core::mem::offset_of!(beltrami_atlas, slivers) - 264usize];
+    [
+        "Offset of field: beltrami_atlas::symmetric_dirichlet_with_slivers",
+    ][::core::mem::offset_of!(beltrami_atlas, symmetric_dirichlet_with_slivers)
+        - 272usize];
+    [
+        "Offset of field: beltrami_atlas::max_with_slivers",
+    ][::core::mem::offset_of!(beltrami_atlas, max_with_slivers) - 280usize];
+    [
+        "Offset of field: beltrami_atlas::missed_parts",
+    ][::core::mem::offset_of!(beltrami_atlas, missed_parts) - 288usize];
+    [
+        "Offset of field: beltrami_atlas::missed_face",
+    ][::core::mem::offset_of!(beltrami_atlas, missed_face) - 296usize];
+    [
+        "Offset of field: beltrami_atlas::missed_triangles",
+    ][::core::mem::offset_of!(beltrami_atlas, missed_triangles) - 304usize];
+    [
+        "Offset of field: beltrami_atlas::missed_energy",
+    ][::core::mem::offset_of!(beltrami_atlas, missed_energy) - 312usize];
 };
 /// A chart: a connected piece of the surface.
 #[repr(C)]
@@ -1720,11 +1759,12 @@ extern "C" {
  options of pages say, and scaled, never mirrored. With charts that stay and no texels-per-unit
  the others get the density that those have. The meshes are read, not kept, and so are the
  context's mesh and other results; those of an earlier beltrami_pack stay if it fails. Charts that
- are folded, flipped or lie on themselves are packed as they are. Returns OK, or with a result
+ are folded, flipped or lie on themselves are packed as they are. Triangles without area between
+ their UVs are no charts: they become points of another one. Returns OK, or with a result
  NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
  errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted
- in the mesh that the sentence names), NO_ROOM, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a
- run), INTERNAL.*/
+ in the mesh that the sentence names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED,
+ OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL.*/
     pub fn beltrami_pack(
         context: *mut beltrami_context,
         meshes: *const *const beltrami_uv_mesh,

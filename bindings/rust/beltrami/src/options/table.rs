@@ -157,8 +157,8 @@ choice! {
 }
 
 choice! {
-    /// How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
-    /// none; they are never mirrored. See [`UnwrapOptions::pack_turns`].
+    /// How charts may be turned on their page: any (as it fits best), quarter (their least box
+    /// along the texels) or none; they are never mirrored. See [`UnwrapOptions::pack_turns`].
     PackTurns {
         /// Any.
         Any = "any",
@@ -346,13 +346,13 @@ options! {
         Float(&[]), 0..=1e100, default 0, calls 2;
 
     /// Holes whose boundary is no longer than this many roots of their component's area cost no
-    /// seam, larger ones are joined to one; 0 joins all.
+    /// seam, larger ones are joined to one; 0 joins all. The longest of a component is its outline.
     ///
     /// From 0 to 1000000000.
     ///
     /// Default: 0.5.
     fill_holes(f64) of [UnwrapOptions] = 19 "fill-holes"
-        "Holes whose boundary is no longer than this many roots of their component's area cost no seam, larger ones are joined to one; 0 joins all."
+        "Holes whose boundary is no longer than this many roots of their component's area cost no seam, larger ones are joined to one; 0 joins all. The longest of a component is its outline."
         Float(&[]), 0..=1000000000, default 0.5, calls 2;
 
     /// `true` gives copies of a face, as of double-sided surfaces, the UVs of the first instead of
@@ -497,12 +497,12 @@ options! {
         "Pages to fill at most; 0 takes one, or with texels-per-unit as many as there have to be."
         Int(&[]), 0..=1000, default 0, calls 6;
 
-    /// How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or
-    /// none; they are never mirrored.
+    /// How charts may be turned on their page: any (as it fits best), quarter (their least box
+    /// along the texels) or none; they are never mirrored.
     ///
     /// Default: [`Any`](PackTurns::Any).
     pack_turns(PackTurns) of [UnwrapOptions PackOptions] = 35 "pack-turns"
-        "How charts may be turned on their page: any (as it fits best), quarter (by 90 degrees) or none; they are never mirrored."
+        "How charts may be turned on their page: any (as it fits best), quarter (their least box along the texels) or none; they are never mirrored."
         Choice(PackTurns::NAMES), 0..=2, default 0, calls 6;
 
     /// Texels to the side of the blocks that no two charts share, as compressed textures want it:
