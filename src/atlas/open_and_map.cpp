@@ -361,7 +361,7 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   std::vector<Mapped> mapped(pieces.size());
   std::vector<std::vector<StageStatistics>> spent(pieces.size());
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  for_each_piece(pieces, work.part(kReady, 1), [&](Index p, const Work& own) {
+  for_each_piece(pieces, work.part(kReady, 1).named("cut"), [&](Index p, const Work& own) {
     mapped[p] = map_piece(task, pieces[p], own, spent[p]);
   });
   add_up(spent, wall_seconds() - wall, cpu_seconds() - cpu, stages);

@@ -43,7 +43,7 @@ std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec
   Descent done = descend_led(mesh, rest, start, newton, work);
   const bool is_simple = !keeps_boundary_simple(options) ||
                          find_crossings(mesh.boundary, done.uvs).empty() ||
-                         open_touching_sides(mesh, work, done.uvs);
+                         (options.parts_touching && open_touching_sides(mesh, work, done.uvs));
   if (!is_simple || is_hopeless(done, options)) return std::nullopt;
   return done;
 }

@@ -106,11 +106,9 @@ Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   if (!contact.is_pressed(uvs) || !contact.is_simple(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact.is_simple(map); };
     Led free = descend_with_lead(mesh, rest, newton, work, uvs);
-    if (!free.newton.refused || free.newton.admitted.empty()) return ended(free, 0, std::move(uvs));
-    if (open_touching_sides(mesh, work, uvs)) {
-      Descent opened = ended(free, 0, std::move(uvs));
-      opened.in_contact = true;
-      return opened;
+    const bool is_refused = free.newton.refused && !free.newton.admitted.empty();
+    if (!is_refused || (options.parts_touching && open_touching_sides(mesh, work, uvs))) {
+      return ended(free, 0, std::move(uvs));
     }
     iterations = free.iterations;
     newton.admissible = nullptr;

@@ -62,7 +62,9 @@ void simplify_fine(Index target, const std::optional<CoarseDisk>& level, const W
 void solve_coarse(const ChartOptions& options, const Work& work, FineProblem& fine) {
   const double tolerance = kCoarseTolerance * options.tolerance;
   run_stage("coarse", work, fine.statistics.stages, [&](StageStatistics& stage, const Work& inner) {
-    Descent done = minimise_from_scratch(fine.coarse.mesh, tolerance, options, inner);
+    ChartOptions coarse = options;
+    coarse.parts_touching = false;
+    Descent done = minimise_from_scratch(fine.coarse.mesh, tolerance, coarse, inner);
     stage.iterations = done.iterations;
     fine.coarse_uvs = std::move(done.uvs);
     fine.in_contact = done.in_contact;

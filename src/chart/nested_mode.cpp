@@ -378,8 +378,10 @@ void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& 
 /// better one comes of it, or else from scratch. Returns whether there is an injective map.
 bool finish_few(const DiskMesh& mesh, bool injective, const ChartOptions& options, const Work& work,
                 Climb& climb) {
+  ChartOptions coarse = options;
+  coarse.parts_touching = false;
   ChartMap map =
-      cm_mode(mesh, "coarse", injective ? climb.map.uvs : std::vector<Vec2>(), options, work);
+      cm_mode(mesh, "coarse", injective ? climb.map.uvs : std::vector<Vec2>(), coarse, work);
   const double energy = map.statistics.coarse_energy;
   map.statistics.coarse_faces = 0;  // that is the coarsest level
   map.statistics.coarse_energy = 0;

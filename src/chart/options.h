@@ -17,7 +17,7 @@ enum class Flatten { kMetric, kDirichlet, kGif, kFlim, kBff };
 /// literature has it.
 enum class Injectivity { kAuto, kGlobal, kLocal };
 
-/// Each has the meaning of the public option of its name, but for the last.
+/// Each has the meaning of the public option of its name, but for the last two.
 struct ChartOptions {
   Method method = Method::kBeltrami;
   Flatten flatten = Flatten::kMetric;
@@ -34,6 +34,10 @@ struct ChartOptions {
   /// No public option: the map only tells what a cut is worth, and starts that are hard to mend are
   /// given up.
   bool is_trial = false;
+  /// Likewise: sides of the boundary that touch in the best map are parted by hardly anything. Not
+  /// on a coarse mesh, from whose map a finer one starts: there contact holds them apart, with room
+  /// for what is between its vertices.
+  bool parts_touching = true;
 };
 
 /// Whether the boundary may not cross itself.

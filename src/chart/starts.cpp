@@ -77,14 +77,18 @@ bool start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
   for (std::vector<Vec2> start : {projection(mesh), unflipped_unfolding(mesh, rest)}) {
     if (start.empty()) continue;
     if (!mend_slivers(mesh, rest, work, start)) continue;
-    if (keeps_boundary_simple(options) && is_final(mesh, rest, contact, work, start)) {
+    const bool may_end = keeps_boundary_simple(options) && options.parts_touching;
+    if (may_end && is_final(mesh, rest, contact, work, start)) {
       uvs.swap(start);
       return true;
     }
     scale_best(mesh, rest, options, work, start);
     double energy = mean_energy(options.energy, mesh.faces, rest, start, work);
     if (!(energy < least)) continue;
-    if (!is_simple(mesh.boundary, start) && !open_touching_sides(mesh, work, start)) continue;
+    if (!is_simple(mesh.boundary, start) &&
+        !(options.parts_touching && open_touching_sides(mesh, work, start))) {
+      continue;
+    }
     if (keeps_boundary_simple(options)) {
       contact.fit(start, 2);
       energy += contact.strength() / surface_area(mesh, work) * contact.energy(start);

@@ -239,8 +239,8 @@ void judge_page(const Shape& shape, const ShapeAtlas& atlas, const std::vector<s
 
 void judge_energy(const Shape& shape, const ShapeAtlas& atlas, Report& report) {
   constexpr double kMore = 1e-3;  // what the target or the minimal cut's may be missed by
-  // Of the whole area: single precision has few digits left for the UVs of what is smaller.
-  constexpr double kDust = 1e-9;
+  // Of the whole area: smaller ones have no say, as slivers have not.
+  constexpr double kDust = 1e-6;
   const auto energies = component_energies(shape, atlas);
   double area = 0, sum = 0;
   for (const ComponentEnergy& one : energies) {
