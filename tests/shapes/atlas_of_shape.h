@@ -48,7 +48,7 @@ struct ComponentEnergy {
   double energy = 2;  ///< mean by area, but for the worst that have less than kNoVote of the area
 };
 
-/// Share of a component's area that has no vote.
+/// Share of the area, of a component's and of all, that has no vote.
 inline constexpr double kNoVote = 1e-6;
 
 /// The component of each triangle.

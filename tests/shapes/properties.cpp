@@ -239,8 +239,6 @@ void judge_page(const Shape& shape, const ShapeAtlas& atlas, const std::vector<s
 
 void judge_energy(const Shape& shape, const ShapeAtlas& atlas, Report& report) {
   constexpr double kMore = 1e-3;  // what the target or the minimal cut's may be missed by
-  // Of the whole area: smaller ones have no say, as slivers have not.
-  constexpr double kDust = 1e-6;
   const auto energies = component_energies(shape, atlas);
   double area = 0, sum = 0;
   for (const ComponentEnergy& one : energies) {
@@ -251,7 +249,7 @@ void judge_energy(const Shape& shape, const ShapeAtlas& atlas, Report& report) {
   std::vector<ComponentEnergy> least;
   for (std::size_t i = 0; i < energies.size(); ++i) {
     const auto& [part, energy] = energies[i];
-    if (part < kDust * area || energy <= kFlatEnergy) continue;
+    if (part < kNoVote * area || energy <= kFlatEnergy) continue;
     if (shape.flat) {
       report.findings.push_back({Fault::kBent, text("component %zu of %zu, %.2g of the area: %.6g",
                                                     i, energies.size(), part / area, energy)});

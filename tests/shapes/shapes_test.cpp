@@ -209,7 +209,7 @@ TEST_F(Judge, TakesTheRefusalOfNothing) {
 }
 
 /// Seeds, and faces of a shape, up to which it is tried here.
-constexpr std::uint64_t kSeeds = 150;
+constexpr std::uint64_t kSeeds = 100;
 constexpr std::size_t kMostFaces = 60;
 
 class SmallShapes : public testing::TestWithParam<Way> {};
