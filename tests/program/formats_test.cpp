@@ -84,7 +84,7 @@ TEST(Formats, HoldOneAtlasWithoutAFold) {
       const bool exact = float32 || format_of(name) == MeshFormat::kGltf;
       EXPECT_TRUE(!exact || injective(file, turned_in_single)) << name;
     }
-    EXPECT_EQ(run({"pack", directory.path("out.glb"), again}).exit_code, 0);
+    EXPECT_EQ(run({"pack", directory.path("out.glb"), "--output", again}).exit_code, 0);
     const MeshFile packed = read_mesh(again, Content::kAll);
     for (const Stored stored : {as_it_is, single_up, single_down, turned_in_single}) {
       EXPECT_TRUE(injective(packed, stored));
