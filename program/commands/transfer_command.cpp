@@ -252,9 +252,8 @@ class Transfer {
       // The first of several pages may have no number.
       const bool unnumbered = page == 0 && !exists(path) && exists(arguments_.texture);
       if (!first && !unnumbered && !exists(path)) {
-        throw Failure(path +
-                      ": there is no such page of the texture: one that repeats is read "
-                      "with --wrap repeat");
+        throw Failure(path + ": is not there, and faces of " + arguments_.old_mesh +
+                      " are on that tile: a texture that repeats is read with --wrap repeat");
       }
       Pixels& texture = textures_[page];
       texture = read_texture(unnumbered ? arguments_.texture : path);

@@ -198,7 +198,7 @@ std::vector<Broken> broken_meshes() {
       {"two boundaries", annulus, "BELTRAMI_E_BOUNDARIES", "vertex"},
       {"genus", torus_with_hole(6), "BELTRAMI_E_GENUS", ""},
       {"zero area", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "BELTRAMI_E_ZERO_AREA", ""},
-      {"two corners", three + "f 1 2\n", "FILE_ERROR", "face"},
+      {"two corners", three + "f 1 2\n", "FILE_ERROR", ""},
       {"quad that repeats a vertex", three + "v 1 1 0\nf 1 2 4 2\n", "BELTRAMI_E_REPEATED_VERTEX",
        "face"},
       {"empty", "", "FILE_ERROR", ""},
