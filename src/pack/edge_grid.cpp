@@ -9,7 +9,7 @@
 namespace beltrami {
 namespace {
 
-constexpr double kLeastCell = 4;             // texels
+constexpr double kLeastCell = 4;  // texels
 /// Cells along an edge of the mean length, at most: few long edges need no fine grid.
 constexpr double kMostPerEdge = 4;
 constexpr std::int64_t kMostPerSide = 4096;  // cells

@@ -1,8 +1,8 @@
 // Polygons into triangles: their corners, every one, whatever they name.
 #include "admit/triangulate.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <map>

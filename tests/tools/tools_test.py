@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What the build and the rings of tests lean on: groups of sources, and the count of what has failed.
 
-    tools_test.py ROOT
+tools_test.py ROOT
 """
+
 from __future__ import annotations
 
 import pathlib

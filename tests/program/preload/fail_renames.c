@@ -1,5 +1,5 @@
-/* Preloaded: the rename number FAIL_AT (from 1) of the process fails, or with KILL set ends the process
-   before it. */
+/* Preloaded: the rename number FAIL_AT (from 1) of the process fails, or with KILL set ends the
+   process before it. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -10,7 +10,8 @@
 static int renames;
 
 int rename(const char* from, const char* to) {
-  int (*real)(const char*, const char*) = (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
+  int (*real)(const char*, const char*) =
+      (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
   const char* at = getenv("FAIL_AT");
   if (!at || ++renames != atoi(at)) return real(from, to);
   if (getenv("KILL")) kill(getpid(), SIGKILL);
