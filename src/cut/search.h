@@ -31,10 +31,10 @@ struct SearchEffort {
   Index rough_faces = 3000;     ///< what is to be joined by long seams is seen on so many
   /// A surface is searched from so many starts with each cost of a path, one on which a start costs
   /// little from more; so many of them are finished, and the best improved.
-  int starts = 1, starts_of_small = 2;
-  std::size_t finished = 1;
-  Index faces_to_vary = 0;  ///< what was found is varied, and charts joined again on trial, in
-                            ///< rounds that go over so many faces in all; 0: not at all
+  int starts = 3, starts_of_small = 6;
+  std::size_t finished = 3;
+  Index faces_to_vary = 120'000;  ///< what was found is varied, and charts joined again on trial,
+                                  ///< in rounds that go over so many faces in all; 0: not at all
 };
 
 /// Surfaces of no more faces are searched with care; on larger ones a search is to take less than

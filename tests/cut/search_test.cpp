@@ -39,15 +39,10 @@ Surface built(TriangleList mesh) {
   return build_surface(std::move(mesh.positions), std::move(mesh.faces), Work(1));
 }
 
-/// All that a search can do.
-constexpr SearchEffort kAll = {
-    .starts = 3, .starts_of_small = 6, .finished = 3, .faces_to_vary = 120'000};
-
 SearchedSeams searched(const Surface& surface, double energy, const EdgeMarks& locked = {},
-                       int threads = 1, const SeamWeights& weights = {},
-                       const SearchEffort& effort = {}) {
+                       int threads = 1, const SeamWeights& weights = {}) {
   return search_seams(surface, surface.face_count(), topology_of(surface, Work(1)), locked,
-                      {.energy = energy}, effort, weights, {}, {}, Work(threads));
+                      {.energy = energy}, {}, weights, {}, {}, Work(threads));
 }
 
 double length(const Surface& surface, const EdgeMarks& marks) {
@@ -296,7 +291,7 @@ TEST(Search, SeamsAreSymmetricWhereTheSurfaceIs) {
     const Surface surface = built_about_x(creature(times));
     for (const double energy : {2.05, 2.01}) {
       const SearchedSeams any = searched(surface, energy, {}, 2, kLengths);
-      const SearchedSeams found = searched(surface, energy, {}, 2, kSymmetric, kAll);
+      const SearchedSeams found = searched(surface, energy, {}, 2, kSymmetric);
       EXPECT_GE(charts(surface, found.seams), 1);
       EXPECT_LE(found.energy, energy);
       EXPECT_LT(asymmetry(surface, found.seams, 3), 0.05);
