@@ -279,10 +279,10 @@ void for_each_piece(const std::vector<SurfacePiece>& pieces, const Work& work, c
     return static_cast<double>(of) / static_cast<double>(all);
   };
   std::int64_t large = 0;
-  // Others would wait for a piece of more than a thread's share.
+  // Others would wait for a piece of more than a thread's share. One thread takes all in turn.
   for (; large < size_of(order); ++large) {
     const Index p = order[large];
-    if (faces(p) * work.threads() <= all - done) break;
+    if (work.threads() > 1 && faces(p) * work.threads() < all - done) break;
     run(p, work.part(share(done), share(done + faces(p))));
     done += faces(p);
   }

@@ -26,9 +26,9 @@ struct MappedSurface {
 /// and "flatten". With a target each component by itself and a few times, while the maps miss it or
 /// leave much of what it allows unused: as one where pins, a number of charts, a length of seams or
 /// symmetry is asked of the whole. No component ends worse than a short cut graph leaves it. The
-/// limit of time ends the search for seams; the maps along them are finished. Charts that the input
-/// did not ask for and that cannot be mapped within reason are split until they can. Throws Error
-/// PINS where pins cannot be met together.
+/// limit of time ends the search for seams; the maps along them are finished. Charts that cannot be
+/// mapped within reason are split until they can, unless there are pins or a number of charts is
+/// asked for. Throws Error PINS where pins cannot be met together.
 MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                            const AtlasOptions& options, const Work& work,
                            std::vector<StageStatistics>& stages);
