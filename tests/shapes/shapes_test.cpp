@@ -132,74 +132,72 @@ class Judge : public testing::Test {
   /// Moves the corners of one of the squares, in both precisions.
   void move_second(double du, double dv) {
     for (std::size_t corner = 6; corner < 12; ++corner) {
-      for (std::vector<Uv>* uvs : {&atlas_.uvs, &atlas_.single_uvs}) {
+      for (std::vector<Uv>* uvs : {&atlas.uvs, &atlas.single_uvs}) {
         (*uvs)[corner][0] += du;
         (*uvs)[corner][1] += dv;
       }
     }
   }
   /// What leads from the first square to the second.
-  Uv way() const {
-    return {atlas_.uvs[6][0] - atlas_.uvs[0][0], atlas_.uvs[6][1] - atlas_.uvs[0][1]};
-  }
+  Uv way() const { return {atlas.uvs[6][0] - atlas.uvs[0][0], atlas.uvs[6][1] - atlas.uvs[0][1]}; }
 
-  const Shape shape_ = two_squares();
-  ShapeAtlas atlas_ = unwrap(shape_, Way::kMinimal);
+  const Shape shape = two_squares();
+  ShapeAtlas atlas = unwrap(shape, Way::kMinimal);
 };
 
 TEST_F(Judge, HasNothingToSayOfTwoSquares) {
-  EXPECT_TRUE(judge(shape_, atlas_).findings.empty());
+  EXPECT_TRUE(judge(shape, atlas).findings.empty());
 }
 
 TEST_F(Judge, SeesOverlaps) {
   move_second(-0.5 * way()[0], -0.5 * way()[1]);
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kNotInjective));
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kDisagreement)) << "the library said that all was well";
+  EXPECT_TRUE(finds(shape, atlas, Fault::kNotInjective));
+  EXPECT_TRUE(finds(shape, atlas, Fault::kDisagreement)) << "the library said that all was well";
 }
 
 TEST_F(Judge, SeesFlips) {
-  std::swap(atlas_.uvs[0], atlas_.uvs[1]);
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kNotInjective));
+  std::swap(atlas.uvs[0], atlas.uvs[1]);
+  EXPECT_TRUE(finds(shape, atlas, Fault::kNotInjective));
 }
 
 TEST_F(Judge, SeesWhatRoundsToALine) {
-  atlas_.single_uvs[0] = atlas_.single_uvs[1];
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kSingle));
+  atlas.single_uvs[0] = atlas.single_uvs[1];
+  EXPECT_TRUE(finds(shape, atlas, Fault::kSingle));
 }
 
 TEST_F(Judge, SeesTrianglesWithoutAPlace) {
-  atlas_.uvs[1] = atlas_.uvs[2] = atlas_.uvs[0];
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kLost));
+  atlas.uvs[1] = atlas.uvs[2] = atlas.uvs[0];
+  EXPECT_TRUE(finds(shape, atlas, Fault::kLost));
 }
 
 TEST_F(Judge, SeesWhatLeavesThePage) {
   move_second(1, 0);
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kOffPage));
+  EXPECT_TRUE(finds(shape, atlas, Fault::kOffPage));
 }
 
 TEST_F(Judge, SeesChartsThatAreTooClose) {
-  Shape shape = shape_;
+  Shape shape = shape;
   shape.margin = 300;
-  EXPECT_TRUE(finds(shape, atlas_, Fault::kMargin));
+  EXPECT_TRUE(finds(shape, atlas, Fault::kMargin));
 }
 
 TEST_F(Judge, SeesFlatChartsThatAreBent) {
-  for (Uv& uv : atlas_.uvs) uv[0] *= 0.8;
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kBent));
+  for (Uv& uv : atlas.uvs) uv[0] *= 0.8;
+  EXPECT_TRUE(finds(shape, atlas, Fault::kBent));
 }
 
 TEST_F(Judge, SeesEnergiesAboveTheTargetAndTheMinimalCut) {
-  Shape shape = shape_;
+  Shape shape = shape;
   shape.flat = false;
-  for (Uv& uv : atlas_.uvs) uv[0] *= 0.5;
-  EXPECT_FALSE(finds(shape, atlas_, Fault::kEnergy)) << "nothing was asked for";
-  atlas_.target = 2.1;
-  EXPECT_TRUE(finds(shape, atlas_, Fault::kEnergy));
+  for (Uv& uv : atlas.uvs) uv[0] *= 0.5;
+  EXPECT_FALSE(finds(shape, atlas, Fault::kEnergy)) << "nothing was asked for";
+  atlas.target = 2.1;
+  EXPECT_TRUE(finds(shape, atlas, Fault::kEnergy));
 }
 
 TEST_F(Judge, SeesRefusals) {
-  atlas_.status = BELTRAMI_E_ZERO_AREA;
-  EXPECT_TRUE(finds(shape_, atlas_, Fault::kRefused));
+  atlas.status = BELTRAMI_E_ZERO_AREA;
+  EXPECT_TRUE(finds(shape, atlas, Fault::kRefused));
 }
 
 TEST_F(Judge, TakesTheRefusalOfNothing) {
