@@ -141,53 +141,53 @@ class Judge : public testing::Test {
   /// What leads from the first square to the second.
   Uv way() const { return {atlas.uvs[6][0] - atlas.uvs[0][0], atlas.uvs[6][1] - atlas.uvs[0][1]}; }
 
-  const Shape shape = two_squares();
-  ShapeAtlas atlas = unwrap(shape, Way::kMinimal);
+  const Shape squares = two_squares();
+  ShapeAtlas atlas = unwrap(squares, Way::kMinimal);
 };
 
 TEST_F(Judge, HasNothingToSayOfTwoSquares) {
-  EXPECT_TRUE(judge(shape, atlas).findings.empty());
+  EXPECT_TRUE(judge(squares, atlas).findings.empty());
 }
 
 TEST_F(Judge, SeesOverlaps) {
   move_second(-0.5 * way()[0], -0.5 * way()[1]);
-  EXPECT_TRUE(finds(shape, atlas, Fault::kNotInjective));
-  EXPECT_TRUE(finds(shape, atlas, Fault::kDisagreement)) << "the library said that all was well";
+  EXPECT_TRUE(finds(squares, atlas, Fault::kNotInjective));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kDisagreement)) << "the library said that all was well";
 }
 
 TEST_F(Judge, SeesFlips) {
   std::swap(atlas.uvs[0], atlas.uvs[1]);
-  EXPECT_TRUE(finds(shape, atlas, Fault::kNotInjective));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kNotInjective));
 }
 
 TEST_F(Judge, SeesWhatRoundsToALine) {
   atlas.single_uvs[0] = atlas.single_uvs[1];
-  EXPECT_TRUE(finds(shape, atlas, Fault::kSingle));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kSingle));
 }
 
 TEST_F(Judge, SeesTrianglesWithoutAPlace) {
   atlas.uvs[1] = atlas.uvs[2] = atlas.uvs[0];
-  EXPECT_TRUE(finds(shape, atlas, Fault::kLost));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kLost));
 }
 
 TEST_F(Judge, SeesWhatLeavesThePage) {
   move_second(1, 0);
-  EXPECT_TRUE(finds(shape, atlas, Fault::kOffPage));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kOffPage));
 }
 
 TEST_F(Judge, SeesChartsThatAreTooClose) {
-  Shape shape = shape;
+  Shape shape = squares;
   shape.margin = 300;
   EXPECT_TRUE(finds(shape, atlas, Fault::kMargin));
 }
 
 TEST_F(Judge, SeesFlatChartsThatAreBent) {
   for (Uv& uv : atlas.uvs) uv[0] *= 0.8;
-  EXPECT_TRUE(finds(shape, atlas, Fault::kBent));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kBent));
 }
 
 TEST_F(Judge, SeesEnergiesAboveTheTargetAndTheMinimalCut) {
-  Shape shape = shape;
+  Shape shape = squares;
   shape.flat = false;
   for (Uv& uv : atlas.uvs) uv[0] *= 0.5;
   EXPECT_FALSE(finds(shape, atlas, Fault::kEnergy)) << "nothing was asked for";
