@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cstddef>
 
+#include "files/column.h"
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
 #include "files/off_header.h"

@@ -28,7 +28,6 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
 /// Smaller surfaces are in the caches anyway.
 constexpr Index kWorthArranging = 50'000;
 // Where the stages end in the progress.

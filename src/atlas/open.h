@@ -12,6 +12,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "cut/edge_marks.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"

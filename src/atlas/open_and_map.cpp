@@ -17,6 +17,7 @@
 #include "base/resources.h"
 #include "base/types.h"
 #include "base/vectors.h"
+#include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
 

@@ -8,6 +8,7 @@
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/pins.h"
+#include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 

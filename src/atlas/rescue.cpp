@@ -6,12 +6,13 @@
 #include <queue>
 #include <utility>
 
+#include "atlas/atlas.h"
 #include "atlas/chart_parts.h"
 #include "atlas/measure.h"
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "cut/cut_into_charts.h"
+#include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
 #include "mesh/chart.h"

@@ -6,6 +6,7 @@
 #include "admit/admit.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
+#include "base/types.h"
 #include "base/work.h"
 #include "chart/options.h"
 

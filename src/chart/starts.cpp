@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/types.h"
 #include "chart/coarser_start.h"
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "base/vectors.h"
 
 namespace beltrami {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abi/host.h"
+#include "base/types.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 

@@ -11,6 +11,7 @@
 #include "atlas/pages.h"
 #include "base/types.h"
 #include "base/vectors.h"
+#include "chart/flattening.h"
 #include "exact/certificate.h"
 #include "repair/rounding.h"
 #include "support/disks.h"

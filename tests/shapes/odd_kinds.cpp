@@ -6,6 +6,8 @@
 
 #include "base/portable_math.h"
 #include "shapes/kinds.h"
+#include "shapes/random.h"
+#include "shapes/shape.h"
 
 namespace beltrami::shapes {
 namespace {

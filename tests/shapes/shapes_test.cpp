@@ -197,7 +197,7 @@ TEST_F(Judge, SeesEnergiesAboveTheTargetAndTheMinimalCut) {
 
 TEST_F(Judge, SeesRefusals) {
   atlas.status = BELTRAMI_E_ZERO_AREA;
-  EXPECT_TRUE(finds(shape, atlas, Fault::kRefused));
+  EXPECT_TRUE(finds(squares, atlas, Fault::kRefused));
 }
 
 TEST_F(Judge, TakesTheRefusalOfNothing) {

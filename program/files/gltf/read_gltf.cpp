@@ -14,6 +14,7 @@
 #include "files/gltf/model.h"
 #include "files/gltf/transforms.h"
 #include "files/gltf_file.h"
+#include "files/inside_folder.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
 #include "process/interrupt.h"
