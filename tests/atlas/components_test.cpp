@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
 #include "energy/measure.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
