@@ -12,6 +12,7 @@
 
 #include "shapes/isolated.h"
 #include "shapes/properties.h"
+#include "shapes/shape.h"
 #include "shapes/shapes.h"
 
 namespace beltrami::shapes {
