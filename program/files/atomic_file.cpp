@@ -74,9 +74,9 @@ class HoldSignals {
   HoldSignals() {
     sigset_t all;
     sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before_);
+    sigprocmask(SIG_BLOCK, &all, &before_);
   }
-  ~HoldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  ~HoldSignals() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
   HoldSignals(const HoldSignals&) = delete;
   HoldSignals& operator=(const HoldSignals&) = delete;
 
