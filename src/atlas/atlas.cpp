@@ -18,7 +18,6 @@
 #include "atlas/rescue.h"
 #include "atlas/split_necks.h"
 #include "base/interrupt.h"
-#include "base/parallel.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"

@@ -12,6 +12,7 @@
 #include "base/portable_math.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "mesh/surface.h"
 #include "support/meshes.h"
 #include "support/solids.h"
 #include "support/surfaces.h"

@@ -6,7 +6,9 @@
 
 #include "base/portable_math.h"
 #include "shapes/kinds.h"
+#include "shapes/random.h"
 #include "shapes/region.h"
+#include "shapes/shape.h"
 
 namespace beltrami::shapes {
 namespace {
