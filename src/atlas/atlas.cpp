@@ -307,6 +307,7 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
 /// Whether there is one.
 bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOptions& options,
             const std::vector<MappedChart>& placed, const Work& work, MappedSurface& mapped) {
+  if (!promises(options.chart)) return false;  // a baseline is shown as it is
   if (!input.pins.empty() || most_charts(options, admitted) > 0) return false;
   if (placed.size() != mapped.maps.size()) return false;  // they were split for their pages
   std::vector<Index> which;

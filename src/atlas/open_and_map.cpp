@@ -18,6 +18,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
+#include "chart/options.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
 
@@ -233,6 +234,7 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
 void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& stages,
             Mapped& mapped) {
   const AtlasOptions& options = task.options;
+  if (!promises(options.chart)) return;  // a baseline is shown as it is
   if (!task.input.pins.empty() || (options.target && options.target->max_charts > 0)) return;
   const PolygonParts polygons{options.admit.polygons, options.diagonals};
   run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
