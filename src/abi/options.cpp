@@ -6,6 +6,7 @@
 
 #include "abi/option_table.h"
 #include "base/error.h"
+#include "cut/search_effort.h"
 #include "energy/energy.h"
 
 namespace beltrami {
@@ -92,6 +93,17 @@ int turns_of(std::int32_t value) {
   }
 }
 
+Effort effort_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_EFFORT_QUICK:
+      return Effort::kQuick;
+    case BELTRAMI_EFFORT_HIGH:
+      return Effort::kHigh;
+    default:
+      return Effort::kNormal;
+  }
+}
+
 /// "flatten=bff": as the program's options, but for the dashes.
 std::string written(const OptionEntry& option, const Options& options) {
   const double value = option.get(options);
@@ -161,6 +173,7 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.fill_limit = options.fill_holes;
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
+  atlas.effort = search_effort(effort_of(options.effort));
   if (options.pack == BELTRAMI_PACK_PAGES) atlas.pack = pack_options(options);
   atlas.split_price = options.pack_splits;
   atlas.chart = chart_options(options);

@@ -284,6 +284,7 @@ Index most_charts(const AtlasOptions& options, const Admitted& admitted) {
 double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOptions& options,
                        const SplitCharts& charts, const Work& work, Atlas& atlas) {
   PackOptions pack = *options.pack;
+  pack.effort *= options.effort.packing;
   // The frame of a map is nobody's choice: upright its borders are more likely to lie along texels.
   pack.upright = true;
   if (pack.texels_per_unit > 0) {

@@ -22,6 +22,7 @@
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
+#include "cut/search_effort.h"
 #include "exact/atlas_certificate.h"
 #include "pack/pack.h"
 
@@ -49,9 +50,9 @@ struct AtlasOptions {
   double fill_limit = 0.5;
   std::optional<SeamTarget> target = {};  ///< seams are searched for it; none: short ones open what
                                           ///< is no disk
-  SearchEffort effort = {};               ///< of that search
-  SeamWeights weights = {};               ///< likewise
-  ChartOptions chart = {};                ///< of every chart, but for what follows
+  SearchEffort effort = search_effort(Effort::kNormal);  ///< of that search, and of the packer
+  SeamWeights weights = {};                              ///< likewise
+  ChartOptions chart = {};                               ///< of every chart, but for what follows
   /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
   /// pins: they lie side by side in that unit.
   std::optional<PackOptions> pack = {};

@@ -315,19 +315,26 @@ OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
   CutSurface cut = cut_into_charts(surface, found.seams, work.part(kSearched, 1));
   if (!cut.non_disks.empty()) {
     found.maps.clear();
-    cut = cut_into_charts(surface, opened_further(surface, found.seams, piece.locked, work), work);
+    found.seams = opened_further(surface, found.seams, piece.locked, work);
+    cut = cut_into_charts(surface, found.seams, work);
   }
   OpenedSurface opened = charts_of(piece, std::move(cut), found.search.level.get(), found.maps);
   opened.predicted_energy = found.energy;
   opened.search = std::move(found.search);
+  opened.seams = std::move(found.seams);
+  return opened;
+}
+
+OpenedSurface open_along(const SurfacePiece& piece, EdgeMarks seams, const Work& work) {
+  OpenedSurface opened = charts_of(piece, cut_into_charts(piece.surface, seams, work), nullptr, {});
+  opened.seams = std::move(seams);
   return opened;
 }
 
 OpenedSurface open_short(const SurfacePiece& piece, const Work& work) {
-  const EdgeMarks marks =
+  EdgeMarks seams =
       open_minimal(piece.surface, piece.topology, piece.locked, work.part(0, kSearched));
-  return charts_of(piece, cut_into_charts(piece.surface, marks, work.part(kSearched, 1)), nullptr,
-                   {});
+  return open_along(piece, std::move(seams), work.part(kSearched, 1));
 }
 
 }  // namespace beltrami

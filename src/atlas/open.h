@@ -102,6 +102,7 @@ struct OpenedSurface {
                                    ///< least face of it
   double predicted_energy = 2;     ///< of seams that were searched
   BegunSearch search;              ///< of these
+  EdgeMarks seams;                 ///< of the piece
 };
 
 /// Cuts a piece along the seams that are searched for `target`. `begun`: as search_seams has it, of
@@ -109,6 +110,9 @@ struct OpenedSurface {
 OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
                             const SearchEffort& effort, const SeamWeights& weights,
                             const BegunSearch& begun, const Work& work);
+
+/// Cuts a piece along `seams`. Precondition: these make disks of it.
+OpenedSurface open_along(const SurfacePiece& piece, EdgeMarks seams, const Work& work);
 
 /// Cuts what is no disk of a piece along a short cut graph.
 OpenedSurface open_short(const SurfacePiece& piece, const Work& work);

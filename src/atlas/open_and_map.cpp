@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "atlas/congruent.h"
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
 #include "atlas/rescue.h"
@@ -32,9 +33,8 @@ constexpr double kCut = 0.15;       // of opening and mapping
 constexpr double kFirstTry = 0.6;   // at a target that may be missed
 constexpr double kSearched = 0.95;  // then a short cut is tried
 
-/// Missed by more, a target is worth further tries, so many in all, of large surfaces fewer;
+/// Missed by more, a target is worth further tries,
 constexpr double kMissed = 1e-6;
-constexpr int kTries = 4, kFewTries = 2;
 /// which aim lower by so many times that,
 constexpr double kMoreThanMissed = 1.1;
 /// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
@@ -183,13 +183,13 @@ struct Tries {
 
 /// What to aim at after maps that were made for `aimed`, if it is worth a further try.
 std::optional<SeamTarget> aimed_again(const SeamTarget& target, const SeamTarget& aimed,
-                                      const Mapped& mapped, const Tries& tries, Index faces) {
-  const bool missed = misses(mapped, target), is_small = faces <= kThoroughFaces;
+                                      const Mapped& mapped, const Tries& tries, bool uses_rest) {
+  const bool missed = misses(mapped, target);
   if (tries.missed && tries.reached) {
-    return is_small && target.p99 == 0 ? tries.between(target) : std::nullopt;
+    return uses_rest && target.p99 == 0 ? tries.between(target) : std::nullopt;
   }
   if (missed) return aimed_lower(target, aimed, mapped);
-  return is_small ? aimed_higher(target, mapped) : std::nullopt;
+  return uses_rest ? aimed_higher(target, mapped) : std::nullopt;
 }
 
 /// `vertex`: as seam_length has it.
@@ -205,23 +205,23 @@ bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
 /// A few tries at the target, and a short cut where all of them miss it.
 Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
                       const Work& work, std::vector<StageStatistics>& stages) {
-  const Index faces = piece.surface.face_count();
+  const SearchEffort& effort = task.options.effort;
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   std::optional<SeamTarget> aim = target;
   BegunSearch begun;
   std::optional<Mapped> best;
   Tries tries;
-  const int most = faces <= kThoroughFaces ? kTries : kFewTries;
+  const int most = effort.tries;
   for (int i = 0; i < most && aim && !work.out_of_time(); ++i) {
     const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
     const double to = kFirstTry + (kSearched - kFirstTry) * i / (most - 1);
     const auto open = [&](const Work& inner) {
-      return open_searched(piece, *aim, task.options.effort, task.options.weights, begun, inner);
+      return open_searched(piece, *aim, effort, task.options.weights, begun, inner);
     };
     Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);
     tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
-    aim = aimed_again(target, *aim, mapped, tries, faces);
+    aim = aimed_again(target, *aim, mapped, tries, effort.uses_rest);
     if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
   }
   if (best && !misses(*best, target)) return *std::move(best);
@@ -261,6 +261,22 @@ Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,
   return mapped;
 }
 
+/// A piece that is congruent to another, whose maps are known: along the seams of that, unless they
+/// miss the target here alone.
+Mapped map_likewise(const Task& task, const SurfacePiece& piece, const SurfacePiece& like,
+                    const Mapped& known, const Work& work, std::vector<StageStatistics>& stages) {
+  const SeamTarget& target = *task.options.target;
+  const auto open = [&](const Work& inner) {
+    return open_along(piece, carried_marks(like, known.opened.seams, piece), inner);
+  };
+  Mapped mapped = open_and_map_once(task, open, false, work.part(0, kMapped), stages);
+  if (misses(mapped, target) && !misses(known, target)) {
+    return map_piece(task, piece, work, stages);
+  }
+  rescue(task, work.part(kMapped, 1), stages, mapped);
+  return mapped;
+}
+
 /// Whether something is asked that pieces cannot be held to one by one.
 bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options) {
   if (!options.target) return true;  // nothing is
@@ -268,12 +284,12 @@ bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options) {
          options.weights.symmetry > 0;
 }
 
-/// Large pieces one after the other on all threads, the rest side by side. `run(piece, work)`.
+/// Large pieces one after the other on all threads, the rest side by side; `order`: their numbers.
+/// `run(piece, work)`.
 template <class Run>
-void for_each_piece(const std::vector<SurfacePiece>& pieces, const Work& work, const Run& run) {
+void for_each_piece(const std::vector<SurfacePiece>& pieces, std::vector<Index> order,
+                    const Work& work, const Run& run) {
   const auto faces = [&](Index p) -> std::int64_t { return pieces[p].surface.face_count(); };
-  std::vector<Index> order(pieces.size());
-  std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return faces(a) > faces(b); });
   std::int64_t all = 0, done = 0;
@@ -364,8 +380,17 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   std::vector<Mapped> mapped(pieces.size());
   std::vector<std::vector<StageStatistics>> spent(pieces.size());
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  for_each_piece(pieces, work.part(kReady, 1).named("cut"), [&](Index p, const Work& own) {
-    mapped[p] = map_piece(task, pieces[p], own, spent[p]);
+  std::vector<Index> first(pieces.size()), searched, copies;
+  std::iota(first.begin(), first.end(), 0);
+  if (options.target) first = first_congruent(pieces);
+  for (Index p = 0; p < size_of(pieces); ++p) (first[p] == p ? searched : copies).push_back(p);
+  const double share = kReady + (1 - kReady) * static_cast<double>(searched.size()) /
+                                    static_cast<double>(pieces.size());
+  for_each_piece(
+      pieces, searched, work.part(kReady, share).named("cut"),
+      [&](Index p, const Work& own) { mapped[p] = map_piece(task, pieces[p], own, spent[p]); });
+  for_each_piece(pieces, copies, work.part(share, 1).named("cut"), [&](Index p, const Work& own) {
+    mapped[p] = map_likewise(task, pieces[p], pieces[first[p]], mapped[first[p]], own, spent[p]);
   });
   add_up(spent, wall_seconds() - wall, cpu_seconds() - cpu, stages);
   for (std::size_t p = 0; p < pieces.size(); ++p) {

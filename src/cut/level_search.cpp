@@ -27,21 +27,17 @@ namespace {
 constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
-/// Tolerances of the maps that judge: their energies are within some 3% of the excess over 2, and
-/// within 1%.
-constexpr double kFastTolerance = 1e-3, kMapTolerance = 1e-4;
 /// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
 /// so much of the excess, or the map is parted, too, where it lies on itself on less.
 constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
 /// Maps whose excess is more times the one asked for are of cuts that will grow.
 constexpr double kWorthParting = 1.3;
-/// Charts are joined again on trial so often.
-constexpr int kJoins = 6;
 /// What is shorter by less is not worth another map.
 constexpr double kWorthMapping = 1e-3;
 /// Beyond any excess of the model; and what differs by less is one.
 constexpr double kFar = 1e9, kSame = 1.02;
-constexpr int kRounds = 8, kSettling = 6;
+/// What misses the target comes nearer to it in so many rounds.
+constexpr int kMostRounds = 8;
 /// Where the excess is so near to the one asked for, a further round gains nothing; settling goes
 /// on to there.
 constexpr double kNear = 0.98, kFull = 0.997;
@@ -94,6 +90,7 @@ std::vector<double> costs_astray(const Surface& surface, const std::vector<doubl
 }  // namespace
 
 bool Attempt::is_better_than(const Attempt& other) const {
+  if (is_estimate) return false;
   const bool reaches = excess <= 1;
   if (reaches != (other.excess <= 1)) return reaches;
   return reaches ? cost < other.cost : excess < other.excess;
@@ -104,13 +101,13 @@ double Attempt::promised() const {
 }
 
 LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-                         const SeamTarget& target, bool is_thorough, const Work& work,
+                         const SeamTarget& target, const SearchEffort& effort, const Work& work,
                          const Mirror* mirror)
     : level_(level),
       mirror_(mirror),
       start_(start),
       target_(target),
-      is_thorough_(is_thorough),
+      effort_(effort),
       work_(work),
       path_cost_(path_costs(level)),
       search_(level.surface, level.real_faces, path_cost_, std::move(seams.seams),
@@ -156,7 +153,7 @@ bool LevelSearch::extend_astray(double model_energy, int number, bool reopens) {
 Attempt LevelSearch::sketch() {
   extend_astray(target_.energy, start_.number, true);
   shorten_seams(target_.energy);
-  search_.exchange(std::max(target_.energy, search_.energy()));
+  search_.exchange(std::max(target_.energy, search_.energy()), effort_.exchanges);
   search_.reopen();
   shorten_seams(target_.energy);
   Attempt sketch;
@@ -167,12 +164,8 @@ Attempt LevelSearch::sketch() {
   return sketch;
 }
 
-double LevelSearch::tolerance() const {
-  return is_thorough_ ? kMapTolerance : kFastTolerance;
-}
-
 LocalMaps LevelSearch::map(const LocalMaps* before) const {
-  return map_locally(level_.surface, level_.real_faces, search_.seams(), tolerance(), before,
+  return map_locally(level_.surface, level_.real_faces, search_.seams(), effort_.tolerance, before,
                      work_);
 }
 
@@ -239,7 +232,17 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
       if (mirror_ != nullptr) mirror_seams();
       maps = map(&maps);
     }
-    apart = with_contact(maps, level_.real_faces, tolerance(), work_);
+    const double free = missed_by(maps);
+    if (free > 1 && !is_last) {  // contact can only add to it
+      const double guessed = free * contact_;
+      attempt = {
+          {search_.seams(), search_.anchors()}, search_.cost(), maps.energy, guessed, {}, true};
+      return true;
+    }
+    apart = with_contact(maps, level_.real_faces, effort_.tolerance,
+                         apart_.uvs.empty() ? nullptr : &apart_, work_);
+    apart_ = apart;
+    contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }
   attempt = {{search_.seams(), search_.anchors()},
@@ -260,7 +263,7 @@ double LevelSearch::aim(double excess) const {
 /// added. All that is better than `best` on the way takes its place.
 void LevelSearch::settle(Attempt now, LocalMaps& maps, Attempt& best) {
   double step = 1;  // of the way
-  for (int i = 0; i < kSettling && !work_.out_of_time(); ++i) {
+  for (int i = 0; i < effort_.settling && !work_.out_of_time(); ++i) {
     if (now.excess <= 1 && now.excess >= kFull) return;
     search_.take(now.seams.seams, now.seams.anchors);
     const double whole = std::clamp(kFull / now.excess, kLeastStep, kMostStep);
@@ -302,6 +305,13 @@ void LevelSearch::calibrate(const LocalMaps& maps) {
   search_.calibrate(excess);
 }
 
+Attempt LevelSearch::judged() {
+  LocalMaps maps;
+  Attempt attempt;
+  judge(true, maps, attempt);
+  return attempt;
+}
+
 Attempt LevelSearch::run(bool is_sketched) {
   return approach(target_.energy, is_sketched, false, 0);
 }
@@ -312,7 +322,7 @@ Attempt LevelSearch::run_calibrated(int calibrations) {
   if (!judge(true, maps, found)) return found;
   calibrate(maps);
   const double energy = aim(found.excess);
-  if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()));
+  if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()), effort_.exchanges);
   Attempt attempt = approach(energy, true, true, calibrations);
   return attempt.is_better_than(found) ? attempt : found;
 }
@@ -327,8 +337,8 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
   std::array<double, 2> last = {-1, -1};  // cost and energy of the model, judged before
   double excess = kFar;
   double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
-  for (int round = 0; round < kRounds; ++round) {
-    work_.report(static_cast<double>(round) / kRounds);
+  for (int round = 0; round < kMostRounds; ++round) {
+    work_.report(static_cast<double>(round) / kMostRounds);
     const bool is_first = round == 0 && !is_sketched;
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool is_correction = round > 0;
@@ -336,10 +346,11 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
                                   : search_.extend(model_energy, is_correction);
     shorten_seams(model_energy, is_correction);
     if (is_first) {
-      search_.exchange(std::max(model_energy, search_.energy()));
+      search_.exchange(std::max(model_energy, search_.energy()), effort_.exchanges);
       shorten_seams(model_energy);
     }
-    const bool ends = round + 1 == kRounds || work_.out_of_time();
+    const int most = best.excess <= 1 ? effort_.rounds : kMostRounds;
+    const bool ends = round + 1 >= most || work_.out_of_time();
     const bool is_last = !goes_on || ends;
     const std::array state = {search_.cost(), search_.energy()};
     if (state != last) {
@@ -357,7 +368,7 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
       missed = kFar;
       last = {-1, -1};
       model_energy = aim(excess);
-      search_.exchange(std::max(model_energy, search_.energy()));
+      search_.exchange(std::max(model_energy, search_.energy()), effort_.exchanges);
       continue;
     }
     if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
@@ -411,7 +422,6 @@ void LevelSearch::improve(int rounds, Attempt& best) {
   search_.take(best.seams.seams, best.seams.anchors);
   Attempt attempt = run_calibrated(1);
   if (attempt.is_better_than(best)) best = std::move(attempt);
-  if (rounds == 0) return;
   join_charts(best);
   vary(rounds, best);
 }
@@ -419,8 +429,8 @@ void LevelSearch::improve(int rounds, Attempt& best) {
 /// Charts that were parted are joined elsewhere on trial, where that makes it better.
 void LevelSearch::join_charts(Attempt& best) {
   std::vector<Index> tried;
-  for (int i = 0; i < kJoins && best.excess <= 1 && !work_.out_of_time();) {
-    work_.report(static_cast<double>(i) / kJoins);
+  for (int i = 0; i < effort_.joins && best.excess <= 1 && !work_.out_of_time();) {
+    work_.report(static_cast<double>(i) / effort_.joins);
     search_.take(best.seams.seams, best.seams.anchors);
     const CutSurface cut = cut_into_charts(level_.surface, search_.seams(), work_);
     const double energy = aim(best.excess);
@@ -438,7 +448,7 @@ void LevelSearch::join_charts(Attempt& best) {
       ++i;
       gained = judge(false, maps, attempt) && attempt.is_better_than(best);
       if (gained) best = std::move(attempt);
-      if (gained || i == kJoins) break;
+      if (gained || i == effort_.joins) break;
     }
     if (!gained) return;
   }

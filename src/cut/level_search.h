@@ -10,6 +10,7 @@
 #include "cut/mirror.h"
 #include "cut/seam_search.h"
 #include "cut/search.h"
+#include "cut/search_effort.h"
 #include "cut/search_level.h"
 
 namespace beltrami {
@@ -27,8 +28,10 @@ struct Attempt {
   double energy = std::numeric_limits<double>::infinity();
   double excess = std::numeric_limits<double>::infinity();  ///< over 2, by that asked for
   std::vector<std::vector<Vec2>> maps;                      ///< per chart, none of a sketch
+  bool is_estimate = false;  ///< maps miss the target without contact, what that adds is guessed
 
-  /// Of two that reach the target the shorter one, else the one that is nearer to it.
+  /// Of two that reach the target the shorter one, else the one that is nearer to it. What is only
+  /// estimated is never better.
   bool is_better_than(const Attempt& other) const;
 
   /// What it would cost to just reach the target, about.
@@ -38,15 +41,17 @@ struct Attempt {
 /// The search on one level. All that is asked for it does from the seams that it stands at.
 class LevelSearch {
  public:
-  /// `seams` open the surface into disks. `is_thorough`: maps judge with more digits, and what
-  /// just misses the target is brought there, too. `mirror`: the seams are symmetric to it and to
-  /// stay so, or null. Keeps references to `level`, `target` and the mirror.
+  /// `seams` open the surface into disks. `mirror`: the seams are symmetric to it and to stay so,
+  /// or null. Keeps references to `level`, `target`, `effort` and the mirror.
   LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-              const SeamTarget& target, bool is_thorough, const Work& work,
+              const SeamTarget& target, const SearchEffort& effort, const Work& work,
               const Mirror* mirror = nullptr);
 
   /// By the model alone.
   Attempt sketch();
+
+  /// By maps along the seams as they are, overlaps parted.
+  Attempt judged();
 
   /// Until maps have the energy asked for. `is_sketched`: the seams are a sketch.
   Attempt run(bool is_sketched);
@@ -63,7 +68,6 @@ class LevelSearch {
   bool extend_astray(double model_energy, int number, bool reopens);
   void shorten_seams(double model_energy, bool exactly = false);
   double cost_with_turns() const;
-  double tolerance() const;
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps, double tolerance);
   void mirror_seams();
@@ -80,10 +84,12 @@ class LevelSearch {
   const Mirror* mirror_;  ///< or null
   const Start start_;
   const SeamTarget& target_;
-  const bool is_thorough_;
+  const SearchEffort& effort_;
   const Work work_;
   std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
   SeamSearch search_;
+  LocalMaps apart_;     ///< judged last, with contact
+  double contact_ = 1;  ///< by what its excess was more than without
 };
 
 }  // namespace beltrami

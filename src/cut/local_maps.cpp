@@ -25,9 +25,24 @@ namespace {
 
 constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
-/// The map that the corners of a chart had before, or none where corners that are one now were not,
-/// or a face is folded.
-std::vector<Vec2> map_before(const Chart& chart, const std::vector<std::array<Vec2, 3>>& corners) {
+/// Per face of a surface, at its corners.
+using Corners = std::vector<std::array<Vec2, 3>>;
+
+Corners corners_of(const LocalMaps& maps) {
+  Corners corners(maps.cut.chart_of_face.size());
+  for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
+    const Chart& chart = maps.cut.charts[c];
+    for (Index f = 0; f < chart.mesh.face_count(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        corners[chart.input_face[f]][k] = maps.uvs[c][chart.mesh.faces[f][k]];
+      }
+    }
+  }
+  return corners;
+}
+
+/// The map that the corners of a chart had before, or none where corners that are one now were not.
+std::vector<Vec2> map_before(const Chart& chart, const Corners& corners) {
   std::vector<Vec2> uvs(chart.mesh.positions.size());
   std::vector<bool> is_set(uvs.size(), false);
   for (Index f = 0; f < chart.mesh.face_count(); ++f) {
@@ -40,6 +55,15 @@ std::vector<Vec2> map_before(const Chart& chart, const std::vector<std::array<Ve
     }
   }
   return uvs;
+}
+
+/// Whether a chart that has a map before was a chart of its own there: vertices that are two now
+/// would be more, those that are one now would have none.
+bool was_chart(const Chart& chart, const LocalMaps& before) {
+  const Index other = before.cut.chart_of_face[chart.input_face.front()];
+  if (other == kNone) return false;
+  const Chart& old = before.cut.charts[other];
+  return old.input_vertex.size() == chart.input_vertex.size() && old.input_face == chart.input_face;
 }
 
 std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injectivity injectivity,
@@ -56,7 +80,8 @@ std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injecti
     const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
     NewtonOptions newton = newton_options(options);
     newton.proxy_steps = 0;
-    done = descend(mesh, rest, std::move(start), newton, false, options, work);
+    const bool simple = keeps_boundary_simple(options);
+    done = descend(mesh, rest, std::move(start), newton, simple, options, work);
   } else {
     done = minimise_from_scratch(mesh, tolerance, options, work);
   }
@@ -92,40 +117,46 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
                       double tolerance, const LocalMaps* before, const Work& work) {
   LocalMaps maps;
   maps.cut = cut_into_charts(surface, seams, work);
-  std::vector<std::array<Vec2, 3>> corners;
-  if (before != nullptr) {
-    corners.resize(surface.faces.size());
-    for (std::size_t c = 0; c < before->uvs.size(); ++c) {
-      const Chart& chart = before->cut.charts[c];
-      for (Index f = 0; f < chart.mesh.face_count(); ++f) {
-        for (int k = 0; k < 3; ++k) {
-          corners[chart.input_face[f]][k] = before->uvs[c][chart.mesh.faces[f][k]];
-        }
-      }
-    }
-  }
+  Corners corners;
+  if (before != nullptr) corners = corners_of(*before);
   maps.uvs.resize(maps.cut.charts.size());
   parallel_for(work, size_of(maps.uvs), 1, [&](std::int64_t c, std::int64_t) {
     const Chart& chart = maps.cut.charts[c];
+    std::vector<Vec2> start;
+    if (before != nullptr) start = map_before(chart, corners);
+    const bool is_known = !start.empty() && was_chart(chart, *before);
     maps.uvs[c] =
-        map_chart(chart, corners.empty() ? std::vector<Vec2>() : map_before(chart, corners),
-                  Injectivity::kLocal, tolerance, work.aside());
+        is_known ? std::move(start)
+                 : map_chart(chart, std::move(start), Injectivity::kLocal, tolerance, work.aside());
   });
   measure(real_faces, maps);
   return maps;
 }
 
-LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const Work& work) {
+LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const LocalMaps* before,
+                       const Work& work) {
   std::vector<std::size_t> crossing;
   for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
     if (!is_simple(maps.cut.charts[c].mesh.boundary, maps.uvs[c])) crossing.push_back(c);
   }
   if (crossing.empty()) return maps;
+  Corners corners;
+  if (before != nullptr) corners = corners_of(*before);
   parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
     const std::size_t c = crossing[i];
     const Chart& chart = maps.cut.charts[c];
+    std::vector<Vec2> known;
+    if (before != nullptr) known = map_before(chart, corners);
+    if (!known.empty() && was_chart(chart, *before)) {
+      maps.uvs[c] = std::move(known);  // it crossed itself then, too, and was mended or left so
+      return;
+    }
     if (open_touching_sides(chart.mesh, work.aside(), maps.uvs[c])) return;
-    std::vector<Vec2> uvs = map_chart(chart, {}, Injectivity::kGlobal, tolerance, work.aside());
+    const bool serves = !known.empty() && (is_simple(chart.mesh.boundary, known) ||
+                                           open_touching_sides(chart.mesh, work.aside(), known));
+    if (!serves) known.clear();
+    std::vector<Vec2> uvs =
+        map_chart(chart, std::move(known), Injectivity::kGlobal, tolerance, work.aside());
     if (is_simple(chart.mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
   });
   measure(real_faces, maps);

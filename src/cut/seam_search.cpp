@@ -21,7 +21,6 @@ constexpr std::size_t kCandidates = 12, kTried = 5;
 constexpr double kApart = 0.04;
 /// Parts of a branch that may go alone: its half, quarter and so on.
 constexpr std::size_t kEnds = 6;
-constexpr int kExchanges = 6;
 /// What is gained less in a round is not worth another.
 constexpr double kLeastExchange = 1e-3;
 /// Of what is numbered, those of consecutive rounds are apart and all get their turn.
@@ -438,8 +437,8 @@ bool SeamSearch::move_branch(Index tip, double price) {
   return true;
 }
 
-void SeamSearch::exchange(double target) {
-  for (int round = 0; round < kExchanges; ++round) {
+void SeamSearch::exchange(double target, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
     const EdgeMarks before = seams_;
     const std::vector<bool> anchors = anchored_;
     const double cost = cost_of_seams_;

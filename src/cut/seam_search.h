@@ -52,8 +52,8 @@ class SeamSearch {
   void shrink(double target);
 
   /// Puts branches where they are worth more for their cost, at the price that energy has at
-  /// `target`, and goes there, as long as something is gained.
-  void exchange(double target);
+  /// `target`, and goes there, in so many rounds as long as something is gained.
+  void exchange(double target, int rounds);
 
   /// Takes `count` branches that are near one another away; by `number` they are others. Whether
   /// any went.

@@ -28,12 +28,8 @@ namespace {
 /// What a path costs beside its own, in roots of the area: one search prefers many short ones, one
 /// few long ones, and the better is taken.
 constexpr double kManyPaths = 0.02, kFewPaths = 0.06;
-/// A start costs little on a surface of no more faces.
-constexpr Index kSmall = 2000;
 /// What was found is varied in rounds within these bounds.
 constexpr Index kLeastRounds = 2, kMostRounds = 40;
-/// Up to so many faces, seams that were carried are finished by maps of the surface itself.
-constexpr Index kFinishedFaces = 30'000;
 /// What is within so much of the root of the area when mirrored is symmetric.
 constexpr double kMirrorTolerance = 0.01;
 /// Straightening that gains more than the rest moves seams from where they are needed.
@@ -72,54 +68,47 @@ Attempt best_of(std::vector<Attempt> made) {
   return best;
 }
 
-/// Of one level alone.
-Attempt search_directly(const SearchLevel& level, const std::vector<Start>& starts,
-                        bool is_thorough, const SeamTarget& target, const Work& work) {
-  const AnchoredSeams open = opened(level, work);
-  return best_of(attempts(work, starts, [&](const Start& start, const Work& part) {
-    if (part.out_of_time()) return Attempt();
-    return LevelSearch(level, open, start, target, is_thorough, part).run(false);
-  }));
-}
-
-/// Where the level has many faces, first on one of fewer; `is_thorough`: from more starts, of which
-/// more are finished; `mirror`: whose plane seams are drawn to, or null. Without seams where the
-/// time was up before any were judged.
-Attempt search_level(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
-                     const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
-                     const Work& work) {
+/// Where the level has many faces, starts are sketched on one of fewer; `mirror`: whose plane seams
+/// are drawn to, or null. Without seams where the time was up before any were judged.
+Attempt search_level(const SearchLevel& level, const SeamTarget& target, const SearchEffort& effort,
+                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
   std::vector<Start> starts;
-  const int count = level.surface.face_count() <= kSmall ? effort.starts_of_small : effort.starts;
-  for (int number = 0; number < (is_thorough ? count : 1); ++number) {
-    for (const double least_cost : {kManyPaths, kFewPaths}) starts.push_back({least_cost, number});
+  for (int i = 0; i < effort.starts; ++i) {
+    starts.push_back({i % 2 == 0 ? kFewPaths : kManyPaths, i / 2});
   }
-  SearchLevel rough =
-      coarser_level(level.surface, level.real_faces, topology_of(level.surface, work), {},
-                    effort.rough_faces, weights, level.hints, work);
-  if (rough.fine_vertex.empty()) return search_directly(level, starts, is_thorough, target, work);
-  if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
-  const AnchoredSeams open = opened(rough, work);
+  const Surface& surface = level.surface;
+  const Topology topology = topology_of(surface, work);
+  const bool is_rough =
+      coarse_target(surface, topology, effort.rough_faces) == surface.face_count();
+  SearchLevel rough;
+  if (!is_rough) {
+    rough = coarser_level(surface, level.real_faces, topology, {}, effort.rough_faces, weights,
+                          level.hints, work);
+    if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
+  }
+  const SearchLevel& sketched = is_rough ? level : rough;
+  const AnchoredSeams open = opened(sketched, work);
   const std::vector<Attempt> sketches =
       attempts(work.part(0, 0.3), starts, [&](const Start& start, const Work& part) {
         if (part.out_of_time()) return Attempt();
-        return LevelSearch(rough, open, start, target, is_thorough, part).sketch();
+        return LevelSearch(sketched, open, start, target, effort, part).sketch();
       });
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return sketches[a].promised() < sketches[b].promised();
   });
-  order.resize(is_thorough ? std::min(effort.finished, order.size()) : 1);
+  order.resize(std::min(effort.finished, order.size()));
   const auto finish = [&](std::size_t i, const Work& part) {
     if (part.out_of_time() || sketches[i].seams.seams.empty()) return Attempt();
-    AnchoredSeams carried =
-        carry_to_finer(rough, level.surface, level.cost, level.locked, sketches[i].seams, part);
+    AnchoredSeams carried = is_rough ? sketches[i].seams
+                                     : carry_to_finer(rough, surface, level.cost, level.locked,
+                                                      sketches[i].seams, part);
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
-    const bool is_open = level.locked.empty() ||
-                         cut_into_charts(level.surface, carried.seams, part).non_disks.empty();
+    const bool is_open = is_rough || level.locked.empty() ||
+                         cut_into_charts(surface, carried.seams, part).non_disks.empty();
     if (!is_open) carried = opened(level, part);
-    return LevelSearch(level, std::move(carried), starts[i], target, is_thorough, part)
-        .run(is_open);
+    return LevelSearch(level, std::move(carried), starts[i], target, effort, part).run(is_open);
   };
   return best_of(attempts(work.part(0.3, 1), order, finish));
 }
@@ -144,8 +133,8 @@ double length_of(const Surface& surface, const EdgeMarks& marks) {
 /// What half of the seams and its image make, as one that reaches the target, or comes as near to
 /// it as they do; they themselves where that costs more than `most` times as much, by `cost`, or
 /// breaks another bound that they keep. Whether it did not.
-bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thorough,
-                    const SeamTarget& target, const std::vector<double>& cost, double most,
+bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTarget& target,
+                    const SearchEffort& effort, const std::vector<double>& cost, double most,
                     const Work& work, Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
   if (!any_of(seams)) return true;
@@ -156,8 +145,7 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
         mirrored_seams(level.surface, mirror, found.seams, side, path_cost, level.locked, part);
     half.seams = straighten(level.surface, half.seams, level.cost, half.anchors, level.locked,
                             level.straightness, part);
-    return LevelSearch(level, std::move(half), Start(), target, is_thorough, part, &mirror)
-        .run(true);
+    return LevelSearch(level, std::move(half), Start(), target, effort, part, &mirror).run(true);
   }));
   if (best.seams.seams.empty()) return false;
   const Surface& surface = level.surface;
@@ -180,17 +168,20 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, bool is_thor
 }
 
 /// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
-Attempt search_anew(const SearchLevel& level, bool is_thorough, const SeamTarget& target,
-                    const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
-                    const Work& work) {
-  Attempt found =
-      search_level(level, is_thorough, target, effort, weights, mirror, work.part(0, 0.8));
-  if (found.seams.seams.empty()) found.seams = opened(level, work);
-  if (is_thorough) {
+Attempt search_anew(const SearchLevel& level, const SeamTarget& target, const SearchEffort& effort,
+                    const SeamWeights& weights, const Mirror* mirror, const Work& work) {
+  AnchoredSeams open = opened(level, work);
+  if (!any_of(open.seams)) {
+    Attempt whole = LevelSearch(level, open, Start(), target, effort, work.aside()).judged();
+    if (whole.excess <= 1) return whole;
+  }
+  Attempt found = search_level(level, target, effort, weights, mirror, work.part(0, 0.8));
+  if (found.seams.seams.empty()) found.seams = std::move(open);
+  if (effort.improves) {
     const Index rounds =
-        std::clamp(effort.faces_to_vary / level.surface.face_count(), kLeastRounds, kMostRounds);
-    LevelSearch(level, found.seams, Start(), target, true, work.part(0.8, 1))
-        .improve(effort.faces_to_vary > 0 ? rounds : 0, found);
+        std::clamp(effort.varied_faces / level.surface.face_count(), kLeastRounds, kMostRounds);
+    LevelSearch(level, found.seams, Start(), target, effort, work.part(0.8, 1))
+        .improve(effort.varied_faces > 0 ? rounds : 0, found);
   }
   return found;
 }
@@ -224,12 +215,11 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   SearchedSeams searched;
   BegunSearch& search = searched.search;
   search = {begun.level, {}, begun.mirror};
-  const bool is_thorough = surface.face_count() <= kThoroughFaces;
   Attempt found;
   if (begun.level && !begun.seams.seams.empty()) {
-    LevelSearch again(*begun.level, begun.seams, Start(), target, is_thorough, work.part(0.3, 0.9),
+    LevelSearch again(*begun.level, begun.seams, Start(), target, effort, work.part(0.3, 0.9),
                       begun.mirror.get());
-    found = is_thorough ? again.run_calibrated(0) : again.run(true);
+    found = effort.improves ? again.run_calibrated(0) : again.run(true);
     if (found.seams.seams.empty()) found.seams = begun.seams;
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
@@ -240,16 +230,15 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
     }
-    found = search_anew(*search.level, is_thorough, target, effort, weights, search.mirror.get(),
+    found = search_anew(*search.level, target, effort, weights, search.mirror.get(),
                         work.part(0.3, 0.85));
-    if (search.mirror && !make_symmetric(*search.level, *search.mirror, is_thorough, target, cost,
+    if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, effort, cost,
                                          1 + weights.symmetry, work.part(0.85, 0.88), found)) {
       search.mirror.reset();
       SearchLevel level = *search.level;
       level.cost = std::move(cost);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
-      found = search_anew(*search.level, is_thorough, target, effort, weights, nullptr,
-                          work.part(0.88, 0.9));
+      found = search_anew(*search.level, target, effort, weights, nullptr, work.part(0.88, 0.9));
     }
   }
   searched.energy = found.energy;
@@ -265,11 +254,11 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
   AnchoredSeams carried =
       carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
-  if (surface.face_count() <= kFinishedFaces && !work.out_of_time() && any_of(carried.seams) &&
+  if (surface.face_count() <= effort.finest_faces && !work.out_of_time() && any_of(carried.seams) &&
       !search.mirror && cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
     auto whole = std::make_shared<const SearchLevel>(coarser_level(
         surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));
-    found = LevelSearch(*whole, carried, Start(), target, true, work.aside()).run_calibrated(0);
+    found = LevelSearch(*whole, carried, Start(), target, effort, work.aside()).run_calibrated(0);
     if (found.excess <= 1) {
       search = {std::move(whole), found.seams, {}};
       searched.energy = found.energy;

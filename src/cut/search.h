@@ -10,6 +10,7 @@
 #include "cut/edge_marks.h"
 #include "cut/mirror.h"
 #include "cut/seam_costs.h"
+#include "cut/search_effort.h"
 #include "cut/search_level.h"
 #include "mesh/surface.h"
 
@@ -23,23 +24,6 @@ struct SeamTarget {
   Index max_charts = 0;    ///< beyond, no chart is parted for its overlaps; 0: any number
   double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
 };
-
-/// How much is looked at for short seams.
-struct SearchEffort {
-  Index coarse_faces = 10'000;  ///< seams are decided on so many: finer ones add little to what is
-                                ///< to be seen of a shape
-  Index rough_faces = 3000;     ///< what is to be joined by long seams is seen on so many
-  /// A surface is searched from so many starts with each cost of a path, one on which a start costs
-  /// little from more; so many of them are finished, and the best improved.
-  int starts = 3, starts_of_small = 6;
-  std::size_t finished = 3;
-  Index faces_to_vary = 120'000;  ///< what was found is varied, and charts joined again on trial,
-                                  ///< in rounds that go over so many faces in all; 0: not at all
-};
-
-/// Surfaces of no more faces are searched with care; on larger ones a search is to take less than
-/// half of the flattening.
-inline constexpr Index kThoroughFaces = 100'000;
 
 /// What a search leaves to one of the same surface for another target.
 struct BegunSearch {

@@ -97,17 +97,22 @@ EdgeMarks marks_of(const Surface& surface, const std::vector<std::array<Index, 2
 
 }  // namespace
 
-SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
-                          const EdgeMarks& locked, Index faces, const SeamWeights& weights,
-                          const SeamHints& hints, const Work& work) {
+Index coarse_target(const Surface& fine, const Topology& topology, Index faces) {
   Index target = 0;
   for (const Component& component : topology.components) {
     target += std::min(component.faces, kLeastFaces);
   }
   target = std::max(target, faces);
+  return fine.face_count() <= kWorthSimplifying * target ? fine.face_count() : target;
+}
+
+SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
+                          const EdgeMarks& locked, Index faces, const SeamWeights& weights,
+                          const SeamHints& hints, const Work& work) {
+  const Index target = coarse_target(fine, topology, faces);
   SearchLevel coarse;
   coarse.straightness = weights.straightness;
-  if (fine.face_count() <= kWorthSimplifying * target) {
+  if (target == fine.face_count()) {
     coarse.surface = fine;
     coarse.real_faces = real_faces;
     coarse.locked = locked;

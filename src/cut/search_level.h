@@ -28,9 +28,13 @@ struct SearchLevel {
 /// Per half-edge what a path along it costs: infinite along locked edges.
 std::vector<double> path_costs(const SearchLevel& level);
 
-/// A simplification of `fine` to about `faces` faces, more where components would keep too few, or
-/// `fine` itself where that is hardly more. Faces after `real_faces` are virtual: edges among them
-/// cost little, for no seam will be there. A coarse surface knows of no locked edges.
+/// Faces to which a surface is simplified that is to have about `faces`: more where components
+/// would keep too few, all where that is hardly more.
+Index coarse_target(const Surface& fine, const Topology& topology, Index faces);
+
+/// A simplification of `fine` to the coarse_target of `faces`, or `fine` itself. Faces after
+/// `real_faces` are virtual: edges among them cost little, for no seam will be there. A coarse
+/// surface knows of no locked edges.
 SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
                           const EdgeMarks& locked, Index faces, const SeamWeights& weights,
                           const SeamHints& hints, const Work& work);

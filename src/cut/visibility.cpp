@@ -29,18 +29,35 @@ constexpr double kLift = 1.25;
 
 /// How far along an axis there is surface in each pixel.
 struct DepthBuffer {
-  struct Pixel {
-    float low = std::numeric_limits<float>::infinity();
-    float high = -std::numeric_limits<float>::infinity();
-  };
-  std::vector<Pixel> pixels = std::vector<Pixel>(kPixels * kPixels);
+  std::vector<float> low = std::vector<float>(kPixels * kPixels);
+  std::vector<float> high = std::vector<float>(kPixels * kPixels);
 
-  void clear() { std::fill(pixels.begin(), pixels.end(), Pixel()); }
-  const Pixel* at(float x, float y) const {
-    if (!(x >= 0 && y >= 0 && x < kPixels && y < kPixels)) return nullptr;
-    return &pixels[static_cast<std::size_t>(y) * kPixels + static_cast<std::size_t>(x)];
+  void clear() {
+    std::fill(low.begin(), low.end(), std::numeric_limits<float>::infinity());
+    std::fill(high.begin(), high.end(), -std::numeric_limits<float>::infinity());
+  }
+  /// The number of a pixel; kNone outside.
+  static Index at(float x, float y) {
+    if (!(x >= 0 && y >= 0 && x < kPixels && y < kPixels)) return kNone;
+    return static_cast<Index>(y) * kPixels + static_cast<Index>(x);
   }
   void draw(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c);
+};
+
+/// Numbers of pixels.
+struct Span {
+  float from, to;
+
+  /// Keeps those x where slope * x >= least.
+  void keep_where(float slope, float least) {
+    if (slope > 0) {
+      from = std::max(from, least / slope);
+    } else if (slope < 0) {
+      to = std::min(to, least / slope);
+    } else if (least > 0) {
+      to = from - 1;
+    }
+  }
 };
 
 /// Sets the pixels whose centres the triangle covers. Precondition: it lies inside the buffer.
@@ -60,16 +77,25 @@ void DepthBuffer::draw(const Eigen::Vector3f& a, const Eigen::Vector3f& b,
   // Barycentric coordinates of b and c, and their change from a pixel to the next.
   const float b_x = ac.y() / twice, b_y = -ac.x() / twice;
   const float c_x = -ab.y() / twice, c_y = ab.x() / twice;
+  const float slope = b_x * ab.z() + c_x * ac.z();
+  const float offset = 0.5F - a.x();  // of a pixel's centre from the corner, at its number 0
   for (int y = bottom; y <= top; ++y) {
     const float dy = static_cast<float>(y) + 0.5F - a.y();
-    Pixel* row = pixels.data() + static_cast<std::ptrdiff_t>(y) * kPixels;
-    for (int x = left; x <= right; ++x) {
-      const float dx = static_cast<float>(x) + 0.5F - a.x();
-      const float at_b = b_x * dx + b_y * dy, at_c = c_x * dx + c_y * dy;
-      if (at_b < 0 || at_c < 0 || at_b + at_c > 1) continue;
-      const float depth = a.z() + at_b * ab.z() + at_c * ac.z();
-      row[x].low = std::min(row[x].low, depth);
-      row[x].high = std::max(row[x].high, depth);
+    const float at_b = b_x * offset + b_y * dy, at_c = c_x * offset + c_y * dy;  // of the number 0
+    Span span{static_cast<float>(left), static_cast<float>(right)};
+    span.keep_where(b_x, -at_b);
+    span.keep_where(c_x, -at_c);
+    span.keep_where(-b_x - c_x, at_b + at_c - 1);
+    if (span.from > span.to) continue;
+    const int before = static_cast<int>(span.from), end = static_cast<int>(span.to) + 1;
+    const int begin = before + (static_cast<float>(before) < span.from ? 1 : 0);
+    const float depth = a.z() + at_b * ab.z() + at_c * ac.z();
+    float* lows = low.data() + static_cast<std::ptrdiff_t>(y) * kPixels;
+    float* highs = high.data() + static_cast<std::ptrdiff_t>(y) * kPixels;
+    for (int x = begin; x < end; ++x) {
+      const float here = depth + slope * static_cast<float>(x);
+      lows[x] = std::min(lows[x], here);
+      highs[x] = std::max(highs[x], here);
     }
   }
 }
@@ -157,8 +183,9 @@ class Look {
 
  private:
   bool is_free(const Eigen::Vector3f& point, bool upwards) const {
-    const DepthBuffer::Pixel* pixel = buffer_.at(point.x(), point.y());
-    return pixel == nullptr || (upwards ? point.z() >= pixel->high : point.z() <= pixel->low);
+    const Index pixel = DepthBuffer::at(point.x(), point.y());
+    if (pixel == kNone) return true;
+    return upwards ? point.z() >= buffer_.high[pixel] : point.z() <= buffer_.low[pixel];
   }
 
   const SurfaceSketch& sketch_;

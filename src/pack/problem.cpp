@@ -63,7 +63,7 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
   });
   turns_ = options.turns;
   if (size() >= kManyForTurns) turns_ = std::min(turns_, 4);
-  if (options.turns > 4 && size() <= kFewForTurns) turns_ *= kFinerTurns;
+  if (options.turns > 4 && size() <= kFewForTurns && options.effort > 0) turns_ *= kFinerTurns;
   if (options.block > 1) {
     cells_ = options.resolution / options.block;
     cell_ = options.block;

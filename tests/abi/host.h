@@ -113,7 +113,8 @@ inline std::vector<std::array<double, 2>> flat_uvs(const meshes::TriangleList& m
 /// Whether two arrays hold the same bits.
 template <class Item>
 bool same_bits(const std::vector<Item>& a, const std::vector<Item>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
 }
 
 }  // namespace beltrami::host

@@ -106,14 +106,40 @@ TEST(LocalMaps, ContactKeepsThemOffThemselvesAtACost) {
     return is_simple(of.cut.charts[0].mesh.boundary, of.uvs[0]);
   };
   ASSERT_FALSE(is_injective(maps));
-  const LocalMaps apart = with_contact(maps, surface.face_count(), kTolerance, Work(1));
+  const LocalMaps apart = with_contact(maps, surface.face_count(), kTolerance, nullptr, Work(1));
   EXPECT_TRUE(is_injective(apart));
   EXPECT_GT(apart.energy, maps.energy);
   expect_sound(surface, apart);
   // What lies on itself nowhere stays to the bit.
   const Surface grid = built(meshes::grid(5, 4));
   const LocalMaps flat = mapped(grid, EdgeMarks(grid.twin.size(), false));
-  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, Work(1)).uvs, flat.uvs);
+  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, nullptr, Work(1)).uvs, flat.uvs);
+}
+
+TEST(LocalMaps, ChartsThatStayKeepTheirMaps) {
+  const TriangleList mesh = meshes::together({disks::blob(2), meshes::torus(8)});
+  const Surface surface = built(mesh);
+  const EdgeMarks few = opened(surface);
+  const LocalMaps before = mapped(surface, few);
+  EXPECT_EQ(mapped(surface, few, &before).uvs, before.uvs);
+  // One edge more, at the end of a seam of the torus.
+  EdgeMarks more = few;
+  const Index blob = size_of(disks::blob(2).faces);
+  for (Index h = 3 * blob; h < size_of(more); ++h) {
+    if (few[h]) continue;
+    int at_origin = 0, at_target = 0;
+    surface.for_each_outgoing(surface.origin(h), [&](Index g) { at_origin += few[g] ? 1 : 0; });
+    surface.for_each_outgoing(surface.target(h), [&](Index g) { at_target += few[g] ? 1 : 0; });
+    if (at_origin == 0 || at_target > 0) continue;
+    mark_edge(surface, h, more);
+    break;
+  }
+  ASSERT_NE(more, few);
+  const LocalMaps after = mapped(surface, more, &before);
+  ASSERT_EQ(after.uvs.size(), 2u);
+  EXPECT_EQ(after.uvs[0], before.uvs[0]);
+  EXPECT_NE(after.uvs[1].size(), before.uvs[1].size());
+  EXPECT_LE(after.energy, before.energy);
 }
 
 TEST(LocalMaps, MoreSeamsDistortLess) {

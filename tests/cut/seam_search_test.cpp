@@ -252,7 +252,7 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
       EXPECT_LE(search.cost(), cost + 1e-9);
       break;
     case 4:
-      search.exchange(std::max(target, energy));
+      search.exchange(std::max(target, energy), 6);
       EXPECT_LE(search.energy(), std::max(target, energy) + 1e-6);
       EXPECT_LE(search.cost(), cost + 1e-9);
       break;

@@ -1,0 +1,175 @@
+#include "atlas/congruent.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "base/interrupt.h"
+#include "base/vectors.h"
+
+namespace beltrami {
+namespace {
+
+/// Lengths nearer than that are the same, in roots of a piece's area: places in single precision at
+/// a hundred times its size are off by a tenth of it.
+constexpr double kSameLength = 1e-4;
+/// Half-edges that a comparison may look at for each of a piece: of what has many symmetries, or
+/// nearly so, a few starts are tried.
+constexpr std::int64_t kLooks = 16;
+
+double length(const Surface& surface, Index h) {
+  return (surface.positions[surface.target(h)] - surface.positions[surface.origin(h)]).norm();
+}
+
+/// Numbers by which pieces are told apart at once.
+struct Measures {
+  std::tuple<Index, Index, Index, std::size_t> counts;  ///< faces, real ones, vertices, borders
+  double area = 0, edges = 0;                           ///< in the unit of the whole
+};
+
+Measures measures_of(const SurfacePiece& piece) {
+  const Surface& surface = piece.surface;
+  const double unit = std::ldexp(1.0, -piece.exponent);
+  Measures measures;
+  std::size_t borders = 0;
+  for (Index h = 0; h < size_of(surface.twin); ++h) {
+    measures.edges += unit * length(surface, h);
+    if (surface.twin[h] == kNone) ++borders;
+  }
+  for (const auto& [a, b, c] : surface.faces) {
+    const std::vector<Vec3>& p = surface.positions;
+    measures.area += unit * unit * triangle_area(p[a], p[b], p[c]);
+  }
+  measures.counts = {surface.face_count(), piece.real_faces, surface.vertex_count(), borders};
+  return measures;
+}
+
+/// One piece laid onto another, half-edge by half-edge.
+class Laying {
+ public:
+  /// `unit`: of lengths of `to` in that of `from`; `near`: lengths that differ by less are the
+  /// same.
+  Laying(const SurfacePiece& from, const SurfacePiece& to, double unit, double near)
+      : from_(from), to_(to), unit_(unit), near_(near) {}
+
+  /// Per half-edge of `from` that of `to` on the same edge; reflected, it runs the other way.
+  std::optional<std::vector<Index>> run() {
+    const std::int64_t most = kLooks * size_of(from_.surface.twin);
+    for (Index start = 0; start < size_of(to_.surface.twin); ++start) {
+      for (const bool reflected : {false, true}) {
+        if (looks_ > most) return std::nullopt;
+        if (lies(start, reflected)) return std::move(onto_);
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  using Around = Index (*)(Index);
+
+  bool is_label_border(const SurfacePiece& piece, Index h) const {
+    const std::vector<Index>& labels = piece.hints.labels;
+    const Index twin = piece.surface.twin[h];
+    return !labels.empty() && twin != kNone && labels[h / 3] != labels[twin / 3];
+  }
+
+  bool is_alike(Index h, Index g) {
+    ++looks_;
+    if (!(std::abs(length(from_.surface, h) - unit_ * length(to_.surface, g)) <= near_))
+      return false;
+    if ((from_.surface.twin[h] == kNone) != (to_.surface.twin[g] == kNone)) return false;
+    if ((h / 3 < from_.real_faces) != (g / 3 < to_.real_faces)) return false;
+    if (!from_.locked.empty() && from_.locked[h] != to_.locked[g]) return false;
+    return is_label_border(from_, h) == is_label_border(to_, g);
+  }
+
+  /// Whether all of it lies where the first half-edge is laid onto `start`.
+  bool lies(Index start, bool reflected) {
+    const Around after = reflected ? Surface::previous : Surface::next;
+    Index of_first = start;
+    for (Index h = 0; h < 3; ++h, of_first = after(of_first)) {
+      if (!is_alike(h, of_first)) return false;
+    }
+    looks_ += size_of(onto_);
+    onto_.assign(from_.surface.twin.size(), kNone);
+    std::vector<bool> is_taken(to_.surface.faces.size(), false);
+    std::vector<std::pair<Index, Index>> faces = {{0, start}};  // by a half-edge of each
+    while (!faces.empty()) {
+      auto [h, g] = faces.back();
+      faces.pop_back();
+      if (onto_[h] != kNone) {
+        if (onto_[h] != g) return false;
+        continue;
+      }
+      if (is_taken[g / 3]) return false;
+      is_taken[g / 3] = true;
+      for (int k = 0; k < 3; ++k, h = Surface::next(h), g = after(g)) {
+        poll_();
+        if (!is_alike(h, g)) return false;
+        onto_[h] = g;
+        const Index twin = from_.surface.twin[h];
+        if (twin != kNone) faces.emplace_back(twin, to_.surface.twin[g]);
+      }
+    }
+    return true;
+  }
+
+  const SurfacePiece& from_;
+  const SurfacePiece& to_;
+  const double unit_, near_;
+  std::int64_t looks_ = 0;
+  std::vector<Index> onto_;
+  PollSometimes poll_;
+};
+
+std::optional<std::vector<Index>> laid(const SurfacePiece& from, const SurfacePiece& to) {
+  // Pieces have about unit area in their own unit.
+  const double unit = std::ldexp(1.0, from.exponent - to.exponent);
+  return Laying(from, to, unit, kSameLength).run();
+}
+
+bool has_paint(const SurfacePiece& piece) {
+  return !piece.hints.vertex_paint.empty() || !piece.hints.edge_paint.empty();
+}
+
+bool is_near(double a, double b) {
+  return std::abs(a - b) <= kSameLength * std::max(a, b);
+}
+
+}  // namespace
+
+std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
+  std::vector<Index> first(pieces.size());
+  std::map<std::tuple<Index, Index, Index, std::size_t>, std::vector<std::pair<Index, Measures>>>
+      kinds;
+  for (Index p = 0; p < size_of(pieces); ++p) {
+    poll_interrupt();
+    first[p] = p;
+    if (pieces.size() == 1 || has_paint(pieces[p])) continue;
+    const Measures own = measures_of(pieces[p]);
+    auto& kind = kinds[own.counts];
+    for (const auto& [other, measures] : kind) {
+      if (!is_near(own.area, measures.area) || !is_near(own.edges, measures.edges)) continue;
+      if (!laid(pieces[other], pieces[p])) continue;
+      first[p] = other;
+      break;
+    }
+    if (first[p] == p) kind.emplace_back(p, own);
+  }
+  return first;
+}
+
+EdgeMarks carried_marks(const SurfacePiece& from, const EdgeMarks& marks, const SurfacePiece& to) {
+  EdgeMarks carried(to.surface.twin.size(), false);
+  const std::optional<std::vector<Index>> onto = laid(from, to);
+  if (!onto) return carried;
+  for (std::size_t h = 0; h < marks.size(); ++h) carried[(*onto)[h]] = marks[h];
+  return carried;
+}
+
+}  // namespace beltrami

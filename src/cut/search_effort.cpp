@@ -1,0 +1,59 @@
+#include "cut/search_effort.h"
+
+namespace beltrami {
+
+SearchEffort search_effort(Effort effort) {
+  switch (effort) {
+    case Effort::kQuick:
+      return {.coarse_faces = 4000,
+              .rough_faces = 1000,
+              .finest_faces = 0,
+              .starts = 1,
+              .finished = 1,
+              .rounds = 3,
+              .settling = 1,
+              .exchanges = 1,
+              .tolerance = 1e-3,
+              .improves = false,
+              .joins = 0,
+              .varied_faces = 0,
+              .tries = 2,
+              .uses_rest = false,
+              .packing = 0};
+    case Effort::kHigh:
+      return {.coarse_faces = 10'000,
+              .rough_faces = 3000,
+              .finest_faces = 30'000,
+              .starts = 6,
+              .finished = 2,
+              .rounds = 8,
+              .settling = 6,
+              .exchanges = 6,
+              .tolerance = 1e-4,
+              .improves = true,
+              .joins = 6,
+              .varied_faces = 60'000,
+              .tries = 4,
+              .uses_rest = true,
+              .packing = 1};
+    case Effort::kNormal:
+      break;
+  }
+  return {.coarse_faces = 6000,
+          .rough_faces = 2000,
+          .finest_faces = 0,
+          .starts = 2,
+          .finished = 1,
+          .rounds = 4,
+          .settling = 2,
+          .exchanges = 2,
+          .tolerance = 1e-3,
+          .improves = true,
+          .joins = 6,
+          .varied_faces = 0,
+          .tries = 3,
+          .uses_rest = false,
+          .packing = 0.1};
+}
+
+}  // namespace beltrami

@@ -1,0 +1,129 @@
+// Pieces of one shape are found, and are cut alike.
+#include "atlas/congruent.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "atlas/open.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "base/work.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
+#include "support/atlases.h"
+#include "support/disks.h"
+#include "support/meshes.h"
+#include "support/solids.h"
+#include "support/surfaces.h"
+
+namespace beltrami {
+namespace {
+
+using meshes::TriangleList;
+
+SurfacePiece piece_of(const TriangleList& mesh) {
+  SurfacePiece piece;
+  piece.surface = build_surface(mesh.positions, mesh.faces, Work(1));
+  piece.real_faces = piece.surface.face_count();
+  piece.topology = topology_of(piece.surface, Work(1));
+  piece.exponent = bring_to_unit(piece.surface, Work(1));
+  return piece;
+}
+
+/// Turned and shifted, its vertices and faces in another order.
+TriangleList copied(const TriangleList& mesh, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  const Eigen::Matrix3d turn = meshes::some_turn();
+  TriangleList copy =
+      meshes::moved(mesh, [&](const Vec3& p) { return Vec3(turn * p + Vec3(3, -5, 7)); });
+  std::vector<Index> place(copy.positions.size());
+  for (std::size_t v = 0; v < place.size(); ++v) place[v] = static_cast<Index>(v);
+  std::shuffle(place.begin(), place.end(), generator);
+  TriangleList shuffled{std::vector<Vec3>(place.size()), copy.faces};
+  for (std::size_t v = 0; v < place.size(); ++v) shuffled.positions[place[v]] = copy.positions[v];
+  for (Triangle& face : shuffled.faces) {
+    face = {place[face[1]], place[face[2]], place[face[0]]};
+  }
+  std::shuffle(shuffled.faces.begin(), shuffled.faces.end(), generator);
+  return shuffled;
+}
+
+TriangleList reflected(TriangleList mesh) {
+  for (Vec3& p : mesh.positions) p.x() = -p.x();
+  for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
+  return mesh;
+}
+
+TriangleList blob() {
+  return meshes::shaken(meshes::sphere(2), 0.1, 4);
+}
+
+TEST(Congruent, PiecesAreInAnyOrderAndPlaceAndReflected) {
+  const TriangleList other = meshes::shaken(meshes::sphere(2), 0.1, 5);
+  const std::vector<SurfacePiece> pieces = {
+      piece_of(blob()),
+      piece_of(other),
+      piece_of(copied(blob(), 1)),
+      piece_of(reflected(blob())),
+      piece_of(meshes::moved(blob(), [](const Vec3& p) { return Vec3(1.5 * p); })),
+      piece_of(copied(reflected(other), 2))};
+  EXPECT_EQ(first_congruent(pieces), (std::vector<Index>{0, 1, 0, 0, 4, 1}));
+}
+
+TEST(Congruent, LabelsAndLockedEdgesBelongToTheShape) {
+  std::vector<SurfacePiece> pieces(3, piece_of(blob()));
+  pieces[1].hints.labels.assign(pieces[1].surface.faces.size(), 0);
+  pieces[1].hints.labels[5] = 1;
+  pieces[2].locked.assign(pieces[2].surface.twin.size(), false);
+  EXPECT_EQ(first_congruent(pieces), (std::vector<Index>{0, 1, 0}));
+  mark_edge(pieces[2].surface, 7, pieces[2].locked);
+  pieces[0].locked.assign(pieces[0].surface.twin.size(), false);
+  EXPECT_EQ(first_congruent(pieces), (std::vector<Index>{0, 1, 2}));
+}
+
+TEST(Congruent, MarksAreCarriedToEdgesOfTheSameLengths) {
+  const SurfacePiece from = piece_of(blob());
+  EdgeMarks marks(from.surface.twin.size(), false);
+  for (const Index h : {3, 17, 50, 200}) mark_edge(from.surface, h, marks);
+  const auto lengths = [](const SurfacePiece& piece, const EdgeMarks& of) {
+    std::vector<double> found;
+    for (Index h = 0; h < size_of(of); ++h) {
+      if (!of[h]) continue;
+      EXPECT_TRUE(of[piece.surface.twin[h]]);
+      const Vec3 edge = piece.surface.positions[piece.surface.target(h)] -
+                        piece.surface.positions[piece.surface.origin(h)];
+      found.push_back(edge.norm());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  for (const TriangleList& mesh : {copied(blob(), 3), copied(reflected(blob()), 4)}) {
+    const SurfacePiece to = piece_of(mesh);
+    const std::vector<double> own = lengths(from, marks);
+    const std::vector<double> carried = lengths(to, carried_marks(from, marks, to));
+    ASSERT_EQ(own.size(), carried.size());
+    for (std::size_t i = 0; i < own.size(); ++i) EXPECT_NEAR(own[i], carried[i], 1e-9);
+  }
+}
+
+TEST(Congruent, CopiesHaveSeamsOfOneLengthEach) {
+  const TriangleList mesh =
+      meshes::together({blob(), copied(blob(), 6), copied(reflected(blob()), 7)});
+  AtlasOptions options;
+  options.target = SeamTarget{};
+  options.pack = PackOptions{};
+  const Atlas all = atlases::unwrapped(mesh, options), one = atlases::unwrapped(blob(), options);
+  atlases::expect_sound(mesh, all);
+  EXPECT_TRUE(all.missed.empty());
+  EXPECT_NEAR(all.seam_length, 3 * one.seam_length, 1e-6 * all.seam_length);
+  EXPECT_EQ(all.charts.size(), 3 * one.charts.size());
+}
+
+}  // namespace
+}  // namespace beltrami
