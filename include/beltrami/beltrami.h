@@ -211,9 +211,12 @@ enum {
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
 enum {
   BELTRAMI_EFFORT_FORCE_SIGNED_ = -1,
-  BELTRAMI_EFFORT_QUICK = 0,  /* half the time of NORMAL, seams some 4% longer */
-  BELTRAMI_EFFORT_NORMAL = 1, /* the default */
-  BELTRAMI_EFFORT_HIGH = 2    /* some three times the time of NORMAL, seams some 2% shorter */
+  /* Half the time of NORMAL, seams some 4% longer. */
+  BELTRAMI_EFFORT_QUICK = 0,
+  /* The default. */
+  BELTRAMI_EFFORT_NORMAL = 1,
+  /* Some three times the time of NORMAL, seams some 2% shorter. */
+  BELTRAMI_EFFORT_HIGH = 2
 };
 
 /* Where the charts of an atlas lie. */
@@ -232,7 +235,8 @@ enum {
 enum {
   BELTRAMI_PACK_TURNS_FORCE_SIGNED_ = -1,
   BELTRAMI_PACK_TURNS_ANY = 0,
-  BELTRAMI_PACK_TURNS_QUARTER = 1, /* by 90 degrees and multiples */
+  /* By 90 degrees and multiples. */
+  BELTRAMI_PACK_TURNS_QUARTER = 1,
   BELTRAMI_PACK_TURNS_NONE = 2
 };
 

@@ -27,6 +27,8 @@ namespace {
 constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
+/// Descents that end sooner may stop on a plateau.
+constexpr double kMostTolerance = 1e-3;
 /// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
 /// so much of the excess, or the map is parted, too, where it lies on itself on less.
 constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
@@ -164,8 +166,13 @@ Attempt LevelSearch::sketch() {
   return sketch;
 }
 
+/// Of the maps, as descents have it: a relative decrease of the energy.
+double LevelSearch::tolerance() const {
+  return std::min(kMostTolerance, effort_.tolerance * (target_.energy - 2));
+}
+
 LocalMaps LevelSearch::map(const LocalMaps* before) const {
-  return map_locally(level_.surface, level_.real_faces, search_.seams(), effort_.tolerance, before,
+  return map_locally(level_.surface, level_.real_faces, search_.seams(), tolerance(), before,
                      work_);
 }
 
@@ -239,7 +246,7 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
           {search_.seams(), search_.anchors()}, search_.cost(), maps.energy, guessed, {}, true};
       return true;
     }
-    apart = with_contact(maps, level_.real_faces, effort_.tolerance,
+    apart = with_contact(maps, level_.real_faces, tolerance(),
                          apart_.uvs.empty() ? nullptr : &apart_, work_);
     apart_ = apart;
     contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));

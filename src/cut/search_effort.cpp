@@ -13,7 +13,7 @@ SearchEffort search_effort(Effort effort) {
               .rounds = 3,
               .settling = 1,
               .exchanges = 1,
-              .tolerance = 1e-3,
+              .tolerance = 0.02,
               .improves = false,
               .joins = 0,
               .varied_faces = 0,
@@ -29,7 +29,7 @@ SearchEffort search_effort(Effort effort) {
               .rounds = 8,
               .settling = 6,
               .exchanges = 6,
-              .tolerance = 1e-4,
+              .tolerance = 0.002,
               .improves = true,
               .joins = 6,
               .varied_faces = 60'000,
@@ -47,12 +47,12 @@ SearchEffort search_effort(Effort effort) {
           .rounds = 4,
           .settling = 2,
           .exchanges = 2,
-          .tolerance = 1e-3,
+          .tolerance = 0.02,
           .improves = true,
           .joins = 6,
           .varied_faces = 0,
           .tries = 3,
-          .uses_rest = false,
+          .uses_rest = true,
           .packing = 0.1};
 }
 

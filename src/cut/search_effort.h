@@ -18,14 +18,14 @@ struct SearchEffort {
   int rounds;            ///< of coming nearer to a target that is reached already
   int settling;          ///< steps to where maps just reach it
   int exchanges;         ///< rounds in which branches are put elsewhere
-  double tolerance;      ///< of the maps that judge: at 1e-3 their energies are within some 3% of
-                         ///< the excess over 2, at 1e-4 within 1%
-  bool improves;         ///< the best, by a model that has learnt from maps
-  int joins;             ///< charts are joined elsewhere on trial so often
-  Index varied_faces;    ///< what was found is varied in rounds over so many faces in all; 0: never
-  int tries;             ///< at a target that finer maps miss
-  bool uses_rest;        ///< further tries at shorter seams where finer maps have excess to spare
-  double packing;        ///< as PackOptions has its effort
+  double tolerance;    ///< of the maps that judge, by the excess over 2 that is asked for: at 0.02
+                       ///< theirs is within some 3%, at 0.002 within 1%
+  bool improves;       ///< the best, by a model that has learnt from maps
+  int joins;           ///< charts are joined elsewhere on trial so often
+  Index varied_faces;  ///< what was found is varied in rounds over so many faces in all; 0: never
+  int tries;           ///< at a target that finer maps miss
+  bool uses_rest;      ///< further tries at shorter seams where finer maps have excess to spare
+  double packing;      ///< as PackOptions has its effort
 };
 
 /// The settings of a level. Over 92 files of 12 to 20,000 faces, normal takes 2.3 times the time of

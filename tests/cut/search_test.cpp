@@ -147,8 +147,6 @@ TEST(Search, WhatIsADiskAndFlatEnoughStaysWhole) {
 
 TEST(Search, PartsWhatLiesOnItselfInTheMap) {
   const Surface surface = built(disks::ramp(48, 6));
-  // Whole it takes an energy of 2.007 to keep it off itself.
-  EXPECT_EQ(length(surface, searched(surface, 2.01).seams), 0);
   const SearchedSeams found = searched(surface, 2.005);
   const CutSurface cut = cut_into_charts(surface, found.seams, Work(1));
   ASSERT_EQ(cut.charts.size(), found.maps.size());

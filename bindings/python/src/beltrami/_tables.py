@@ -17,6 +17,7 @@ WeldChoice = Literal["auto", "on", "off"]
 PresetChoice = Literal["none", "lightmap", "texturing", "one-chart"]
 PackChoice = Literal["pages", "none"]
 PackTurnsChoice = Literal["any", "quarter", "none"]
+EffortChoice = Literal["quick", "normal", "high"]
 
 #: Options that None leaves to the option `preset`.
 OF_PRESETS = ("target_energy", "max_charts", "concave_seams", "hidden_seams", "hard_seams")
@@ -84,6 +85,7 @@ class UnwrapOptions(TypedDict, total=False):
     pack_splits: float
     symmetric_seams: float
     straight_seams: float
+    effort: EffortChoice
 
 
 class PackOptions(TypedDict, total=False):

@@ -11,6 +11,7 @@ from ._jobs import BatchRecord
 from ._progress import Progress
 from ._tables import (
     CutChoice,
+    EffortChoice,
     EnergyChoice,
     FlattenChoice,
     InjectivityChoice,
@@ -69,6 +70,7 @@ def unwrap_batch(
     pack_splits: float = 0.0,
     symmetric_seams: float = 0.0,
     straight_seams: float = 0.0,
+    effort: EffortChoice = "normal",
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -249,6 +251,10 @@ def unwrap_batch(
     straight_seams : float, default 0.0
         How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos
         t) times an edge there; 0 counts lengths alone. A number from 0 to 100.
+    effort : {"quick", "normal", "high"}, default "normal"
+        How long short seams are searched for, and a dense packing: quick (half the time of normal,
+        seams some 4% longer), normal or high (some three times the time of normal, seams some 2%
+        shorter).
 
     Returns
     -------
@@ -309,6 +315,7 @@ def unwrap_batch(
         "pack_splits": pack_splits,
         "symmetric_seams": symmetric_seams,
         "straight_seams": straight_seams,
+        "effort": effort,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

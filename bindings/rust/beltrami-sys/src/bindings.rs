@@ -207,122 +207,133 @@ pub const BELTRAMI_OPTION_PACK_SPLITS: _bindgen_ty_3 = 37;
 pub const BELTRAMI_OPTION_SYMMETRIC_SEAMS: _bindgen_ty_3 = 38;
 /// float: what turns of seams cost; 0: nothing
 pub const BELTRAMI_OPTION_STRAIGHT_SEAMS: _bindgen_ty_3 = 39;
+/// choice: BELTRAMI_EFFORT_
+pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
-pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_4 = -1;
+pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
+/// Half the time of NORMAL, seams some 4% longer.
+pub const BELTRAMI_EFFORT_QUICK: _bindgen_ty_4 = 0;
+/// The default.
+pub const BELTRAMI_EFFORT_NORMAL: _bindgen_ty_4 = 1;
+/// Some three times the time of NORMAL, seams some 2% shorter.
+pub const BELTRAMI_EFFORT_HIGH: _bindgen_ty_4 = 2;
+/// How long short seams are searched for, and a dense packing. Every level has the same promises.
+pub type _bindgen_ty_4 = ::core::ffi::c_int;
+pub const BELTRAMI_PACK_FORCE_SIGNED_: _bindgen_ty_5 = -1;
 /** On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs of a
  page are in [0,1]^2. Rounded to single precision their charts keep all faces, also where v is
  stored as 1 - v. With the option float32 they are multiples of 2^-24 (of more on further
  pages), of which v and 1 - v are exact. A surface with pins is not packed.*/
-pub const BELTRAMI_PACK_PAGES: _bindgen_ty_4 = 0;
+pub const BELTRAMI_PACK_PAGES: _bindgen_ty_5 = 0;
 /// Side by side, in the surface's own unit of length.
-pub const BELTRAMI_PACK_NONE: _bindgen_ty_4 = 1;
+pub const BELTRAMI_PACK_NONE: _bindgen_ty_5 = 1;
 /// Where the charts of an atlas lie.
-pub type _bindgen_ty_4 = ::core::ffi::c_int;
-pub const BELTRAMI_PACK_TURNS_FORCE_SIGNED_: _bindgen_ty_5 = -1;
-pub const BELTRAMI_PACK_TURNS_ANY: _bindgen_ty_5 = 0;
-/// by 90 degrees and multiples
-pub const BELTRAMI_PACK_TURNS_QUARTER: _bindgen_ty_5 = 1;
-pub const BELTRAMI_PACK_TURNS_NONE: _bindgen_ty_5 = 2;
-/// How charts may be turned on a page; they are never mirrored.
 pub type _bindgen_ty_5 = ::core::ffi::c_int;
-pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_6 = -1;
+pub const BELTRAMI_PACK_TURNS_FORCE_SIGNED_: _bindgen_ty_6 = -1;
+pub const BELTRAMI_PACK_TURNS_ANY: _bindgen_ty_6 = 0;
+/// By 90 degrees and multiples.
+pub const BELTRAMI_PACK_TURNS_QUARTER: _bindgen_ty_6 = 1;
+pub const BELTRAMI_PACK_TURNS_NONE: _bindgen_ty_6 = 2;
+/// How charts may be turned on a page; they are never mirrored.
+pub type _bindgen_ty_6 = ::core::ffi::c_int;
+pub const BELTRAMI_CUT_FORCE_SIGNED_: _bindgen_ty_7 = -1;
 /// Nothing but a short cut graph where a piece is no disk.
-pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_6 = 0;
+pub const BELTRAMI_CUT_MINIMAL: _bindgen_ty_7 = 0;
 /// Also where the corner UVs of the surface part: its charts stay what they are.
-pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_6 = 1;
+pub const BELTRAMI_CUT_ISLANDS: _bindgen_ty_7 = 1;
 /** The default: short seams that are searched for, along which the maps have the energy asked for
  by the option target-energy.*/
-pub const BELTRAMI_CUT_AUTO: _bindgen_ty_6 = 2;
+pub const BELTRAMI_CUT_AUTO: _bindgen_ty_7 = 2;
 /** Nothing: the seams that come with the surface are used as they are. What is no disk then is
  opened as by MINIMAL, which does the same; seams of an earlier atlas leave nothing to open.*/
-pub const BELTRAMI_CUT_GIVEN: _bindgen_ty_6 = 3;
+pub const BELTRAMI_CUT_GIVEN: _bindgen_ty_7 = 3;
 /// What is cut beside the seams that come with a surface.
-pub type _bindgen_ty_6 = ::core::ffi::c_int;
-pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_7 = -1;
+pub type _bindgen_ty_7 = ::core::ffi::c_int;
+pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_8 = -1;
 /// The defaults.
-pub const BELTRAMI_PRESET_NONE: _bindgen_ty_7 = 0;
+pub const BELTRAMI_PRESET_NONE: _bindgen_ty_8 = 0;
 /** Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
  hard edges: hidden-seams 0, hard-seams 0.5.*/
-pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_7 = 1;
+pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_8 = 1;
 /** Textures that are painted or photographed: seams where nobody looks, though they be longer:
  concave-seams 0.6, hidden-seams 2.*/
-pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_7 = 2;
+pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_8 = 2;
 /// One chart for each component, at the energy that it can have: max-charts 1.
-pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_7 = 3;
+pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_8 = 3;
 /// What the seams are for: setting one writes its values to the options of the search.
-pub type _bindgen_ty_7 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_8 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_8 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_8 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_8 = 2;
-/// Whether vertices at one place are one.
 pub type _bindgen_ty_8 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_9 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_9 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_9 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_9 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_9 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_9 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_9 = 5;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_9 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_9 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_9 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_9 = 2;
+/// Whether vertices at one place are one.
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_10 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_10 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_10 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_10 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_10 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_10 = 5;
+pub type _bindgen_ty_10 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_11 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_10 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_11 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_10 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_11 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_10 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_11 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_10 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_11 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_10 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_11 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_11 = -1;
-/// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_11 = 0;
-/// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_11 = 1;
-/// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_11 = 2;
-/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_11 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+/// Global, but for the method CM: that is left as the literature has it, the reference.
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_12 = 0;
+/// No flips, and no part of the boundary may cross another.
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_12 = 1;
+/// No flips; the boundary may overlap itself, at a slightly lower energy.
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_12 = 2;
+/// What the optimisation sees to. The certificate always judges global injectivity.
+pub type _bindgen_ty_12 = ::core::ffi::c_int;
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_13 = -1;
 /// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_12 = 0;
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_13 = 0;
 /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_12 = 1;
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_13 = 1;
 /** 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
  most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
  a parabola instead of the exponential.*/
-pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_12 = 2;
-pub type _bindgen_ty_12 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_13 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_13 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_13 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_13 = 2;
-/// How an option's value is given.
+pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_13 = 2;
 pub type _bindgen_ty_13 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_14 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_14 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_14 = 2;
-/// beltrami_pack
-pub const BELTRAMI_CALL_PACK: _bindgen_ty_14 = 4;
-/// What an option is for.
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_14 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_14 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_14 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_14 = 2;
+/// How an option's value is given.
 pub type _bindgen_ty_14 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_15 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_15 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_15 = 2;
+/// beltrami_pack
+pub const BELTRAMI_CALL_PACK: _bindgen_ty_15 = 4;
+/// What an option is for.
+pub type _bindgen_ty_15 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -442,13 +453,13 @@ extern "C" {
         value: *mut f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_15 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_15 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_15 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_15 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_15 = 3;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_16 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_16 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_16 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_16 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_16 = 3;
 /// Element types of buffers.
-pub type _bindgen_ty_15 = ::core::ffi::c_int;
+pub type _bindgen_ty_16 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -1890,14 +1901,14 @@ extern "C" {
         out: *mut beltrami_atlas_certificate,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_16 = -1;
-pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_16 = 0;
+pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_17 = -1;
+pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_17 = 0;
 /// no further than the margin asked for from a covered one
-pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_16 = 1;
+pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_17 = 1;
 /// a face has a point in common with it
-pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_16 = 2;
+pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_17 = 2;
 /// What a byte of a mask says of its texel.
-pub type _bindgen_ty_16 = ::core::ffi::c_int;
+pub type _bindgen_ty_17 = ::core::ffi::c_int;
 extern "C" {
     /** Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
  down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,

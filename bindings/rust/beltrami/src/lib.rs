@@ -38,8 +38,8 @@ pub use flattener::Flattener;
 pub use library::{build_info, has, version};
 pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
 pub use options::{
-    Cut, Delaunay, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options, Pack,
-    PackOptions, PackTurns, Preset, UnwrapOptions, Weld, OPTIONS,
+    Cut, Delaunay, Effort, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options,
+    Pack, PackOptions, PackTurns, Preset, UnwrapOptions, Weld, OPTIONS,
 };
 pub use packer::{Packer, UvMesh};
 pub use packing::{Packing, PageSummary, Texel};

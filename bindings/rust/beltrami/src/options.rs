@@ -10,7 +10,8 @@ use beltrami_sys as sys;
 
 use crate::error::Error;
 pub use table::{
-    Cut, Delaunay, Energy, Flatten, Injectivity, Method, Pack, PackTurns, Preset, Weld, OPTIONS,
+    Cut, Delaunay, Effort, Energy, Flatten, Injectivity, Method, Pack, PackTurns, Preset, Weld,
+    OPTIONS,
 };
 
 /// What an option takes.

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use beltrami::{
-    Cut, Delaunay, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionInfo,
+    Cut, Delaunay, Effort, Energy, ErrorKind, Flatten, Flattener, Injectivity, Method, OptionInfo,
     OptionKind, Options, Pack, PackOptions, PackTurns, Packer, Preset, UnwrapOptions, Unwrapper,
     Weld, OPTIONS,
 };
@@ -197,6 +197,9 @@ fn typed_and_named_options_are_the_same() {
     }
     for &pack in Pack::ALL {
         assert_eq!(UnwrapOptions::new().pack(pack), unwrap("pack", pack.name()));
+    }
+    for &effort in Effort::ALL {
+        assert_eq!(UnwrapOptions::new().effort(effort), unwrap("effort", effort.name()));
     }
     for &turns in PackTurns::ALL {
         let named = PackOptions::new().set("pack-turns", turns.name()).unwrap();
