@@ -152,7 +152,7 @@ std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& m
   const double asked = target.energy - 2;
   const double coarse = (mapped.opened.predicted_energy - 2) / asked;
   const double fine = (mapped.energy.symmetric_dirichlet - 2) / asked;
-  const EdgeMarks& seams = mapped.opened.search.seams.seams;
+  const EdgeMarks& seams = mapped.opened.seams;
   const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
   if (!is_cut || target.p99 > 0 || fine > kUnused || coarse < kUsed) return std::nullopt;
   SeamTarget higher = target;

@@ -39,15 +39,15 @@ ChartMap flatten_fine(const FineProblem& fine, const ChartOptions& options, cons
 
 ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited& inherited,
                        const ChartOptions& options, const Work& work) {
-  if (coarse_faces >= mesh.face_count()) {
-    return cm_mode(mesh, "coarse", inherited.start, options, work);
-  }
   FineProblem fine{.mesh = &mesh};
-  if (is_nested(mesh.face_count(), coarse_faces, options)) {
+  if (inherited.start.empty() && is_nested(mesh.face_count(), coarse_faces, options)) {
     ChartMap map = nested_mode(mesh, inherited, options, work);
     if (!map.uvs.empty()) return map;
     require_whole_factor(mesh, options, work);
     fine.statistics.stages.push_back(given_up(map.statistics.stages));
+  }
+  if (coarse_faces >= mesh.face_count()) {
+    return joined(std::move(fine), cm_mode(mesh, "coarse", inherited.start, options, work));
   }
   simplify_fine(coarse_faces, inherited.level, work.part(0, kSimplified), fine);
   if (fine.coarse.mesh.face_count() > kLeastReduction * mesh.face_count()) {

@@ -44,11 +44,15 @@
 namespace beltrami {
 namespace {
 
-/// From so many faces on.
-constexpr Index kLeastFaces = 100000;
-/// Times the coarse faces, at least.
-constexpr Index kLeastRatio = 8;
-constexpr Index kCoarsestFaces = 5000;  // of the coarsest level
+/// From so many faces on: fewer cost less than a level.
+constexpr Index kLeastFaces = 4000;
+/// From so many on, few steps on the finest level are worth their time; and beside coarse faces
+/// that are asked for levels are worth it, if there are so many times as many.
+constexpr Index kManyFaces = 100'000, kLeastRatio = 8;
+/// The coarsest level has a quarter of the faces, within bounds: with fewer it is another shape.
+/// From twenty times the second on it has a twentieth, up to the third.
+constexpr Index kQuarter = 4, kTwentieth = 20;
+constexpr Index kLeastCoarsest = 1000, kFairCoarsest = 2500, kMostCoarsest = 5000;
 /// On levels of up to so many composite majorization costs little beside the run.
 constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
@@ -316,10 +320,11 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool touches = !anchored.empty();
   climb.map.in_contact = climb.map.in_contact || touches;
   // What presses on itself comes to rest slowly, and on coarse levels at little cost.
-  const PolishLength length = touches               ? PolishLength::kWhole
-                              : !is_finest          ? PolishLength::kMiddling
-                              : climb.hard || rough ? PolishLength::kLong
-                                                    : PolishLength::kShort;
+  const bool is_small = mesh.face_count() < kManyFaces;
+  const PolishLength length = touches                  ? PolishLength::kWhole
+                              : !is_finest || is_small ? PolishLength::kMiddling
+                              : climb.hard || rough    ? PolishLength::kLong
+                                                       : PolishLength::kShort;
   const auto begin_again = [&] {
     take_aim(target_of(level, cycle.points(), options.energy, work), work, cycle, level);
     return reach_start();
@@ -458,7 +463,8 @@ ChartMap climb(const DiskMesh& mesh, const std::vector<CoarseDisk>& levels,
       affords(mesh, options, Extra::kWholeFactor, work) ? mesh.face_count() : kMostFactored;
   climb.most_for_hessian = std::min(affords_it ? kMostFactored : kFewFaces, mesh.face_count() - 1);
   const Index faces = coarse_faces(coarsest.face_count(), options.coarse_faces);
-  climb.map = beltrami_mode(coarsest, faces, {}, options, begin);
+  climb.map = faces >= coarsest.face_count() ? cm_mode(coarsest, "coarse", {}, options, begin)
+                                             : beltrami_mode(coarsest, faces, {}, options, begin);
   bool injective = is_injective(coarsest, climb.map.uvs, keeps_boundary_simple(options), begin);
   if (injective) {
     to_origin(coarsest, begin, climb.map.uvs);
@@ -498,13 +504,18 @@ double nested_bytes(const MeshCounts& n, int threads) {
 }
 
 bool is_nested(Index faces, Index coarse, const ChartOptions& options) {
-  return options.flatten == Flatten::kMetric && !options.delaunay && faces >= kLeastFaces &&
-         coarse <= faces / kLeastRatio && coarse == coarse_faces(faces, options.coarse_faces);
+  if (options.flatten != Flatten::kMetric || options.delaunay) return false;
+  if (coarse != coarse_faces(faces, options.coarse_faces)) return false;
+  if (options.coarse_faces == 0) return faces >= kLeastFaces;
+  return faces >= kManyFaces && coarse <= faces / kLeastRatio;
 }
 
 ChartMap nested_mode(const DiskMesh& mesh, const Inherited& inherited, const ChartOptions& options,
                      const Work& work) {
-  const Index coarsest = std::max(kCoarsestFaces, static_cast<Index>(options.coarse_faces));
+  const Index faces = mesh.face_count();
+  const Index most = std::clamp(faces / kTwentieth, kFairCoarsest, kMostCoarsest);
+  const Index usual = std::clamp(faces / kQuarter, kLeastCoarsest, most);
+  const Index coarsest = std::max(usual, static_cast<Index>(options.coarse_faces));
   ChartMap map;
   std::vector<CoarseDisk> levels;
   run_stage("simplify", work.part(0, kSimplified), map.statistics.stages,
