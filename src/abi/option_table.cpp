@@ -88,8 +88,8 @@ const OptionEntry kOptions[] = {
         .name = "coarse-faces",
         .summary =
             "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
-            "1% of the faces, at least 10,000, or about 5,000 where larger meshes go through "
-            "levels.",
+            "1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go "
+            "through levels.",
         .minimum = 0,
         .maximum = 700e6,
         .get = get<&Options::coarse_faces>,

@@ -72,7 +72,11 @@ class Laying {
  private:
   using Around = Index (*)(Index);
 
-  bool is_label_border(const SurfacePiece& piece, Index h) const {
+  static bool is_locked(const SurfacePiece& piece, Index h) {
+    return !piece.locked.empty() && piece.locked[h];
+  }
+
+  static bool is_label_border(const SurfacePiece& piece, Index h) {
     const std::vector<Index>& labels = piece.hints.labels;
     const Index twin = piece.surface.twin[h];
     return !labels.empty() && twin != kNone && labels[h / 3] != labels[twin / 3];
@@ -84,7 +88,7 @@ class Laying {
       return false;
     if ((from_.surface.twin[h] == kNone) != (to_.surface.twin[g] == kNone)) return false;
     if ((h / 3 < from_.real_faces) != (g / 3 < to_.real_faces)) return false;
-    if (!from_.locked.empty() && from_.locked[h] != to_.locked[g]) return false;
+    if (is_locked(from_, h) != is_locked(to_, g)) return false;
     return is_label_border(from_, h) == is_label_border(to_, g);
   }
 

@@ -40,15 +40,17 @@ std::optional<Descent> minimise_from(const DiskMesh& mesh, const std::vector<Vec
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
   NewtonOptions newton = newton_options(options);
   newton.proxy_steps = 0;
-  // What is simple goes on so: pressed on by itself it is no minimum without contact.
-  const bool stays_simple =
-      keeps_boundary_simple(options) && find_crossings(mesh.boundary, start).empty();
-  Descent done = stays_simple ? descend(mesh, rest, start, newton, true, options, work)
-                              : descend_led(mesh, rest, start, newton, work);
+  Descent done = descend_led(mesh, rest, start, newton, work);
   const bool is_simple = !keeps_boundary_simple(options) ||
                          find_crossings(mesh.boundary, done.uvs).empty() ||
                          (options.parts_touching && open_touching_sides(mesh, work, done.uvs));
-  if (!is_simple || is_hopeless(done, options)) return std::nullopt;
+  if (!is_simple && find_crossings(mesh.boundary, start).empty()) {
+    // Pressed on by itself it is no minimum without contact.
+    done = descend(mesh, rest, start, newton, true, options, work);
+  } else if (!is_simple) {
+    return std::nullopt;
+  }
+  if (is_hopeless(done, options)) return std::nullopt;
   return done;
 }
 

@@ -383,15 +383,16 @@ void begin_cycle(const DiskMesh& mesh, const ChartOptions& options, const Work& 
 /// better one comes of it, or else from scratch. Returns whether there is an injective map.
 bool finish_few(const DiskMesh& mesh, bool injective, const ChartOptions& options, const Work& work,
                 Climb& climb) {
-  ChartOptions coarse = options;
-  coarse.parts_touching = false;
   ChartMap map =
-      cm_mode(mesh, "coarse", injective ? climb.map.uvs : std::vector<Vec2>(), coarse, work);
+      cm_mode(mesh, "coarse", injective ? climb.map.uvs : std::vector<Vec2>(), options, work);
   const double energy = map.statistics.coarse_energy;
   map.statistics.coarse_faces = 0;  // that is the coarsest level
   map.statistics.coarse_energy = 0;
   climb.map.statistics.append(map.statistics);
-  if (injective && !(energy < climb.energy)) return true;
+  if (injective && !(energy < climb.energy)) {
+    climb.map.converged = climb.map.converged || map.converged;
+    return true;
+  }
   if (!is_injective(mesh, map.uvs, keeps_boundary_simple(options), work)) return injective;
   climb.hard = !map.converged;
   climb.map.uvs = std::move(map.uvs);
@@ -410,16 +411,17 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
   const ChartStatistics before = reached.statistics;
   const bool in_contact = reached.in_contact, was_hard = climb.hard;
   const double energy = climb.energy;
-  const bool few = mesh.face_count() <= kFewFaces && !is_finest;
+  const bool few = is_finest ? mesh.face_count() < kManyFaces : mesh.face_count() <= kFewFaces;
   const bool cheap = mesh.face_count() <= kMostFactored && !is_finest;
   const bool done = climb_by_cycle(mesh, coarse, cheap ? kWhereCheap : kOnAnyLevel, is_finest,
                                    options, work.part(0, 0.5), climb);
   const bool pressed = reached.in_contact;
-  const bool must_rest = pressed ? cheap : few;  // elsewhere finer levels go on with it
+  const bool by_cm = few && (is_finest || !pressed);
+  const bool must_rest = by_cm || (pressed && cheap);  // elsewhere finer levels go on with it
   if (done && (reached.converged || !must_rest || work.out_of_time())) return true;
   const Work rest = work.part(0.5, 1);
   climb.cycle.reset();
-  const bool goes_on = done && !pressed;
+  const bool goes_on = done && (is_finest || !pressed);
   if (!goes_on) {
     ChartStatistics statistics = before;
     const auto& stages = reached.statistics.stages;
@@ -433,8 +435,10 @@ bool climb_to(const DiskMesh& mesh, const CoarseDisk& coarse, bool is_finest,
     climb.energy = energy;
   }
   if (mesh.face_count() > climb.most_factored) return false;
-  const bool injective = few && !pressed ? finish_few(mesh, goes_on, options, rest, climb)
-                                         : climb_by_factor(mesh, coarse, options, rest, climb);
+  ChartOptions own = options;
+  own.parts_touching = options.parts_touching && is_finest;
+  const bool injective = by_cm ? finish_few(mesh, goes_on, own, rest, climb)
+                               : climb_by_factor(mesh, coarse, options, rest, climb);
   if (!injective) return false;
   if (!is_finest) begin_cycle(mesh, options, rest, climb);
   return true;

@@ -46,11 +46,14 @@ double energy(const Flattening& result) {
   return result.distortion.symmetric_dirichlet;
 }
 
-TEST(Nested, IsForLargeDisksThatAreFlattenedTheMetricWay) {
+TEST(Nested, IsForDisksOfSomeFacesThatAreFlattenedTheMetricWay) {
   EXPECT_TRUE(is_nested(1000000, 10000, {}));
-  EXPECT_FALSE(is_nested(50000, 10000, {}));
+  EXPECT_TRUE(is_nested(5000, 5000, {}));
+  EXPECT_FALSE(is_nested(3000, 3000, {}));
   EXPECT_FALSE(is_nested(1000000, 1000, {})) << "another try than what was asked for";
   ChartOptions options;
+  options.coarse_faces = 5000;
+  EXPECT_FALSE(is_nested(50000, 5000, options)) << "a step serves";
   options.coarse_faces = 300000;
   EXPECT_FALSE(is_nested(1000000, 300000, options));
   options = {};
