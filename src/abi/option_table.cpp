@@ -86,10 +86,10 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_COARSE_FACES,
         .type = BELTRAMI_TYPE_INT,
         .name = "coarse-faces",
-        .summary =
-            "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
-            "1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go "
-            "through levels.",
+        .summary = "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
+                   "1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 "
+                   "faces on go "
+                   "through levels.",
         .minimum = 0,
         .maximum = 700e6,
         .get = get<&Options::coarse_faces>,
