@@ -11,6 +11,8 @@
 
 #include "base/interrupt.h"
 #include "base/vectors.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

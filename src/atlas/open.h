@@ -16,6 +16,7 @@
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
+#include "cut/search_effort.h"
 #include "mesh/chart.h"
 #include "mesh/surface.h"
 

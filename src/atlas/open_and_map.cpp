@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -22,6 +23,8 @@
 #include "chart/options.h"
 #include "cut/edge_marks.h"
 #include "cut/search.h"
+#include "cut/search_effort.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {
@@ -68,6 +71,10 @@ void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& a
       "place without folding a face");
 }
 
+/// Parts with less of the area are searched quickly, whatever is asked: what more shortens their
+/// seams is nothing to the whole, and there may be thousands.
+constexpr double kSmallPart = 1e-3;
+
 /// Charts of a piece and their maps.
 struct Mapped {
   OpenedSurface opened;
@@ -83,7 +90,17 @@ struct Task {
   const Admitted& admitted;
   const AtlasOptions& options;
   const int exponent;  ///< of the admitted surface
+  double area = 0;     ///< of all pieces, in the unit of the whole
 };
+
+double area_of(const SurfacePiece& piece, const Work& work) {
+  return std::ldexp(surface_area(piece.surface, work), -2 * piece.exponent);
+}
+
+SearchEffort effort_for(const Task& task, const SurfacePiece& piece, const Work& work) {
+  const bool is_small = area_of(piece, work) < kSmallPart * task.area;
+  return is_small ? search_effort(Effort::kQuick) : task.options.effort;
+}
 
 void measure(const Work& work, Mapped& mapped) {
   std::vector<ChartInfo> charts(mapped.opened.charts.size());
@@ -205,7 +222,7 @@ bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
 /// A few tries at the target, and a short cut where all of them miss it.
 Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
                       const Work& work, std::vector<StageStatistics>& stages) {
-  const SearchEffort& effort = task.options.effort;
+  const SearchEffort effort = effort_for(task, piece, work.aside());
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   std::optional<SeamTarget> aim = target;
   BegunSearch begun;
@@ -363,7 +380,7 @@ void collect(const SurfacePiece& piece, const std::optional<SeamTarget>& target,
 MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                            const AtlasOptions& options, const Work& work,
                            std::vector<StageStatistics>& stages) {
-  const Task task{input, admitted, options, exponent};
+  Task task{input, admitted, options, exponent};
   MappedSurface all;
   std::vector<SurfacePiece> pieces;
   run_stage("cut", work.part(0, kReady), stages, [&](StageStatistics&, const Work& inner) {
@@ -377,6 +394,7 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
       pieces = components_of(std::move(ready.whole), inner);
     }
   });
+  for (const SurfacePiece& piece : pieces) task.area += area_of(piece, work.aside());
   std::vector<Mapped> mapped(pieces.size());
   std::vector<std::vector<StageStatistics>> spent(pieces.size());
   const double wall = wall_seconds(), cpu = cpu_seconds();

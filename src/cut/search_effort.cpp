@@ -17,7 +17,7 @@ SearchEffort search_effort(Effort effort) {
               .improves = false,
               .joins = 0,
               .varied_faces = 0,
-              .tries = 2,
+              .tries = 3,
               .uses_rest = false,
               .packing = 0};
     case Effort::kHigh:
@@ -51,7 +51,7 @@ SearchEffort search_effort(Effort effort) {
           .improves = true,
           .joins = 6,
           .varied_faces = 0,
-          .tries = 3,
+          .tries = 4,
           .uses_rest = true,
           .packing = 0.1};
 }

@@ -348,7 +348,10 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     result.certificate = certify(mesh.faces, mesh.boundary, result.uvs, work);
     return result.certificate.injective();
   };
-  if (judge() || !numbers.hold(placed, work)) return result;
+  if (judge()) return result;
+  // Of what falls onto a line, few faces may still find room beside it.
+  const bool may_find_room = numbers.step > 0 && mesh.faces.size() <= kMostPatches;
+  if (!may_find_room && !numbers.hold(placed, work)) return result;
   const Certificate exact = certify(mesh.faces, mesh.boundary, uvs, work);
   const std::vector<Vec2> nearest = result.uvs;
   auto bad = non_positive_faces(mesh.faces, result.uvs, work);

@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
+#include "cut/search.h"
 #include "energy/measure.h"
+#include "pack/pack.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/solids.h"

@@ -17,24 +17,24 @@ namespace fs = std::filesystem;
 class InsideFolder : public testing::Test {
  protected:
   void SetUp() override {
-    fs::create_directories(directory_.path("models/maps"));
-    directory_.file("secret.bin", "secret");
-    directory_.file("models/a.bin", "a");
-    directory_.file("models/two words.bin", "b");
-    directory_.file("models/maps/c.bin", "c");
-    directory_.file("models_too", "d");
+    fs::create_directories(directory.path("models/maps"));
+    directory.file("secret.bin", "secret");
+    directory.file("models/a.bin", "a");
+    directory.file("models/two words.bin", "b");
+    directory.file("models/maps/c.bin", "c");
+    directory.file("models_too", "d");
   }
   std::string full(const std::string& name) const {
-    return fs::canonical(directory_.path(name)).string();
+    return fs::canonical(directory.path(name)).string();
   }
   NamedFile uri(const std::string& name, Reach reach = Reach::kItsFolder) const {
-    return follow_uri(directory_.path("models/m.gltf"), name, reach);
+    return follow_uri(directory.path("models/m.gltf"), name, reach);
   }
   NamedFile name(const std::string& name, Reach reach = Reach::kItsFolder) const {
-    return follow_name(directory_.path("models/m.obj"), name, reach);
+    return follow_name(directory.path("models/m.obj"), name, reach);
   }
 
-  TemporaryDirectory directory_;
+  TemporaryDirectory directory;
 };
 
 TEST_F(InsideFolder, LeadsToWhatIsBesideAndBelow) {
@@ -66,18 +66,18 @@ TEST_F(InsideFolder, RefusesWhatLeavesTheFolderHoweverItIsWritten) {
 }
 
 TEST_F(InsideFolder, RefusesLinksThatLeaveTheFolder) {
-  fs::create_symlink("../secret.bin", directory_.path("models/link.bin"));
-  fs::create_directory_symlink("..", directory_.path("models/up"));
-  fs::create_symlink("maps/c.bin", directory_.path("models/down.bin"));
-  fs::create_symlink("circle.bin", directory_.path("models/circle.bin"));
+  fs::create_symlink("../secret.bin", directory.path("models/link.bin"));
+  fs::create_directorysymlink("..", directory.path("models/up"));
+  fs::create_symlink("maps/c.bin", directory.path("models/down.bin"));
+  fs::create_symlink("circle.bin", directory.path("models/circle.bin"));
   EXPECT_EQ(uri("link.bin").path, "");
   EXPECT_EQ(uri("up/secret.bin").path, "");
   EXPECT_EQ(uri("circle.bin").path, "");
   EXPECT_EQ(uri("down.bin").path, full("models/maps/c.bin"));
   EXPECT_EQ(uri("link.bin", Reach::kAnywhere).path, full("secret.bin"));
   // A model that is a link itself has its files beside the link.
-  fs::create_symlink("models/a.bin", directory_.path("m.gltf"));
-  EXPECT_EQ(follow_uri(directory_.path("m.gltf"), "secret.bin", Reach::kItsFolder).path,
+  fs::create_symlink("models/a.bin", directory.path("m.gltf"));
+  EXPECT_EQ(follow_uri(directory.path("m.gltf"), "secret.bin", Reach::kItsFolder).path,
             full("secret.bin"));
 }
 

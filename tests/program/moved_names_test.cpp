@@ -19,19 +19,19 @@ using Words = std::vector<std::string>;
 class Moved : public testing::Test {
  protected:
   void SetUp() override {
-    fs::create_directories(directory_.path("in/sub"));
-    fs::create_directories(directory_.path("out"));
+    fs::create_directories(directory.path("in/sub"));
+    fs::create_directories(directory.path("out"));
     for (const char* name : {"in/a.mtl", "in/two words.mtl", "in/sub/b.mtl", "other.mtl"}) {
-      directory_.file(name, "newmtl red\n");
+      directory.file(name, "newmtl red\n");
     }
-    mesh_.path = directory_.path("in/m.obj");
+    mesh.path = directory.path("in/m.obj");
   }
   std::string moved(const std::string& line, const std::string& to = "out/m.obj") {
-    return MovedNames(mesh_, directory_.path(to)).line(line);
+    return MovedNames(mesh, directory.path(to)).line(line);
   }
 
-  TemporaryDirectory directory_;
-  MeshFile mesh_;
+  TemporaryDirectory directory;
+  MeshFile mesh;
 };
 
 TEST_F(Moved, LeadToTheSameFiles) {
@@ -54,23 +54,23 @@ TEST_F(Moved, StayWhereTheyLeadOnOrLeadNowhere) {
 
 TEST_F(Moved, AreNotFollowedOutOfTheFolderUnlessTheUserSaysSo) {
   EXPECT_EQ(moved("mtllib ../other.mtl"), "mtllib ../other.mtl");
-  MovedNames names(mesh_, directory_.path("out/m.obj"));
+  MovedNames names(mesh, directory.path("out/m.obj"));
   names.line("mtllib ../other.mtl");
   ASSERT_EQ(names.notes().size(), 1u);
   EXPECT_NE(names.notes()[0].find("--allow-outside"), std::string::npos);
-  mesh_.reach = Reach::kAnywhere;
+  mesh.reach = Reach::kAnywhere;
   EXPECT_EQ(moved("mtllib ../other.mtl", "out/m.obj"), "mtllib ../other.mtl");
   EXPECT_EQ(moved("mtllib ../other.mtl", "m.obj"), "mtllib other.mtl");
 }
 
 TEST_F(Moved, StandInWhatIsWritten) {
-  directory_.file("in/m.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-  MeshFile mesh = read_mesh(directory_.path("in/m.obj"), Content::kSurface);
+  directory.file("in/m.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+  MeshFile mesh = read_mesh(directory.path("in/m.obj"), Content::kSurface);
   mesh.uvs.assign(6, 0);
   std::string text;
-  write_mesh(mesh, directory_.path("out/m.obj"), [&](std::string_view bytes) { text += bytes; });
+  write_mesh(mesh, directory.path("out/m.obj"), [&](std::string_view bytes) { text += bytes; });
   EXPECT_NE(text.find("\nmtllib ../in/a.mtl\n"), std::string::npos) << text;
-  EXPECT_EQ(not_kept(mesh, directory_.path("out/m.obj")), Words{});
+  EXPECT_EQ(not_kept(mesh, directory.path("out/m.obj")), Words{});
 }
 
 }  // namespace

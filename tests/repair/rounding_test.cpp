@@ -134,6 +134,18 @@ TEST(Rounding, TellsWhatATypeCannotHold) {
   EXPECT_FALSE((Numbers{.single = true, .exponent = 160}).hold(uvs, Work()));
 }
 
+TEST(Rounding, AFaceLowerThanAStepGetsRoomBesideItsLine) {
+  const DiskMesh mesh = disks::disk(meshes::triangle());
+  const Numbers steps{.single = true, .step = 0x1p-24};
+  const double y = 0.41220984;
+  const std::vector<Vec2> uvs = {{0.28, y}, {0.31, y}, {0.29, y + 4e-9}};
+  const Rounded rounded = round_map(mesh, uvs, uvs, steps, Work());
+  EXPECT_TRUE(rounded.certificate.injective());
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    EXPECT_LE((rounded.uvs[v] - uvs[v]).cwiseAbs().maxCoeff(), 3 * steps.step);
+  }
+}
+
 TEST(Rounding, OpensFacesThatPlacingFolds) {
   // Rows closer to each other than doubles around 1 are, but not than around 0.
   const DiskMesh mesh = disks::disk(meshes::grid(14, 14));

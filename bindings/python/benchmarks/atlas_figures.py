@@ -25,6 +25,7 @@ class Figures:
     and the value that 99 percent of the area keep to are weighted by area on the surface.
     `overlaps` are pairs of triangles and `flips` triangles, both counted exactly, mirrored charts
     taken for their mirror images. `failed` are triangles with no area in the plane, or no UVs.
+    `filled` is the area of all triangles over that of the square that the page fits into.
     """
 
     charts: int
@@ -35,6 +36,7 @@ class Figures:
     overlaps: int
     flips: int
     failed: int
+    filled: float = np.nan
 
     def sound(self) -> bool:
         """Return whether the map is injective, and of all triangles."""
@@ -158,6 +160,10 @@ def measure(
     charts, seams = charts_and_seams(vertices, faces, uvs, ~lost)
     check = beltrami.check_atlas(vertices, faces, uvs, allow_mirrored=True)
     mean, p99, largest = energies(stretch_of(vertices, faces, uvs * np.array(page)))
+    on_page = uvs * np.array(page)
+    u, v = on_page[:, 1] - on_page[:, 0], on_page[:, 2] - on_page[:, 0]
+    covered = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2
+    filled = float(covered / max(page) ** 2)
     return Figures(
         charts=charts,
         seams=seams,
@@ -167,4 +173,5 @@ def measure(
         overlaps=int(check.overlaps),
         flips=int(check.negative),
         failed=int(lost.sum()),
+        filled=filled,
     )
