@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/surface_view.h"
 #include "gltf_builder.h"

@@ -67,7 +67,7 @@ TEST_F(InsideFolder, RefusesWhatLeavesTheFolderHoweverItIsWritten) {
 
 TEST_F(InsideFolder, RefusesLinksThatLeaveTheFolder) {
   fs::create_symlink("../secret.bin", directory.path("models/link.bin"));
-  fs::create_directorysymlink("..", directory.path("models/up"));
+  fs::create_directory_symlink("..", directory.path("models/up"));
   fs::create_symlink("maps/c.bin", directory.path("models/down.bin"));
   fs::create_symlink("circle.bin", directory.path("models/circle.bin"));
   EXPECT_EQ(uri("link.bin").path, "");
