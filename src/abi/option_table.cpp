@@ -260,7 +260,8 @@ const OptionEntry kOptions[] = {
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "hard-angle",
         .summary = "Degrees between the normals of two faces above which the edge between them is "
-                   "a seam; 180 makes none.",
+                   "a seam, but for creases that end within the surface and part nothing; 180 "
+                   "makes none.",
         .minimum = 0,
         .maximum = 180,
         .get = get<&Options::hard_angle>,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <vector>
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
@@ -44,6 +46,34 @@ bool is_hard(const Surface& surface, Index halfedge, double cosine) {
   return one.dot(other) < cosine * std::sqrt(one.squaredNorm() * other.squaredNorm());
 }
 
+/// Takes back the marks of what hangs together by hard edges alone, without a loop, and meets no
+/// border: it would be a slit, that nothing but the search can tell the use of. `hard`: per
+/// half-edge, 1 where it is marked for being hard, 2 where for something else.
+void drop_slits(const Surface& surface, const std::vector<std::uint8_t>& hard, EdgeMarks& marks) {
+  std::vector<Index> parent(surface.positions.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<bool> holds(parent.size(), false);  // at roots: a loop or a border, or other marks
+  PollSometimes poll;
+  for (Index h = 0; h < size_of(hard); ++h) {
+    poll();
+    if (hard[h] == 0) continue;
+    const Index a = root(surface.origin(h)), b = root(surface.target(h));
+    const bool is_held = hard[h] > 1 || a == b || holds[a] || holds[b] ||
+                         surface.on_boundary[surface.origin(h)] ||
+                         surface.on_boundary[surface.target(h)];
+    parent[a] = b;
+    holds[b] = is_held;
+  }
+  for (Index h = 0; h < size_of(hard); ++h) {
+    if (hard[h] != 1 || holds[root(surface.origin(h))]) continue;
+    marks[h] = marks[surface.twin[h]] = false;
+  }
+}
+
 }  // namespace
 
 EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Work& work) {
@@ -58,7 +88,7 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
     return cuts.corner_uvs[3 * static_cast<std::size_t>(admitted.input_face[face]) +
                            static_cast<std::size_t>(admitted.input_corner(face, h % 3))];
   };
-  const auto is_given = [&](Index h, Index twin) {
+  const auto is_asked = [&](Index h, Index twin) {
     if (!edges.empty() && std::binary_search(edges.begin(), edges.end(),
                                              edge_between(input_vertex(surface.origin(h)),
                                                           input_vertex(surface.target(h))))) {
@@ -68,24 +98,23 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
         cuts.labels[admitted.input_face[h / 3]] != cuts.labels[admitted.input_face[twin / 3]]) {
       return true;
     }
-    if (!cuts.corner_uvs.empty() &&
-        (uv(h) != uv(Surface::next(twin)) || uv(Surface::next(h)) != uv(twin))) {
-      return true;
-    }
-    return by_angle && is_hard(surface, h, cosine);
+    return !cuts.corner_uvs.empty() &&
+           (uv(h) != uv(Surface::next(twin)) || uv(Surface::next(h)) != uv(twin));
   };
   // Bytes, for neighbouring bits cannot be written side by side.
   std::vector<std::uint8_t> given(surface.twin.size(), 0);
   parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto h = static_cast<Index>(begin); h < end; ++h) {
       const Index twin = surface.twin[h];
-      given[h] = twin != kNone && h < twin && is_given(h, twin) ? 1 : 0;
+      if (twin == kNone || h > twin) continue;
+      given[h] = is_asked(h, twin) ? 2 : by_angle && is_hard(surface, h, cosine) ? 1 : 0;
     }
   });
   EdgeMarks marks(surface.twin.size(), false);
   for (Index h = 0; h < size_of(surface.twin); ++h) {
     if (given[h] != 0) mark_edge(surface, h, marks);
   }
+  if (by_angle) drop_slits(surface, given, marks);
   return marks;
 }
 

@@ -18,7 +18,8 @@ struct GivenCuts {
   std::vector<std::array<Index, 2>> edges;  ///< ends; pairs that are no edge mark nothing
   std::vector<Index> labels;                ///< per face, or none: cut where they differ
   std::vector<Vec2> corner_uvs;             ///< three per face, or none: cut where they differ
-  double hard_angle = std::numbers::pi;     ///< cut where normals turn by more, in radians
+  double hard_angle = std::numbers::pi;     ///< cut where normals turn by more, in radians, but for
+                                            ///< creases that part nothing and meet no border
 
   bool none() const {
     return edges.empty() && labels.empty() && corner_uvs.empty() && hard_angle >= std::numbers::pi;

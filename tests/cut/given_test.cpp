@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "admit/admit.h"
+#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
@@ -41,6 +43,32 @@ TEST(GivenMarks, HardEdgesOfACubeAreItsTwelve) {
   EXPECT_EQ(marked_edges(meshes::cube(), cuts), 12);
   cuts.hard_angle = 0.6 * std::numbers::pi;
   EXPECT_EQ(marked_edges(meshes::cube(), cuts), 0);
+}
+
+/// A sheet with a ridge along its middle line, from `from` to `to`.
+TriangleList ridge(double from, double to) {
+  TriangleList mesh = meshes::grid(8, 8);
+  for (Vec3& p : mesh.positions) {
+    if (p.y() == 0.5 && p.x() >= from && p.x() <= to) p.z() = 0.1;
+  }
+  return mesh;
+}
+
+TEST(GivenMarks, CreasesThatEndWithinTheSurfaceAreNone) {
+  GivenCuts cuts;
+  cuts.hard_angle = std::numbers::pi / 3;
+  EXPECT_EQ(marked_edges(ridge(0, 1), cuts), 8);
+  EXPECT_EQ(marked_edges(ridge(0, 0.5), cuts), 4) << "one that comes from the border is";
+  const TriangleList inside = ridge(0.25, 0.75);
+  EXPECT_EQ(marked_edges(inside, cuts), 0);
+  const auto at = [&](double x) {
+    for (Index v = 0; v < size_of(inside.positions); ++v) {
+      if (inside.positions[v] == Vec3(x, 0.5, 0.1)) return v;
+    }
+    return kNone;
+  };
+  cuts.edges = {{at(0.375), at(0.5)}};
+  EXPECT_EQ(marked_edges(inside, cuts), 4) << "nor where an edge of it is asked for";
 }
 
 TEST(GivenMarks, EdgesByTheirEndsInEitherDirectionAndWelded) {
