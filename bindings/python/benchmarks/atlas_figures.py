@@ -36,7 +36,7 @@ class Figures:
     overlaps: int
     flips: int
     failed: int
-    filled: float = np.nan
+    filled: float = 0.0  # of rows that were written without
 
     def sound(self) -> bool:
         """Return whether the map is injective, and of all triangles."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import sys
@@ -31,7 +32,10 @@ def apart(floor: tuple[float, float], wall: tuple[float, float]) -> np.ndarray:
 
 def test_an_unfolded_surface_is_one_chart_without_seams_at_the_least_energy():
     found = measure(VERTICES, FACES, 3 * UNFOLDED)
-    assert found == Figures(1, 0, *[pytest.approx(2)] * 3, overlaps=0, flips=0, failed=0)
+    two = pytest.approx(2)
+    expected = Figures(1, 0, two, two, two, overlaps=0, flips=0, failed=0)
+    assert dataclasses.replace(found, filled=expected.filled) == expected
+    assert found.filled == pytest.approx(9 * 2)  # on a page of unit size
     assert found.sound()
 
 
@@ -59,6 +63,7 @@ def test_a_page_that_was_squeezed_is_measured_as_it_was_packed():
     page = 4.0, 0.5
     squeezed = measure(VERTICES, FACES, UNFOLDED / page, page)
     assert squeezed.energy == pytest.approx(2)
+    assert squeezed.filled == pytest.approx(2 / 16)
     assert measure(VERTICES, FACES, UNFOLDED / page).energy > 3
 
 

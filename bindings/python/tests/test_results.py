@@ -86,7 +86,7 @@ def test_a_map_that_is_not_injective_comes_with_a_warning_at_the_caller(bust):
 
 
 def test_an_iteration_limit_shows_in_the_status(bust):
-    result = beltrami.parameterize(*bust, max_iterations=1)
+    result = beltrami.parameterize(*bust, method="cm", max_iterations=1)
     assert result.status == "BELTRAMI_NOT_CONVERGED"
     assert result.injective
     assert not result.converged

@@ -83,8 +83,8 @@ def batch(
         little higher.
     coarse_faces : int, default 0
         Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-        at least 10,000, or about 5,000 where larger meshes go through levels. A number from 0 to
-        700,000,000.
+        at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
+        number from 0 to 700,000,000.
     tolerance : float, default 0.0001
         Relative decrease of the energy in one iteration below which composite majorization stops. A
         number from 0 to 1.

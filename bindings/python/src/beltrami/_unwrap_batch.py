@@ -129,8 +129,8 @@ def unwrap_batch(
         little higher.
     coarse_faces : int, default 0
         Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-        at least 10,000, or about 5,000 where larger meshes go through levels. A number from 0 to
-        700,000,000.
+        at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
+        number from 0 to 700,000,000.
     tolerance : float, default 0.0001
         Relative decrease of the energy in one iteration below which composite majorization stops. A
         number from 0 to 1.
@@ -175,8 +175,9 @@ def unwrap_batch(
         or given (nowhere: those that are given are used as they are; what is no disk then is opened
         as by minimal).
     hard_angle : float, default 180.0
-        Degrees between the normals of two faces above which the edge between them is a seam; 180
-        makes none. A number from 0 to 180.
+        Degrees between the normals of two faces above which the edge between them is a seam, but
+        for creases that end within the surface and part nothing; 180 makes none. A number from 0 to
+        180.
     weld : {"auto", "on", "off"}, default "auto"
         Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
         one disk as it stands stays so), on or off.

@@ -203,13 +203,13 @@ options! {
         Choice(Energy::NAMES), 0..=2, default 0, calls 3;
 
     /// Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-    /// at least 10,000, or about 5,000 where larger meshes go through levels.
+    /// at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels.
     ///
     /// From 0 to 700000000.
     ///
     /// Default: 0.
     coarse_faces(u32) of [Options UnwrapOptions] = 2 "coarse-faces"
-        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000, or about 5,000 where larger meshes go through levels."
+        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels."
         Int(&[]), 0..=700000000, default 0, calls 3;
 
     /// Relative decrease of the energy in one iteration below which composite majorization stops.
@@ -332,14 +332,14 @@ options! {
         "Where seams go beside those that are given: auto (short ones that are searched for, along which the atlas has the target-energy), minimal (a short cut graph where a piece is no disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened) or given (nowhere: those that are given are used as they are; what is no disk then is opened as by minimal)."
         Choice(Cut::NAMES), 0..=3, default 2, calls 2;
 
-    /// Degrees between the normals of two faces above which the edge between them is a seam; 180
-    /// makes none.
+    /// Degrees between the normals of two faces above which the edge between them is a seam, but
+    /// for creases that end within the surface and part nothing; 180 makes none.
     ///
     /// From 0 to 180.
     ///
     /// Default: 180.
     hard_angle(f64) of [UnwrapOptions] = 16 "hard-angle"
-        "Degrees between the normals of two faces above which the edge between them is a seam; 180 makes none."
+        "Degrees between the normals of two faces above which the edge between them is a seam, but for creases that end within the surface and part nothing; 180 makes none."
         Float(&[]), 0..=180, default 180, calls 2;
 
     /// Whether vertices at one place, to the last bit, count as one: auto (yes, but a mesh that is
