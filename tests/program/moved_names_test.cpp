@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "files/inside_folder.h"
 #include "files/mesh_file.h"
 #include "temporary_directory.h"
 
