@@ -1,6 +1,6 @@
-"""Meshes as marching cubes and surface nets leave them, of any size: figures, crumbs, gyroids, nets.
+"""Meshes as marching cubes and surface nets leave them: figures, crumbs, gyroids and nets.
 
-All are made of random waves of a seed, so that anybody has the same ones.
+They have any size. All are made of random waves of a seed, so that anybody has the same ones.
 """
 
 from __future__ import annotations
