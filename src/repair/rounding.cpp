@@ -43,11 +43,18 @@ constexpr std::int64_t kGrain = 16384;
 /// Mends the faces of one triangulated disk whose vertices are at such numbers.
 class Rounding {
  public:
-  /// The vertices `held`, per vertex of the first ones, do not move.
-  Rounding(const DiskMesh& mesh, const std::vector<bool>& held, const Numbers& numbers,
-           std::vector<Vec2>& uvs, const Work& work)
-      : mesh_(mesh), held_(held), numbers_(numbers), uvs_(uvs), work_(work) {
+  /// The vertices `held`, per vertex of the first ones, do not move, and those of `rim` by no more
+  /// than some units in the last place: further out, what they bound would be where others are.
+  Rounding(const DiskMesh& mesh, const std::vector<bool>& held, const std::vector<Index>& rim,
+           const Numbers& numbers, std::vector<Vec2>& uvs, const Work& work)
+      : mesh_(mesh),
+        held_(held),
+        stays_near_(mesh.on_boundary),
+        numbers_(numbers),
+        uvs_(uvs),
+        work_(work) {
     held_.resize(mesh.positions.size(), false);
+    for (const Index v : rim) stays_near_[v] = true;
   }
 
   /// Tries to make `faces` positive, and never makes another face worse.
@@ -129,7 +136,7 @@ class Rounding {
       }
     }
     // Far away, so only where nothing near serves.
-    if (best.bad > 0 && !mesh_.on_boundary[vertex]) {
+    if (best.bad > 0 && !stays_near_[vertex]) {
       std::vector<Vec2> ring;
       mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
       if (const auto centre = kernel_centroid(ring)) attempt(*centre);
@@ -143,9 +150,8 @@ class Rounding {
     Patch patch = cut_patch(mesh_, {}, uvs_, face, rings);
     for (const Index f : patch.mesh_faces) tried[f] = true;
     for (std::size_t v = 0; v < patch.fixed.size(); ++v) {
-      // Those on the rim of the mesh, the circle of a ring among them, stay.
       const Index own = patch.mesh_vertices[v];
-      patch.fixed[v] = patch.fixed[v] || mesh_.on_boundary[own] || held_[own];
+      patch.fixed[v] = patch.fixed[v] || stays_near_[own] || held_[own];
     }
     double area = 0;
     for (const Triangle& t : patch.faces) {
@@ -163,7 +169,8 @@ class Rounding {
   static constexpr double kEquilateral = 0.43301270189221932;  // area for a side of 1
 
   const DiskMesh& mesh_;
-  std::vector<bool> held_;  // per vertex
+  std::vector<bool> held_;        // per vertex
+  std::vector<bool> stays_near_;  // per vertex
   const Numbers numbers_;
   std::vector<Vec2>& uvs_;
   const Work work_;
@@ -227,7 +234,7 @@ void mend_with_ring(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     auto faces = non_positive_faces(mesh.faces, places, work);
     const auto beside = faces_at_crossings(mesh, *surrounded, places);
     faces.insert(faces.end(), beside.begin(), beside.end());
-    Rounding(*surrounded, held, numbers, places, work).mend(std::move(faces));
+    Rounding(*surrounded, held, mesh.boundary, numbers, places, work).mend(std::move(faces));
     const std::vector<Vec2> mended(places.begin(),
                                    places.begin() + static_cast<std::ptrdiff_t>(uvs.size()));
     const Certificate after = certify(mesh.faces, mesh.boundary, mended, work);
@@ -255,7 +262,7 @@ bool part_sides(const DiskMesh& mesh, const std::vector<bool>& held, const Numbe
       if (held[v] && (*moved)[v] != result.uvs[v]) return false;
     }
     auto bad = non_positive_faces(mesh.faces, *moved, work);
-    if (!bad.empty()) Rounding(mesh, held, numbers, *moved, work).mend(std::move(bad));
+    if (!bad.empty()) Rounding(mesh, held, {}, numbers, *moved, work).mend(std::move(bad));
     const Certificate certificate = certify(mesh.faces, mesh.boundary, *moved, work);
     if (!certificate.injective()) continue;
     result.uvs.swap(*moved);
@@ -327,7 +334,7 @@ bool Numbers::hold(const std::vector<Vec2>& places, const Work& work) const {
 
 bool unfold_nearby(const DiskMesh& mesh, const Numbers& numbers, const Work& work,
                    std::vector<Vec2>& uvs) {
-  Rounding(mesh, {}, numbers, uvs, work).mend(non_positive_faces(mesh.faces, uvs, work));
+  Rounding(mesh, {}, {}, numbers, uvs, work).mend(non_positive_faces(mesh.faces, uvs, work));
   return non_positive_faces(mesh.faces, uvs, work).empty();
 }
 
@@ -356,7 +363,7 @@ Rounded round_map(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   const std::vector<Vec2> nearest = result.uvs;
   auto bad = non_positive_faces(mesh.faces, result.uvs, work);
   if (!bad.empty() && exact.orientations.first_bad_face == kNone) {
-    Rounding(mesh, held, numbers, result.uvs, work).mend(std::move(bad));
+    Rounding(mesh, held, {}, numbers, result.uvs, work).mend(std::move(bad));
     judge();
   }
   if (exact.injective() && !result.certificate.injective() &&
