@@ -172,6 +172,7 @@ std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& m
   const EdgeMarks& seams = mapped.opened.seams;
   const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
   if (!is_cut || target.p99 > 0 || fine > kUnused || coarse < kUsed) return std::nullopt;
+  if (kAim * coarse <= fine) return std::nullopt;  // no higher than what the search had
   SeamTarget higher = target;
   higher.energy = 2 + asked * std::min(kAim * coarse / fine, kMostAim);
   return higher;
