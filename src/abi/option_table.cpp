@@ -88,8 +88,7 @@ const OptionEntry kOptions[] = {
         .name = "coarse-faces",
         .summary = "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
                    "1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 "
-                   "faces on go "
-                   "through levels.",
+                   "faces on go through levels.",
         .minimum = 0,
         .maximum = 700e6,
         .get = get<&Options::coarse_faces>,

@@ -54,10 +54,8 @@ Measures measures_of(const SurfacePiece& piece) {
 /// One piece laid onto another, half-edge by half-edge.
 class Laying {
  public:
-  /// `unit`: of lengths of `to` in that of `from`; `near`: lengths that differ by less are the
-  /// same.
-  Laying(const SurfacePiece& from, const SurfacePiece& to, double unit, double near)
-      : from_(from), to_(to), unit_(unit), near_(near) {}
+  Laying(const SurfacePiece& from, const SurfacePiece& to)
+      : from_(from), to_(to), unit_(std::ldexp(1.0, from.exponent - to.exponent)) {}
 
   /// Per half-edge of `from` that of `to` on the same edge; reflected, it runs the other way.
   std::optional<std::vector<Index>> run() {
@@ -86,8 +84,8 @@ class Laying {
 
   bool is_alike(Index h, Index g) {
     ++looks_;
-    if (!(std::abs(length(from_.surface, h) - unit_ * length(to_.surface, g)) <= near_))
-      return false;
+    const double longer = length(from_.surface, h) - unit_ * length(to_.surface, g);
+    if (!(std::abs(longer) <= kSameLength)) return false;  // a piece has about unit area
     if ((from_.surface.twin[h] == kNone) != (to_.surface.twin[g] == kNone)) return false;
     if ((h / 3 < from_.real_faces) != (g / 3 < to_.real_faces)) return false;
     if (is_locked(from_, h) != is_locked(to_, g)) return false;
@@ -127,17 +125,11 @@ class Laying {
 
   const SurfacePiece& from_;
   const SurfacePiece& to_;
-  const double unit_, near_;
+  const double unit_;  ///< of `to`, in that of `from`
   std::int64_t looks_ = 0;
   std::vector<Index> onto_;
   PollSometimes poll_;
 };
-
-std::optional<std::vector<Index>> laid(const SurfacePiece& from, const SurfacePiece& to) {
-  // Pieces have about unit area in their own unit.
-  const double unit = std::ldexp(1.0, from.exponent - to.exponent);
-  return Laying(from, to, unit, kSameLength).run();
-}
 
 bool has_paint(const SurfacePiece& piece) {
   return !piece.hints.vertex_paint.empty() || !piece.hints.edge_paint.empty();
@@ -161,7 +153,7 @@ std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
     auto& kind = kinds[own.counts];
     for (const auto& [other, measures] : kind) {
       if (!is_near(own.area, measures.area) || !is_near(own.edges, measures.edges)) continue;
-      if (!laid(pieces[other], pieces[p])) continue;
+      if (!Laying(pieces[other], pieces[p]).run()) continue;
       first[p] = other;
       break;
     }
@@ -172,7 +164,7 @@ std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
 
 EdgeMarks carried_marks(const SurfacePiece& from, const EdgeMarks& marks, const SurfacePiece& to) {
   EdgeMarks carried(to.surface.twin.size(), false);
-  const std::optional<std::vector<Index>> onto = laid(from, to);
+  const std::optional<std::vector<Index>> onto = Laying(from, to).run();
   if (!onto) return carried;
   for (std::size_t h = 0; h < marks.size(); ++h) carried[(*onto)[h]] = marks[h];
   return carried;

@@ -46,10 +46,12 @@ bool is_hard(const Surface& surface, Index halfedge, double cosine) {
   return one.dot(other) < cosine * std::sqrt(one.squaredNorm() * other.squaredNorm());
 }
 
-/// Takes back the marks of what hangs together by hard edges alone, without a loop, and meets no
-/// border: it would be a slit, that nothing but the search can tell the use of. `hard`: per
-/// half-edge, 1 where it is marked for being hard, 2 where for something else.
-void drop_slits(const Surface& surface, const std::vector<std::uint8_t>& hard, EdgeMarks& marks) {
+/// Why an edge is a seam, told at the lesser of its half-edges.
+enum class Reason : std::uint8_t { kNone, kHard, kAsked };
+
+/// Takes back the marks of creases that are trees of hard edges alone and meet no border: each
+/// would be a slit, of which only the search can tell whether it is worth anything.
+void drop_slits(const Surface& surface, const std::vector<Reason>& reasons, EdgeMarks& marks) {
   std::vector<Index> parent(surface.positions.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](Index v) {
@@ -58,18 +60,18 @@ void drop_slits(const Surface& surface, const std::vector<std::uint8_t>& hard, E
   };
   std::vector<bool> holds(parent.size(), false);  // at roots: a loop or a border, or other marks
   PollSometimes poll;
-  for (Index h = 0; h < size_of(hard); ++h) {
+  for (Index h = 0; h < size_of(reasons); ++h) {
     poll();
-    if (hard[h] == 0) continue;
+    if (reasons[h] == Reason::kNone) continue;
     const Index a = root(surface.origin(h)), b = root(surface.target(h));
-    const bool is_held = hard[h] > 1 || a == b || holds[a] || holds[b] ||
+    const bool is_held = reasons[h] == Reason::kAsked || a == b || holds[a] || holds[b] ||
                          surface.on_boundary[surface.origin(h)] ||
                          surface.on_boundary[surface.target(h)];
     parent[a] = b;
     holds[b] = is_held;
   }
-  for (Index h = 0; h < size_of(hard); ++h) {
-    if (hard[h] != 1 || holds[root(surface.origin(h))]) continue;
+  for (Index h = 0; h < size_of(reasons); ++h) {
+    if (reasons[h] != Reason::kHard || holds[root(surface.origin(h))]) continue;
     marks[h] = marks[surface.twin[h]] = false;
   }
 }
@@ -102,19 +104,23 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
            (uv(h) != uv(Surface::next(twin)) || uv(Surface::next(h)) != uv(twin));
   };
   // Bytes, for neighbouring bits cannot be written side by side.
-  std::vector<std::uint8_t> given(surface.twin.size(), 0);
+  std::vector<Reason> reasons(surface.twin.size(), Reason::kNone);
   parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto h = static_cast<Index>(begin); h < end; ++h) {
       const Index twin = surface.twin[h];
       if (twin == kNone || h > twin) continue;
-      given[h] = is_asked(h, twin) ? 2 : by_angle && is_hard(surface, h, cosine) ? 1 : 0;
+      if (is_asked(h, twin)) {
+        reasons[h] = Reason::kAsked;
+      } else if (by_angle && is_hard(surface, h, cosine)) {
+        reasons[h] = Reason::kHard;
+      }
     }
   });
   EdgeMarks marks(surface.twin.size(), false);
   for (Index h = 0; h < size_of(surface.twin); ++h) {
-    if (given[h] != 0) mark_edge(surface, h, marks);
+    if (reasons[h] != Reason::kNone) mark_edge(surface, h, marks);
   }
-  if (by_angle) drop_slits(surface, given, marks);
+  if (by_angle) drop_slits(surface, reasons, marks);
   return marks;
 }
 

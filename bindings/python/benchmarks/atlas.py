@@ -63,14 +63,18 @@ def refined(mesh: Mesh, target: int) -> Mesh | None:
     return Mesh(f"{mesh.name}@{target}", vertices, faces)
 
 
-def meshes_of(arguments: argparse.Namespace) -> Iterator[Mesh]:
-    """Yield the meshes to unwrap."""
-    for path in files_of(arguments.meshes):
+def loaded(given: list[Path]) -> Iterator[Mesh]:
+    """Yield the meshes of files and folders, and say which are not read."""
+    for path in files_of(given):
         try:
-            mesh = load(path)
+            yield load(path)
         except Exception as error:  # of trimesh, on broken files
             print(f"{path.name}: not read: {error}")
-            continue
+
+
+def meshes_of(arguments: argparse.Namespace) -> Iterator[Mesh]:
+    """Yield the meshes to unwrap."""
+    for mesh in loaded(arguments.meshes):
         if arguments.closed_or_parts and not mesh.closed() and mesh.parts() == 1:
             continue
         if len(mesh.faces) <= arguments.most:

@@ -18,8 +18,8 @@ from pathlib import Path
 
 import numpy as np
 import records
-from atlas import SPOT, files_of
-from atlas_runs import Limits, Mesh, Program, Row, load, run, versions
+from atlas import SPOT, loaded
+from atlas_runs import Limits, Mesh, Program, Row, run, versions
 from atlas_tables import HEAD, LEAST_SECONDS, line, reaches
 from generated import generated
 
@@ -32,12 +32,7 @@ CLASSES = (900, 4_000, 20_000, 100_000, 2_000_000)
 
 def meshes_of(arguments: argparse.Namespace) -> Iterator[Mesh]:
     """Yield the meshes of files, and those that are made."""
-    for path in files_of(arguments.meshes):
-        try:
-            mesh = load(path)
-        except Exception as error:  # of trimesh, on broken files
-            print(f"{path.name}: not read: {error}")
-            continue
+    for mesh in loaded(arguments.meshes):
         if len(mesh.faces) <= arguments.most:
             yield mesh
     for target in arguments.generated:
