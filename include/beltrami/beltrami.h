@@ -205,7 +205,8 @@ enum {
   BELTRAMI_OPTION_SYMMETRIC_SEAMS =
       38,                              /* float: share that symmetry may cost more; 0: not sought */
   BELTRAMI_OPTION_STRAIGHT_SEAMS = 39, /* float: what turns of seams cost; 0: nothing */
-  BELTRAMI_OPTION_EFFORT = 40          /* choice: BELTRAMI_EFFORT_ */
+  BELTRAMI_OPTION_EFFORT = 40,         /* choice: BELTRAMI_EFFORT_ */
+  BELTRAMI_OPTION_FLAT_SEAMS = 41      /* float: how much longer, where parts then unfold flat; 0 */
 };
 
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
@@ -261,13 +262,16 @@ enum {
   /* The defaults. */
   BELTRAMI_PRESET_NONE = 0,
   /* Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
-   * hard edges: hidden-seams 0, hard-seams 0.5. */
+   * hard edges: hidden-seams 0, hard-seams 0.5, flat-seams 2. */
   BELTRAMI_PRESET_LIGHTMAP = 1,
   /* Textures that are painted or photographed: seams where nobody looks, though they be longer:
    * concave-seams 0.6, hidden-seams 2. */
   BELTRAMI_PRESET_TEXTURING = 2,
   /* One chart for each component, at the energy that it can have: max-charts 1. */
-  BELTRAMI_PRESET_ONE_CHART = 3
+  BELTRAMI_PRESET_ONE_CHART = 3,
+  /* Machined and built things: seams along hard edges and flat faces, though there be more:
+   * hard-seams 0.5, flat-seams 6. */
+  BELTRAMI_PRESET_HARD_SURFACE = 4
 };
 
 /* Whether vertices at one place are one. */

@@ -2,6 +2,7 @@
 
 #include <beltrami/beltrami.h>
 
+#include "abi/option_members.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
 
@@ -13,7 +14,7 @@ constexpr const char* kFlattens[] = {"metric", "dirichlet", "gif", "flim", "bff"
 constexpr const char* kInjectivities[] = {"auto", "global", "local"};
 constexpr const char* kSwitch[] = {"off", "on"};
 constexpr const char* kCuts[] = {"minimal", "islands", "auto", "given"};
-constexpr const char* kPresets[] = {"none", "lightmap", "texturing", "one-chart"};
+constexpr const char* kPresets[] = {"none", "lightmap", "texturing", "one-chart", "hard-surface"};
 constexpr const char* kWelds[] = {"auto", "on", "off"};
 constexpr const char* kPacks[] = {"pages", "none"};
 constexpr const char* kTurns[] = {"any", "quarter", "none"};
@@ -21,31 +22,15 @@ constexpr const char* kEfforts[] = {"quick", "normal", "high"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap",
                                      "exponential-dirichlet"};
 
-template <auto Member>
-double get(const Options& options) {
-  return static_cast<double>(options.*Member);
-}
-
-/// Of a member of a part of the options.
-template <auto Part, auto Member>
-double get(const Options& options) {
-  return static_cast<double>(options.*Part.*Member);
-}
-
-template <auto Member>
-void set(Options& options, double value) {
-  using Value = std::remove_reference_t<decltype(options.*Member)>;
-  options.*Member = static_cast<Value>(value);
-}
-
-template <auto Part, auto Member>
-void set(Options& options, double value) {
-  using Value = std::remove_reference_t<decltype(options.*Part.*Member)>;
-  options.*Part.*Member = static_cast<Value>(value);
-}
-
 void set_preset(Options& options, double value) {
   apply_preset(options, static_cast<std::int32_t>(value));
+}
+
+/// A distortion that is asked for is what is spent: no longer seams for less of it.
+template <auto Member>
+void set_target(Options& options, double value) {
+  options.target.*Member = value;
+  if (value > 0) options.target.flat_seams = 0;
 }
 
 constexpr std::int32_t kEveryCall = BELTRAMI_CALL_RUN | BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK;
@@ -323,8 +308,9 @@ const OptionEntry kOptions[] = {
         .name = "preset",
         .summary =
             "What the seams are for: sets the options of the search that are not set otherwise: "
-            "none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), "
-            "texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).",
+            "none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, "
+            "flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts "
+            "1) or hard-surface (hard-seams 0.5, flat-seams 6).",
         .minimum = 0,
         .maximum = std::size(kPresets) - 1,
         .choices = kPresets,
@@ -341,7 +327,7 @@ const OptionEntry kOptions[] = {
         .minimum = kLeastTarget,
         .maximum = 1e9,
         .get = get<&Options::target, &SeamTarget::energy>,
-        .set = set<&Options::target, &SeamTarget::energy>,
+        .set = set_target<&SeamTarget::energy>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
     {
@@ -352,7 +338,7 @@ const OptionEntry kOptions[] = {
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::target, &SeamTarget::p99>,
-        .set = set<&Options::target, &SeamTarget::p99>,
+        .set = set_target<&SeamTarget::p99>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
     {
@@ -563,6 +549,19 @@ const OptionEntry kOptions[] = {
         .choices = kEfforts,
         .get = get<&Options::effort>,
         .set = set<&Options::effort>,
+        .calls = BELTRAMI_CALL_UNWRAP,
+    },
+    {
+        .key = BELTRAMI_OPTION_FLAT_SEAMS,
+        .type = BELTRAMI_TYPE_FLOAT,
+        .name = "flat-seams",
+        .summary = "How many times as long the seams of a part may be if it then unfolds without "
+                   "distortion, as boxes and machined parts do along their edges; 0 spends all of "
+                   "target-energy, as setting that or target-p99 does.",
+        .minimum = 0,
+        .maximum = 100,
+        .get = get<&Options::target, &SeamTarget::flat_seams>,
+        .set = set<&Options::target, &SeamTarget::flat_seams>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
 };

@@ -68,10 +68,10 @@ Injectivity injectivity_of(std::int32_t value) {
 
 /// The preset first: it is what set the others then.
 constexpr std::int32_t kOfTheSearch[] = {
-    BELTRAMI_OPTION_PRESET,          BELTRAMI_OPTION_TARGET_ENERGY, BELTRAMI_OPTION_TARGET_P99,
-    BELTRAMI_OPTION_MAX_CHARTS,      BELTRAMI_OPTION_SEAM_BUDGET,   BELTRAMI_OPTION_CONCAVE_SEAMS,
-    BELTRAMI_OPTION_HIDDEN_SEAMS,    BELTRAMI_OPTION_HARD_SEAMS,    BELTRAMI_OPTION_MATERIAL_SEAMS,
-    BELTRAMI_OPTION_SYMMETRIC_SEAMS, BELTRAMI_OPTION_STRAIGHT_SEAMS};
+    BELTRAMI_OPTION_PRESET,          BELTRAMI_OPTION_TARGET_ENERGY,  BELTRAMI_OPTION_TARGET_P99,
+    BELTRAMI_OPTION_MAX_CHARTS,      BELTRAMI_OPTION_SEAM_BUDGET,    BELTRAMI_OPTION_CONCAVE_SEAMS,
+    BELTRAMI_OPTION_HIDDEN_SEAMS,    BELTRAMI_OPTION_HARD_SEAMS,     BELTRAMI_OPTION_MATERIAL_SEAMS,
+    BELTRAMI_OPTION_SYMMETRIC_SEAMS, BELTRAMI_OPTION_STRAIGHT_SEAMS, BELTRAMI_OPTION_FLAT_SEAMS};
 
 constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
                                      BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
@@ -246,6 +246,11 @@ void apply_preset(Options& options, std::int32_t preset) {
       options.target.energy = 2.1;
       options.weights.visibility = 0;
       options.weights.hard_edges = 0.5;
+      options.target.flat_seams = 2;
+      break;
+    case BELTRAMI_PRESET_HARD_SURFACE:
+      options.weights.hard_edges = 0.5;
+      options.target.flat_seams = 6;
       break;
     case BELTRAMI_PRESET_TEXTURING:
       options.weights.concavity = 0.6;

@@ -50,8 +50,18 @@ SplitSurface part(const Admitted& admitted, const GivenCuts& cuts, const Polygon
   return split_fans(admitted.surface.positions, admitted.surface.faces, twin, work.part(0.5, 1));
 }
 
-/// The edges that are not to be cut: inside polygons, and the spokes of fans
-/// over holes but for one each, by which a path may reach the centre.
+/// Locks the spokes of fans over holes but for one each, by which a path may reach the centre.
+void lock_spokes(const FilledSurface& filled, EdgeMarks& locked) {
+  const Surface& surface = filled.surface;
+  for (Index v = filled.real_vertices; v < surface.vertex_count(); ++v) {
+    const Index first = surface.outgoing[v];
+    surface.for_each_outgoing(v, [&](Index h) {
+      if (h != first) mark_edge(surface, h, locked);
+    });
+  }
+}
+
+/// The edges that are not to be cut: inside polygons, and most spokes of fans over holes.
 EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
                        const PolygonParts& polygons) {
   const Surface& surface = filled.surface;
@@ -64,12 +74,7 @@ EdgeMarks locked_edges(const FilledSurface& filled, const Admitted& admitted,
       if (is_inside_polygon(admitted, polygons, h, twin)) locked[h] = true;
     }
   }
-  for (Index v = filled.real_vertices; v < surface.vertex_count(); ++v) {
-    const Index first = surface.outgoing[v];
-    surface.for_each_outgoing(v, [&](Index h) {
-      if (h != first) mark_edge(surface, h, locked);
-    });
-  }
+  lock_spokes(filled, locked);
   return locked;
 }
 
@@ -330,6 +335,39 @@ OpenedSurface open_along(const SurfacePiece& piece, EdgeMarks seams, const Work&
   OpenedSurface opened = charts_of(piece, cut_into_charts(piece.surface, seams, work), nullptr, {});
   opened.seams = std::move(seams);
   return opened;
+}
+
+SurfacePiece parted_along(const SurfacePiece& piece, const EdgeMarks& marks, double fill_limit,
+                          const Work& work) {
+  const Surface& surface = piece.surface;
+  const Index real = 3 * piece.real_faces;
+  std::vector<Index> twin(surface.twin.begin(), surface.twin.begin() + real);
+  for (Index h = 0; h < real; ++h) {
+    if (twin[h] >= real || (!marks.empty() && marks[h])) twin[h] = kNone;
+  }
+  const std::vector<Triangle> faces(surface.faces.begin(),
+                                    surface.faces.begin() + piece.real_faces);
+  SplitSurface split = split_fans(surface.positions, faces, twin, work);
+  Topology topology = topology_of(split.surface, work);
+  FilledSurface filled = fill_holes(std::move(split.surface), topology, fill_limit, work);
+  if (filled.filled_loops > 0) topology = topology_of(filled.surface, work);
+  SurfacePiece parted;
+  parted.real_faces = piece.real_faces;
+  parted.topology = std::move(topology);
+  if (!piece.locked.empty() || filled.filled_loops > 0) {
+    parted.locked.assign(filled.surface.twin.size(), false);
+    for (Index h = 0; h < real && !piece.locked.empty(); ++h) parted.locked[h] = piece.locked[h];
+    lock_spokes(filled, parted.locked);
+  }
+  parted.vertex.assign(filled.surface.positions.size(), kNone);
+  for (Index v = 0; v < filled.real_vertices; ++v) parted.vertex[v] = piece.vertex[split.vertex[v]];
+  parted.face.assign(piece.face.begin(), piece.face.begin() + piece.real_faces);
+  for (Index f = piece.real_faces; f < filled.surface.face_count(); ++f) {
+    parted.face.push_back(parted.face.back() + 1);
+  }
+  parted.exponent = piece.exponent;
+  parted.surface = std::move(filled.surface);
+  return parted;
 }
 
 OpenedSurface open_short(const SurfacePiece& piece, const Work& work) {

@@ -104,6 +104,7 @@ struct OpenedSurface {
   double predicted_energy = 2;     ///< of seams that were searched
   BegunSearch search;              ///< of these
   EdgeMarks seams;                 ///< of the piece
+  bool is_parted = false;          ///< its real faces alone were cut, see parted_along
 };
 
 /// Cuts a piece along the seams that are searched for `target`. `begun`: as search_seams has it, of
@@ -114,6 +115,11 @@ OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
 
 /// Cuts a piece along `seams`. Precondition: these make disks of it.
 OpenedSurface open_along(const SurfacePiece& piece, EdgeMarks seams, const Work& work);
+
+/// The real faces of a piece parted along the marked edges, or none, and what holes they have then
+/// filled as make_ready does: a piece of any number of components, its real faces numbered alike.
+SurfacePiece parted_along(const SurfacePiece& piece, const EdgeMarks& marks, double fill_limit,
+                          const Work& work);
 
 /// Cuts what is no disk of a piece along a short cut graph.
 OpenedSurface open_short(const SurfacePiece& piece, const Work& work);

@@ -1,15 +1,13 @@
 #include "cut/given.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
+#include "cut/creases.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -31,49 +29,6 @@ std::vector<Edge> sorted_edges(const Admitted& admitted, const GivenCuts& cuts) 
   }
   sort_interruptibly(edges.begin(), edges.end(), std::less<>());
   return edges;
-}
-
-Vec3 normal_of(const Surface& surface, Index face) {
-  const auto [a, b, c] = surface.faces[face];
-  const Vec3& p = surface.positions[a];
-  return (surface.positions[b] - p).cross(surface.positions[c] - p);
-}
-
-/// Whether the normals of the faces on both sides of an edge turn by more than the angle.
-bool is_hard(const Surface& surface, Index halfedge, double cosine) {
-  const Vec3 one = normal_of(surface, halfedge / 3),
-             other = normal_of(surface, surface.twin[halfedge] / 3);
-  return one.dot(other) < cosine * std::sqrt(one.squaredNorm() * other.squaredNorm());
-}
-
-/// Why an edge is a seam, told at the lesser of its half-edges.
-enum class Reason : std::uint8_t { kNone, kHard, kAsked };
-
-/// Takes back the marks of creases that are trees of hard edges alone and meet no border: each
-/// would be a slit, of which only the search can tell whether it is worth anything.
-void drop_slits(const Surface& surface, const std::vector<Reason>& reasons, EdgeMarks& marks) {
-  std::vector<Index> parent(surface.positions.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  std::vector<bool> holds(parent.size(), false);  // at roots: a loop or a border, or other marks
-  PollSometimes poll;
-  for (Index h = 0; h < size_of(reasons); ++h) {
-    poll();
-    if (reasons[h] == Reason::kNone) continue;
-    const Index a = root(surface.origin(h)), b = root(surface.target(h));
-    const bool is_held = reasons[h] == Reason::kAsked || a == b || holds[a] || holds[b] ||
-                         surface.on_boundary[surface.origin(h)] ||
-                         surface.on_boundary[surface.target(h)];
-    parent[a] = b;
-    holds[b] = is_held;
-  }
-  for (Index h = 0; h < size_of(reasons); ++h) {
-    if (reasons[h] != Reason::kHard || holds[root(surface.origin(h))]) continue;
-    marks[h] = marks[surface.twin[h]] = false;
-  }
 }
 
 }  // namespace
@@ -104,6 +59,7 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
            (uv(h) != uv(Surface::next(twin)) || uv(Surface::next(h)) != uv(twin));
   };
   // Bytes, for neighbouring bits cannot be written side by side.
+  enum class Reason : std::uint8_t { kNone, kHard, kAsked };
   std::vector<Reason> reasons(surface.twin.size(), Reason::kNone);
   parallel_for(work, size_of(surface.twin), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto h = static_cast<Index>(begin); h < end; ++h) {
@@ -111,16 +67,18 @@ EdgeMarks given_marks(const Admitted& admitted, const GivenCuts& cuts, const Wor
       if (twin == kNone || h > twin) continue;
       if (is_asked(h, twin)) {
         reasons[h] = Reason::kAsked;
-      } else if (by_angle && is_hard(surface, h, cosine)) {
+      } else if (by_angle && is_crease(surface, h, cosine)) {
         reasons[h] = Reason::kHard;
       }
     }
   });
-  EdgeMarks marks(surface.twin.size(), false);
+  EdgeMarks marks(surface.twin.size(), false), creases(marks.size(), false);
   for (Index h = 0; h < size_of(surface.twin); ++h) {
-    if (reasons[h] != Reason::kNone) mark_edge(surface, h, marks);
+    if (reasons[h] == Reason::kNone) continue;
+    mark_edge(surface, h, marks);
+    if (reasons[h] == Reason::kHard) mark_edge(surface, h, creases);
   }
-  if (by_angle) drop_slits(surface, reasons, marks);
+  if (by_angle) drop_slits(surface, creases, marks);
   return marks;
 }
 

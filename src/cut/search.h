@@ -23,6 +23,9 @@ struct SeamTarget {
   double p99 = 0;          ///< that exceeded on 1% of the area; 0: any
   Index max_charts = 0;    ///< beyond, no chart is parted for its overlaps; 0: any number
   double seam_budget = 0;  ///< length of the seams over the root of the area; 0: any
+  /// How many times as long seams may be that a surface of flat and developable faces unfolds along
+  /// without distortion; 0: such are not sought.
+  double flat_seams = 1.5;
 };
 
 /// What a search leaves to one of the same surface for another target.

@@ -14,13 +14,20 @@ FlattenChoice = Literal["metric", "dirichlet", "gif", "flim", "bff"]
 InjectivityChoice = Literal["auto", "global", "local"]
 CutChoice = Literal["minimal", "islands", "auto", "given"]
 WeldChoice = Literal["auto", "on", "off"]
-PresetChoice = Literal["none", "lightmap", "texturing", "one-chart"]
+PresetChoice = Literal["none", "lightmap", "texturing", "one-chart", "hard-surface"]
 PackChoice = Literal["pages", "none"]
 PackTurnsChoice = Literal["any", "quarter", "none"]
 EffortChoice = Literal["quick", "normal", "high"]
 
 #: Options that None leaves to the option `preset`.
-OF_PRESETS = ("target_energy", "max_charts", "concave_seams", "hidden_seams", "hard_seams")
+OF_PRESETS = (
+    "target_energy",
+    "max_charts",
+    "concave_seams",
+    "hidden_seams",
+    "hard_seams",
+    "flat_seams",
+)
 
 
 class Options(TypedDict, total=False):
@@ -86,6 +93,7 @@ class UnwrapOptions(TypedDict, total=False):
     symmetric_seams: float
     straight_seams: float
     effort: EffortChoice
+    flat_seams: float
 
 
 class PackOptions(TypedDict, total=False):

@@ -71,6 +71,7 @@ def unwrap_batch(
     symmetric_seams: float = 0.0,
     straight_seams: float = 0.0,
     effort: EffortChoice = "normal",
+    flat_seams: float | None = None,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -191,10 +192,11 @@ def unwrap_batch(
     share_copies : bool, default False
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
-    preset : {"none", "lightmap", "texturing", "one-chart"}, default "none"
+    preset : {"none", "lightmap", "texturing", "one-chart", "hard-surface"}, default "none"
         What the seams are for: sets the options of the search that are not set otherwise: none
-        (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
-        (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+        (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
+        2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
+        (hard-seams 0.5, flat-seams 6).
     target_energy : float, default 2.05, or as the preset has it
         Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
         all stay: the nearer to 2, the longer the seams. A number from 2.0001 to 1,000,000,000.
@@ -256,6 +258,10 @@ def unwrap_batch(
         How long short seams are searched for, and a dense packing: quick (half the time of normal,
         seams some 4% longer), normal or high (some three times the time of normal, seams some 2%
         shorter).
+    flat_seams : float, default 1.5, or as the preset has it
+        How many times as long the seams of a part may be if it then unfolds without distortion, as
+        boxes and machined parts do along their edges; 0 spends all of target-energy, as setting
+        that or target-p99 does. A number from 0 to 100.
 
     Returns
     -------
@@ -317,6 +323,7 @@ def unwrap_batch(
         "symmetric_seams": symmetric_seams,
         "straight_seams": straight_seams,
         "effort": effort,
+        "flat_seams": flat_seams,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -209,6 +209,8 @@ pub const BELTRAMI_OPTION_SYMMETRIC_SEAMS: _bindgen_ty_3 = 38;
 pub const BELTRAMI_OPTION_STRAIGHT_SEAMS: _bindgen_ty_3 = 39;
 /// choice: BELTRAMI_EFFORT_
 pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
+/// float: how much longer, where parts then unfold flat; 0
+pub const BELTRAMI_OPTION_FLAT_SEAMS: _bindgen_ty_3 = 41;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Half the time of NORMAL, seams some 4% longer.
@@ -253,13 +255,16 @@ pub const BELTRAMI_PRESET_FORCE_SIGNED_: _bindgen_ty_8 = -1;
 /// The defaults.
 pub const BELTRAMI_PRESET_NONE: _bindgen_ty_8 = 0;
 /** Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner along
- hard edges: hidden-seams 0, hard-seams 0.5.*/
+ hard edges: hidden-seams 0, hard-seams 0.5, flat-seams 2.*/
 pub const BELTRAMI_PRESET_LIGHTMAP: _bindgen_ty_8 = 1;
 /** Textures that are painted or photographed: seams where nobody looks, though they be longer:
  concave-seams 0.6, hidden-seams 2.*/
 pub const BELTRAMI_PRESET_TEXTURING: _bindgen_ty_8 = 2;
 /// One chart for each component, at the energy that it can have: max-charts 1.
 pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_8 = 3;
+/** Machined and built things: seams along hard edges and flat faces, though there be more:
+ hard-seams 0.5, flat-seams 6.*/
+pub const BELTRAMI_PRESET_HARD_SURFACE: _bindgen_ty_8 = 4;
 /// What the seams are for: setting one writes its values to the options of the search.
 pub type _bindgen_ty_8 = ::core::ffi::c_int;
 pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_9 = -1;

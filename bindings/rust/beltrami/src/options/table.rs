@@ -123,20 +123,23 @@ choice! {
 
 choice! {
     /// What the seams are for: sets the options of the search that are not set otherwise: none
-    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
-    /// (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1). See
-    /// [`UnwrapOptions::preset`].
+    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
+    /// 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
+    /// (hard-seams 0.5, flat-seams 6). See [`UnwrapOptions::preset`].
     Preset {
         /// The defaults.
         None = "none",
         /// Light that is baked: target-energy 2.1, and short seams wherever they are seen, sooner
-        /// along hard edges: hidden-seams 0, hard-seams 0.5.
+        /// along hard edges: hidden-seams 0, hard-seams 0.5, flat-seams 2.
         Lightmap = "lightmap",
         /// Textures that are painted or photographed: seams where nobody looks, though they be
         /// longer: concave-seams 0.6, hidden-seams 2.
         Texturing = "texturing",
         /// One chart for each component, at the energy that it can have: max-charts 1.
         OneChart = "one-chart",
+        /// Machined and built things: seams along hard edges and flat faces, though there be more:
+        /// hard-seams 0.5, flat-seams 6.
+        HardSurface = "hard-surface",
     }
 }
 
@@ -378,13 +381,14 @@ options! {
         Switch(&[]), 0..=1, default 0, calls 2;
 
     /// What the seams are for: sets the options of the search that are not set otherwise: none
-    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing
-    /// (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1).
+    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
+    /// 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
+    /// (hard-seams 0.5, flat-seams 6).
     ///
     /// Default: [`None`](Preset::None).
     preset(Preset) of [UnwrapOptions] = 21 "preset"
-        "What the seams are for: sets the options of the search that are not set otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5), texturing (concave-seams 0.6, hidden-seams 2) or one-chart (max-charts 1)."
-        Choice(Preset::NAMES), 0..=3, default 0, calls 2;
+        "What the seams are for: sets the options of the search that are not set otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface (hard-seams 0.5, flat-seams 6)."
+        Choice(Preset::NAMES), 0..=4, default 0, calls 2;
 
     /// Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
     /// all stay: the nearer to 2, the longer the seams.
@@ -569,4 +573,15 @@ options! {
     effort(Effort) of [UnwrapOptions] = 40 "effort"
         "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 4% longer), normal or high (some three times the time of normal, seams some 2% shorter)."
         Choice(Effort::NAMES), 0..=2, default 1, calls 2;
+
+    /// How many times as long the seams of a part may be if it then unfolds without distortion, as
+    /// boxes and machined parts do along their edges; 0 spends all of target-energy, as setting
+    /// that or target-p99 does.
+    ///
+    /// From 0 to 100.
+    ///
+    /// Default: 1.5.
+    flat_seams(f64) of [UnwrapOptions] = 41 "flat-seams"
+        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy, as setting that or target-p99 does."
+        Float(&[]), 0..=100, default 1.5, calls 2;
 }

@@ -1,0 +1,390 @@
+#include "atlas/map_piece.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "atlas/congruent.h"
+#include "atlas/measure.h"
+#include "atlas/pin_conflicts.h"
+#include "atlas/rescue.h"
+#include "atlas/seams.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
+#include "chart/options.h"
+#include "cut/edge_marks.h"
+#include "cut/search.h"
+#include "cut/search_effort.h"
+#include "cut/unfold.h"
+#include "mesh/disk_mesh.h"
+
+namespace beltrami {
+namespace {
+
+// Where these end in the progress.
+constexpr double kMapped = 0.95;      // of a piece; what is left is to rescue charts
+constexpr double kCut = 0.15;         // of opening and mapping
+constexpr double kFirstTry = 0.6;     // at a target that may be missed
+constexpr double kSearched = 0.95;    // then a short cut is tried
+constexpr double kSearchedAll = 0.8;  // then creases are
+
+/// The mean energy up to which a piece lies flat: lengths are off by 2.5% in the mean.
+constexpr double kFlat = 2.005;
+/// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
+/// tried: those of a cube are 1.7 times as long.
+constexpr double kUnfolded = 3;
+constexpr double kAnyLength = std::numeric_limits<double>::infinity();
+
+/// Missed by more, a target is worth further tries,
+constexpr double kMissed = 1e-6;
+/// which aim lower by so many times that,
+constexpr double kMoreThanMissed = 1.1;
+/// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
+constexpr double kLeastAim = 0.3;
+/// Of the excess asked for, fine maps that use no more are worth a further try with shorter seams
+/// if coarse ones used more; which aims at so much of it, and at no more than so many times it.
+constexpr double kUnused = 0.96, kUsed = 0.9, kAim = 0.975, kMostAim = 2;
+
+/// Throws Error PINS with the first pin that is proven not to go with those before it.
+void require_no_conflict(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
+                         const std::vector<Pin>& all) {
+  std::optional<PinConflict> first;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    auto conflict = find_conflict(charts[c], pins.of_chart[c], all);
+    if (conflict && (!first || conflict->pin < first->pin)) first = std::move(conflict);
+  }
+  if (first) throw unmet(all[first->pin], first->why);
+}
+
+/// Throws Error PINS with the first pin that could not be met together with those before it.
+void require_met(const std::vector<MappedChart>& maps, const std::vector<Pin>& all) {
+  Index first = kNone;
+  for (const MappedChart& map : maps) {
+    if (map.failed_pin == kNone) continue;
+    first = first == kNone ? map.failed_pin : std::min(first, map.failed_pin);
+  }
+  if (first == kNone) return;
+  throw unmet(
+      all[first],
+      "cannot be met together with those before it: no way was found to bring them all into "
+      "place without folding a face");
+}
+
+/// Parts with less of the area are searched quickly, whatever is asked: what more shortens their
+/// seams is nothing to the whole, and there may be thousands.
+constexpr double kSmallPart = 1e-3;
+
+SearchEffort effort_for(const Task& task, const SurfacePiece& piece, const Work& work) {
+  const bool is_small = area_of(piece, work) < kSmallPart * task.area;
+  return is_small ? search_effort(Effort::kQuick) : task.options.effort;
+}
+
+void measure(const Work& work, Mapped& mapped) {
+  std::vector<ChartInfo> charts(mapped.opened.charts.size());
+  mapped.energy = measure_charts(mapped.opened.charts, mapped.maps, 1, charts, work);
+  mapped.broken = static_cast<Index>(std::count_if(
+      mapped.maps.begin(), mapped.maps.end(),
+      [](const MappedChart& map) { return map.error || map.outcome > Outcome::kNotConverged; }));
+}
+
+/// One try: charts as `open(work)` makes them, and their maps.
+template <class Open>
+Mapped open_and_map_once(const Task& task, const Open& open, bool is_timed, const Work& work,
+                         std::vector<StageStatistics>& stages) {
+  Mapped mapped;
+  run_stage("cut", work.part(0, kCut), stages,
+            [&](StageStatistics&, const Work& inner) { mapped.opened = open(inner); });
+  const AtlasInput& input = task.input;
+  std::vector<AtlasChart>& charts = mapped.opened.charts;
+  mapped.pins = assign_pins(input.pins, input.faces, task.admitted, charts, task.exponent);
+  require_no_conflict(charts, mapped.pins, input.pins);
+  run_stage("flatten", work.part(kCut, 1), stages, [&](StageStatistics&, const Work& inner) {
+    mapped.maps =
+        map_charts(charts, mapped.pins, task.options.chart, is_timed ? inner : inner.untimed());
+    require_met(mapped.maps, input.pins);
+    measure(inner, mapped);
+  });
+  return mapped;
+}
+
+/// The excess over 2 by that which is asked for, of the mean or of the percentile.
+double excess_of(const AtlasEnergy& energy, const SeamTarget& target) {
+  const double mean = (energy.symmetric_dirichlet - 2) / (target.energy - 2);
+  return target.p99 > 0 ? std::max(mean, (energy.p99 - 2) / (target.p99 - 2)) : mean;
+}
+
+bool misses(const Mapped& mapped, const SeamTarget& target) {
+  return mapped.broken > 0 || exceeds(mapped.energy.symmetric_dirichlet, target.energy) ||
+         exceeds(mapped.energy.p99, target.p99);
+}
+
+/// The target at which coarse maps would leave fine ones the energy that is asked for, if what
+/// these have more than those that were made for `aimed` stays; none where a cut cannot bring it.
+std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const SeamTarget& aimed,
+                                      const Mapped& mapped) {
+  const double mean = mapped.energy.symmetric_dirichlet, p99 = mapped.energy.p99;
+  const double predicted = mapped.opened.predicted_energy;
+  if (exceeds(predicted, aimed.energy)) return std::nullopt;  // the search has done what it can
+  SeamTarget lower = target;
+  if (exceeds(mean, target.energy)) lower.energy -= kMoreThanMissed * (mean - predicted);
+  if (exceeds(p99, target.p99)) lower.p99 = aimed.p99 - kMoreThanMissed * (p99 - target.p99);
+  const auto is_possible = [](double aim, double asked) {
+    return asked == 0 || aim >= 2 + kLeastAim * (asked - 2);
+  };
+  const bool is_lower = lower.energy < aimed.energy || lower.p99 < aimed.p99;
+  const bool all = is_possible(lower.energy, target.energy) && is_possible(lower.p99, target.p99);
+  return is_lower && all ? std::optional(lower) : std::nullopt;
+}
+
+/// The target at which coarse maps would leave fine ones all of the energy that is allowed, where
+/// these use less of it than the coarse ones did; none where that is not worth a further try.
+std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& mapped) {
+  const double asked = target.energy - 2;
+  const double coarse = (mapped.opened.predicted_energy - 2) / asked;
+  const double fine = (mapped.energy.symmetric_dirichlet - 2) / asked;
+  const EdgeMarks& seams = mapped.opened.seams;
+  const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
+  if (!is_cut || target.p99 > 0 || fine > kUnused || coarse < kUsed) return std::nullopt;
+  if (kAim * coarse <= fine) return std::nullopt;  // no higher than what the search had
+  SeamTarget higher = target;
+  higher.energy = 2 + asked * std::min(kAim * coarse / fine, kMostAim);
+  return higher;
+}
+
+/// The energies at which tries aimed, and those of their maps: the last that missed the target, and
+/// the last that did not.
+struct Tries {
+  std::optional<Vec2> missed, reached;
+
+  void add(double aimed, double energy, bool misses) {
+    (misses ? missed : reached) = Vec2(aimed, energy);
+  }
+
+  /// The target between them, where maps are to have nearly the energy that is allowed.
+  std::optional<SeamTarget> between(const SeamTarget& target) const {
+    const double asked = target.energy - 2;
+    if (reached->y() - 2 > kUnused * asked) return std::nullopt;
+    const Vec2 way = *missed - *reached;
+    const double share = (2 + kAim * asked - reached->y()) / way.y();
+    SeamTarget aim = target;
+    aim.energy = reached->x() + share * way.x();
+    return way.x() > 0 && way.y() > 0 ? std::optional(aim) : std::nullopt;
+  }
+};
+
+/// What to aim at after maps that were made for `aimed`, if it is worth a further try.
+std::optional<SeamTarget> aimed_again(const SeamTarget& target, const SeamTarget& aimed,
+                                      const Mapped& mapped, const Tries& tries, bool uses_rest) {
+  const bool missed = misses(mapped, target);
+  if (tries.missed && tries.reached) {
+    return uses_rest && target.p99 == 0 ? tries.between(target) : std::nullopt;
+  }
+  if (missed) return aimed_lower(target, aimed, mapped);
+  return uses_rest ? aimed_higher(target, mapped) : std::nullopt;
+}
+
+/// `vertex`: as seam_length has it.
+bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
+               const std::vector<Index>& vertex) {
+  if (a.broken != b.broken) return a.broken < b.broken;
+  if (misses(a, target) || misses(b, target)) {
+    return excess_of(a.energy, target) < excess_of(b.energy, target);
+  }
+  return seam_length(a.opened.charts, vertex) < seam_length(b.opened.charts, vertex);
+}
+
+/// A few tries at the target, and a short cut where all of them miss it.
+Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                    const Work& work, std::vector<StageStatistics>& stages) {
+  const SearchEffort effort = effort_for(task, piece, work.aside());
+  const std::vector<Index>& vertex = task.admitted.input_vertex;
+  std::optional<SeamTarget> aim = target;
+  BegunSearch begun;
+  std::optional<Mapped> best;
+  Tries tries;
+  const int most = effort.tries;
+  for (int i = 0; i < most && aim && !work.out_of_time(); ++i) {
+    const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
+    const double to = kFirstTry + (kSearched - kFirstTry) * i / (most - 1);
+    const auto open = [&](const Work& inner) {
+      return open_searched(piece, *aim, effort, task.options.weights, begun, inner);
+    };
+    Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
+    begun = std::move(mapped.opened.search);
+    tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
+    aim = aimed_again(target, *aim, mapped, tries, effort.uses_rest);
+    if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
+  }
+  if (best && !misses(*best, target)) return *std::move(best);
+  const auto open = [&](const Work& inner) { return open_short(piece, inner); };
+  Mapped shorter = open_and_map_once(task, open, false, work.part(kSearched, 1), stages);
+  return best && !is_better(shorter, *best, target, vertex) ? *std::move(best) : std::move(shorter);
+}
+
+/// Of the marked edges.
+double length_of(const Surface& surface, const EdgeMarks& marks) {
+  double length = 0;
+  for (Index h = 0; h < size_of(marks); ++h) {
+    if (!marks[h]) continue;
+    length +=
+        std::sqrt((surface.positions[surface.target(h)] - surface.positions[surface.origin(h)])
+                      .squaredNorm());
+  }
+  return length / 2;  // each has two half-edges
+}
+
+/// Per real face of a piece its corners in the map of its chart.
+std::vector<std::array<Vec2, 3>> corners_of(const SurfacePiece& piece, const Mapped& mapped) {
+  std::vector<std::array<Vec2, 3>> corners(piece.real_faces);
+  const auto begin = piece.face.begin(), end = begin + piece.real_faces;
+  for (std::size_t c = 0; c < mapped.maps.size(); ++c) {
+    const AtlasChart& chart = mapped.opened.charts[c];
+    for (Index f = 0; f < chart.real_faces; ++f) {
+      const auto found = std::lower_bound(begin, end, chart.chart.input_face[f]);
+      for (int k = 0; k < 3; ++k) {
+        corners[found - begin][k] = mapped.maps[c].uvs[chart.chart.mesh.faces[f][k]];
+      }
+    }
+  }
+  return corners;
+}
+
+bool is_flat(const Mapped& mapped) {
+  return mapped.broken == 0 && mapped.energy.symmetric_dirichlet < kFlat;
+}
+
+/// The real faces of a piece parted along seams, and what is no disk then cut further.
+OpenedSurface open_parted(const Task& task, const SurfacePiece& piece, const EdgeMarks& seams,
+                          const Work& work) {
+  const SurfacePiece parted =
+      parted_along(piece, seams, task.options.fill_limit, work.part(0, 0.5));
+  OpenedSurface opened = open_short(parted, work.part(0.5, 1));
+  EdgeMarks all = seams;
+  for (Index h = 0; h < 3 * piece.real_faces; ++h) {
+    if (opened.seams[h]) all[h] = all[piece.surface.twin[h]] = true;
+  }
+  opened.seams = std::move(all);
+  opened.is_parted = true;
+  return opened;
+}
+
+/// The edges of a piece that bound a hole which is filled once it is parted along its seams.
+EdgeMarks filled_rims(const Task& task, const SurfacePiece& piece, const EdgeMarks& seams,
+                      const Work& work) {
+  const SurfacePiece parted = parted_along(piece, seams, task.options.fill_limit, work);
+  EdgeMarks rims(piece.surface.twin.size(), false);
+  for (Index h = 0; h < 3 * piece.real_faces; ++h) {
+    if (parted.surface.twin[h] >= 3 * piece.real_faces) mark_edge(piece.surface, h, rims);
+  }
+  return rims;
+}
+
+/// The charts between the creases of a piece, and as few as they unfold to; nothing where they are
+/// not flat, or have no hope of seams that are no longer than `most`.
+std::optional<Mapped> map_unfolded(const Task& task, const SurfacePiece& piece, double most,
+                                   const Work& work, std::vector<StageStatistics>& stages) {
+  const SurfacePiece real = parted_along(piece, {}, 0, work.aside());
+  const EdgeMarks creases = creases_of(real.surface, real.locked);
+  if (creases.empty() || length_of(real.surface, creases) > kUnfolded * most) return std::nullopt;
+  EdgeMarks seams(piece.surface.twin.size(), false);
+  std::copy(creases.begin(), creases.end(), seams.begin());
+  const auto open = [&](const Work& inner) { return open_parted(task, piece, seams, inner); };
+  Mapped apart = open_and_map_once(task, open, false, work.part(0, 0.5), stages);
+  if (!is_flat(apart)) return std::nullopt;
+  const EdgeMarks rims = filled_rims(task, piece, seams, work.aside());
+  EdgeMarks all(creases.size());
+  std::copy_n(apart.opened.seams.begin(), all.size(), all.begin());
+  const EdgeMarks kept =
+      unfolded(real.surface, std::move(all), rims, corners_of(piece, apart), work.aside());
+  std::copy(kept.begin(), kept.end(), seams.begin());
+  Mapped joined = open_and_map_once(task, open, false, work.part(0.5, 1), stages);
+  return is_flat(joined) ? std::move(joined) : std::move(apart);
+}
+
+/// What is mapped along seams that were searched for, or else along creases, where that leaves
+/// faces flat and the seams are not much longer.
+Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                      const Work& work, std::vector<StageStatistics>& stages) {
+  Mapped searched = map_searched(task, piece, target, work.part(0, kSearchedAll), stages);
+  const bool missed = misses(searched, target);
+  if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
+  if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
+  const std::vector<Index>& vertex = task.admitted.input_vertex;
+  const double most =
+      missed ? kAnyLength : target.flat_seams * seam_length(searched.opened.charts, vertex);
+  std::optional<Mapped> flat = map_unfolded(task, piece, most, work.part(kSearchedAll, 1), stages);
+  if (!flat || misses(*flat, target) || seam_length(flat->opened.charts, vertex) > most) {
+    return searched;
+  }
+  return *std::move(flat);
+}
+
+/// Splits what cannot be mapped within reason, round after round, until all can.
+void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& stages,
+            Mapped& mapped) {
+  const AtlasOptions& options = task.options;
+  if (!promises(options.chart)) return;  // a baseline is shown as it is
+  if (!task.input.pins.empty() || (options.target && options.target->max_charts > 0)) return;
+  const PolygonParts polygons{options.admit.polygons, options.diagonals};
+  run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
+    bool is_any = false;
+    while (split_hopeless(task.admitted, polygons, options.chart, inner.untimed(),
+                          mapped.opened.charts, mapped.maps)) {
+      is_any = true;
+    }
+    if (is_any) measure(inner, mapped);
+  });
+}
+
+}  // namespace
+
+double area_of(const SurfacePiece& piece, const Work& work) {
+  return std::ldexp(surface_area(piece.surface, work), -2 * piece.exponent);
+}
+
+bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options) {
+  if (!options.target) return true;  // nothing is
+  return !input.pins.empty() || options.target->max_charts > 0 || options.target->seam_budget > 0 ||
+         options.weights.symmetry > 0;
+}
+
+bool exceeds(double energy, double target) {
+  return target > 0 && energy > target + kMissed;
+}
+
+Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,
+                 std::vector<StageStatistics>& stages) {
+  const Work own = work.part(0, kMapped);
+  Mapped mapped;
+  if (task.options.target) {
+    mapped = map_for_target(task, piece, *task.options.target, own, stages);
+  } else {
+    const auto open = [&](const Work& inner) { return open_short(piece, inner); };
+    mapped = open_and_map_once(task, open, true, own, stages);
+  }
+  rescue(task, work.part(kMapped, 1), stages, mapped);
+  return mapped;
+}
+
+Mapped map_likewise(const Task& task, const SurfacePiece& piece, const SurfacePiece& like,
+                    const Mapped& known, const Work& work, std::vector<StageStatistics>& stages) {
+  const SeamTarget& target = *task.options.target;
+  const auto open = [&](const Work& inner) {
+    EdgeMarks seams = carried_marks(like, known.opened.seams, piece);
+    return known.opened.is_parted ? open_parted(task, piece, seams, inner)
+                                  : open_along(piece, std::move(seams), inner);
+  };
+  Mapped mapped = open_and_map_once(task, open, false, work.part(0, kMapped), stages);
+  if (misses(mapped, target) && !misses(known, target)) {
+    return map_piece(task, piece, work, stages);
+  }
+  rescue(task, work.part(kMapped, 1), stages, mapped);
+  return mapped;
+}
+
+}  // namespace beltrami
