@@ -12,9 +12,9 @@
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
 #include "atlas/rescue.h"
-#include "atlas/seams.h"
 #include "base/types.h"
 #include "base/vectors.h"
+#include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "chart/options.h"
 #include "cut/edge_marks.h"
@@ -22,6 +22,7 @@
 #include "cut/search_effort.h"
 #include "cut/unfold.h"
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

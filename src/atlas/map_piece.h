@@ -6,12 +6,11 @@
 #include "admit/admit.h"
 #include "atlas/atlas.h"
 #include "atlas/map_charts.h"
-#include "atlas/measure.h"
 #include "atlas/open.h"
 #include "atlas/pins.h"
 #include "base/types.h"
 #include "base/work.h"
-#include "cut/search.h"
+#include "chart/chart_map.h"
 
 namespace beltrami {
 

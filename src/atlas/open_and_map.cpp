@@ -1,11 +1,8 @@
 #include "atlas/open_and_map.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -13,21 +10,14 @@
 #include <utility>
 
 #include "atlas/congruent.h"
-#include "atlas/measure.h"
-#include "atlas/pin_conflicts.h"
+#include "atlas/map_piece.h"
+#include "atlas/open.h"
 #include "atlas/rescue.h"
 #include "atlas/seams.h"
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
-#include "base/vectors.h"
-#include "chart/flattening.h"
-#include "chart/options.h"
-#include "cut/edge_marks.h"
 #include "cut/search.h"
-#include "cut/search_effort.h"
-#include "cut/unfold.h"
-#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "base/interrupt.h"
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "base/vectors.h"
 #include "cut/creases.h"
 #include "exact/box_tree.h"

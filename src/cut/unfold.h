@@ -5,7 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"

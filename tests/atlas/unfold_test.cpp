@@ -5,7 +5,6 @@
 #include <numbers>
 #include <vector>
 
-#include "admit/admit.h"
 #include "atlas/atlas.h"
 #include "base/portable_math.h"
 #include "base/types.h"
