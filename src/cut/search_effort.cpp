@@ -45,14 +45,14 @@ SearchEffort search_effort(Effort effort) {
           .starts = 2,
           .finished = 1,
           .rounds = 4,
-          .settling = 2,
-          .exchanges = 2,
+          .settling = 1,
+          .exchanges = 1,
           .tolerance = 0.02,
           .improves = true,
           .joins = 6,
           .varied_faces = 0,
           .tries = 4,
-          .uses_rest = true,
+          .uses_rest = false,
           .packing = 0.1};
 }
 
