@@ -53,7 +53,7 @@ SearchEffort search_effort(Effort effort) {
           .varied_faces = 0,
           .tries = 4,
           .uses_rest = false,
-          .packing = 0.1};
+          .packing = 0.05};
 }
 
 }  // namespace beltrami
