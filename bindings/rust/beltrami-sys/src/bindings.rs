@@ -213,7 +213,7 @@ pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
 pub const BELTRAMI_OPTION_FLAT_SEAMS: _bindgen_ty_3 = 41;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
-/// Half the time of NORMAL, seams some 4% longer.
+/// Half the time of NORMAL, seams some 3% longer.
 pub const BELTRAMI_EFFORT_QUICK: _bindgen_ty_4 = 0;
 /// The default.
 pub const BELTRAMI_EFFORT_NORMAL: _bindgen_ty_4 = 1;
