@@ -267,7 +267,7 @@ OpenedSurface open_parted(const Task& task, const SurfacePiece& piece, const Edg
   OpenedSurface opened = open_short(parted, work.part(0.5, 1));
   EdgeMarks all = seams;
   for (Index h = 0; h < 3 * piece.real_faces; ++h) {
-    if (opened.seams[h]) all[h] = all[piece.surface.twin[h]] = true;
+    if (opened.seams[h]) mark_edge(piece.surface, h, all);
   }
   opened.seams = std::move(all);
   opened.is_parted = true;

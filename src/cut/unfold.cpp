@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -33,6 +34,11 @@ constexpr double kFit = 0.01;
 /// How deep two triangles may lie on one another, over the root of the area of the surface, where
 /// they only touch: well above rounding, and below what is seen.
 constexpr double kTouch = 1e-4;
+
+/// Boxes and faces that may be looked at, per chart and per face of the surface, before no more
+/// charts are joined: so joining takes time in proportion to the surface, whatever its shape. Of
+/// the files as people have them none comes near.
+constexpr std::int64_t kLooksOfChart = 500, kLooksOfFace = 20;
 
 /// Turns and shifts the plane.
 struct Motion {
@@ -103,6 +109,7 @@ class Layout {
   Layout(const Surface& surface, const EdgeMarks& marks, const std::vector<Corners>& corners)
       : surface_(surface), marks_(marks), corners_(corners) {
     label_charts();
+    looks_left_ = kLooksOfChart * size_of(faces_) + kLooksOfFace * surface.face_count();
     place_.resize(faces_.size());
     sheet_of_.resize(faces_.size());
     std::iota(sheet_of_.begin(), sheet_of_.end(), 0);
@@ -142,7 +149,7 @@ class Layout {
   /// Lays the sheets on both sides of a crease together, if they fit.
   bool join(const Crease& crease) {
     Index one = sheet_at(crease.side.front()), other = sheet_beyond(crease.side.front());
-    if (one == other) return false;
+    if (one == other || looks_left_ <= 0) return false;
     const auto [to, from] = sides_of(crease);
     Motion motion = motion_onto(to, from);
     if (!fits(to, from, motion, crease.length)) return false;
@@ -248,6 +255,8 @@ class Layout {
   }
 
   bool lie_on_each_other(Index moved, const Motion& place, Index still) {
+    poll_();
+    --looks_left_;
     // In the frame of the one that stays, where its tree is.
     const Motion& frame = place_[still];
     const Motion back = {{frame.turn.x(), -frame.turn.y()}, {0, 0}};
@@ -261,6 +270,7 @@ class Layout {
       return all;
     };
     if (!boxes_[still].intersects(moved_box(boxes_[moved]))) return false;
+    looks_left_ -= size_of(faces_[moved]);
     for (const Index f : faces_[moved]) {
       Corners corners;
       for (int k = 0; k < 3; ++k) corners[k] = into(corners_[f][k]);
@@ -282,6 +292,8 @@ class Layout {
   std::vector<Motion> place_;               // per chart
   std::vector<Index> sheet_of_;             // per chart
   std::vector<std::vector<Index>> charts_;  // per sheet
+  std::int64_t looks_left_ = 0;
+  PollSometimes poll_;
 };
 
 /// Creases but for those that part nothing; empty where there are none.
@@ -340,18 +352,36 @@ void close(const Surface& surface, const Layout& layout, const std::vector<Creas
   std::vector<Index> ends(surface.positions.size(), 0);  // half-edges of marks that start there
   for (Index h = 0; h < size_of(marks); ++h) ends[surface.origin(h)] += marks[h] ? 1 : 0;
   const auto is_tip = [&](Index v) { return ends[v] == 1 && !surface.on_boundary[v]; };
-  for (bool is_any = true; is_any;) {
-    is_any = false;
-    for (const Crease& crease : creases) {
-      const Index first = crease.side.front(), last = crease.side.back();
-      if (!marks[first] || !layout.is_closed(crease)) continue;
-      if (!is_tip(surface.origin(first)) && !is_tip(surface.target(last))) continue;
+  const auto ends_of_crease = [&](const Crease& crease) {
+    return std::array{surface.origin(crease.side.front()), surface.target(crease.side.back())};
+  };
+  std::vector<std::pair<Index, Index>> at;  // vertices, and creases that end there
+  std::vector<Index> tips;
+  for (Index c = 0; c < size_of(creases); ++c) {
+    if (!marks[creases[c].side.front()] || !layout.is_closed(creases[c])) continue;
+    for (const Index v : ends_of_crease(creases[c])) {
+      at.emplace_back(v, c);
+      if (is_tip(v)) tips.push_back(v);
+    }
+  }
+  std::sort(at.begin(), at.end());
+  PollSometimes poll;
+  while (!tips.empty()) {
+    poll();
+    const Index tip = tips.back();
+    tips.pop_back();
+    auto next = std::lower_bound(at.begin(), at.end(), std::pair(tip, Index{0}));
+    for (; next != at.end() && next->first == tip; ++next) {
+      const Crease& crease = creases[next->second];
+      if (!marks[crease.side.front()] || !is_tip(tip)) continue;
       unmark(surface, crease, marks);
       for (const Index h : crease.side) {
         --ends[surface.origin(h)];
         --ends[surface.target(h)];
       }
-      is_any = true;
+      for (const Index v : ends_of_crease(crease)) {
+        if (is_tip(v)) tips.push_back(v);
+      }
     }
   }
 }
