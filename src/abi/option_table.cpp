@@ -26,7 +26,8 @@ void set_preset(Options& options, double value) {
   apply_preset(options, static_cast<std::int32_t>(value));
 }
 
-/// A distortion that is asked for is what is spent: no longer seams for less of it.
+/// Whoever asks for a distortion wants the shortest seams that it buys, and none that are longer
+/// for less of it.
 template <auto Member>
 void set_target(Options& options, double value) {
   options.target.*Member = value;
@@ -557,7 +558,7 @@ const OptionEntry kOptions[] = {
         .name = "flat-seams",
         .summary = "How many times as long the seams of a part may be if it then unfolds without "
                    "distortion, as boxes and machined parts do along their edges; 0 spends all of "
-                   "target-energy, as setting that or target-p99 does.",
+                   "target-energy. Setting that or target-p99 sets this to 0: set it after them.",
         .minimum = 0,
         .maximum = 100,
         .get = get<&Options::target, &SeamTarget::flat_seams>,

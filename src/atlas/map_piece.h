@@ -32,6 +32,7 @@ struct Task {
   double area = 0;     ///< of all pieces, in the unit of the whole
 };
 
+/// Of all its faces, in the square of the unit of the whole.
 double area_of(const SurfacePiece& piece, const Work& work);
 
 /// Whether something is asked that pieces cannot be held to one by one.

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/vectors.h"
-#include "base/work.h"
 #include "cut/edge_marks.h"
 #include "mesh/surface.h"
 
@@ -22,6 +21,6 @@ EdgeMarks creases_of(const Surface& surface, const EdgeMarks& locked);
 /// disk stays one. `held`: marks that stay. `corners`: per face of the surface its corners in the
 /// map of its chart. Precondition: area about 1.
 EdgeMarks unfolded(const Surface& surface, EdgeMarks marks, const EdgeMarks& held,
-                   const std::vector<std::array<Vec2, 3>>& corners, const Work& work);
+                   const std::vector<std::array<Vec2, 3>>& corners);
 
 }  // namespace beltrami

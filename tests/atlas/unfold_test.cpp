@@ -112,14 +112,14 @@ Index count_edges(const Surface& surface, const EdgeMarks& marks) {
 TEST(Unfold, ACubeIsACross) {
   const TriangleList cube = meshes::cube();
   const Surface surface = build_surface(cube.positions, cube.faces, Work(1));
-  EdgeMarks creases = creases_of(surface, {});
+  const EdgeMarks creases = creases_of(surface, {});
   EXPECT_EQ(count_edges(surface, creases), 12);
   // Every triangle apart: the diagonals are joined first, and five sides of the squares.
-  EdgeMarks all(surface.twin.size(), true);
+  const EdgeMarks all(surface.twin.size(), true);
   const EdgeMarks held(all.size(), false);
-  const EdgeMarks seams = unfolded(surface, all, held, laid_flat(surface), Work(1));
+  const EdgeMarks seams = unfolded(surface, all, held, laid_flat(surface));
   EXPECT_EQ(count_edges(surface, seams), 7);
-  const EdgeMarks none = unfolded(surface, all, all, laid_flat(surface), Work(1));
+  const EdgeMarks none = unfolded(surface, all, all, laid_flat(surface));
   EXPECT_EQ(none, all) << "what is held stays";
 }
 

@@ -260,8 +260,8 @@ def unwrap_batch(
         shorter).
     flat_seams : float, default 1.5, or as the preset has it
         How many times as long the seams of a part may be if it then unfolds without distortion, as
-        boxes and machined parts do along their edges; 0 spends all of target-energy, as setting
-        that or target-p99 does. A number from 0 to 100.
+        boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
+        or target-p99 sets this to 0: set it after them. A number from 0 to 100.
 
     Returns
     -------

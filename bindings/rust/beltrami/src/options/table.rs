@@ -575,13 +575,13 @@ options! {
         Choice(Effort::NAMES), 0..=2, default 1, calls 2;
 
     /// How many times as long the seams of a part may be if it then unfolds without distortion, as
-    /// boxes and machined parts do along their edges; 0 spends all of target-energy, as setting
-    /// that or target-p99 does.
+    /// boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
+    /// or target-p99 sets this to 0: set it after them.
     ///
     /// From 0 to 100.
     ///
     /// Default: 1.5.
     flat_seams(f64) of [UnwrapOptions] = 41 "flat-seams"
-        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy, as setting that or target-p99 does."
+        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them."
         Float(&[]), 0..=100, default 1.5, calls 2;
 }
