@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -38,9 +37,9 @@ constexpr double kSearchedAll = 0.8;  // then creases are
 /// root of the mean square: an energy is about 2 + 2 (s1 - 1)^2 + 2 (s2 - 1)^2.
 constexpr double kFlat = 2.005;
 /// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
-/// tried: those of a cube are 1.7 times as long.
+/// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, the flat
+/// ones may be so many times as long too: a terrain of voxels would fall into thousands of charts.
 constexpr double kUnfolded = 3;
-constexpr double kAnyLength = std::numeric_limits<double>::infinity();
 
 /// Missed by more, a target is worth further tries,
 constexpr double kMissed = 1e-6;
@@ -210,6 +209,7 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
   std::optional<Mapped> best;
   Tries tries;
   const int most = effort.tries;
+  const bool uses_rest = piece.real_faces >= effort.rest_faces;
   for (int i = 0; i < most && aim && !work.out_of_time(); ++i) {
     const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
     const double to = kFirstTry + (kSearched - kFirstTry) * i / (most - 1);
@@ -219,7 +219,7 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
     Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);
     tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
-    aim = aimed_again(target, *aim, mapped, tries, effort.uses_rest);
+    aim = aimed_again(target, *aim, mapped, tries, uses_rest);
     if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
   }
   if (best && !misses(*best, target)) return *std::move(best);
@@ -316,8 +316,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
   if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
   const std::vector<Index>& vertex = task.admitted.input_vertex;
-  const double most =
-      missed ? kAnyLength : target.flat_seams * seam_length(searched.opened.charts, vertex);
+  const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
+  const double most = times * seam_length(searched.opened.charts, vertex);
   std::optional<Mapped> flat = map_unfolded(task, piece, most, work.part(kSearchedAll, 1), stages);
   if (!flat || misses(*flat, target) || seam_length(flat->opened.charts, vertex) > most) {
     return searched;

@@ -1,6 +1,15 @@
 #include "cut/search_effort.h"
 
+#include <limits>
+
+#include "base/types.h"
+
 namespace beltrami {
+namespace {
+
+constexpr Index kNever = std::numeric_limits<Index>::max();
+
+}  // namespace
 
 SearchEffort search_effort(Effort effort) {
   switch (effort) {
@@ -18,7 +27,7 @@ SearchEffort search_effort(Effort effort) {
               .joins = 0,
               .varied_faces = 0,
               .tries = 3,
-              .uses_rest = false,
+              .rest_faces = kNever,
               .packing = 0};
     case Effort::kHigh:
       return {.coarse_faces = 10'000,
@@ -34,7 +43,7 @@ SearchEffort search_effort(Effort effort) {
               .joins = 6,
               .varied_faces = 60'000,
               .tries = 4,
-              .uses_rest = true,
+              .rest_faces = 0,
               .packing = 1};
     case Effort::kNormal:
       break;
@@ -52,7 +61,7 @@ SearchEffort search_effort(Effort effort) {
           .joins = 6,
           .varied_faces = 0,
           .tries = 4,
-          .uses_rest = false,
+          .rest_faces = 20'000,
           .packing = 0.05};
 }
 

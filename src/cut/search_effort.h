@@ -24,7 +24,7 @@ struct SearchEffort {
   int joins;           ///< charts are joined elsewhere on trial so often
   Index varied_faces;  ///< what was found is varied in rounds over so many faces in all; 0: never
   int tries;           ///< at a target that finer maps miss
-  bool uses_rest;      ///< further tries at shorter seams where finer maps have excess to spare
+  Index rest_faces;    ///< from so many on, further tries where finer maps have excess to spare
   double packing;      ///< as PackOptions has its effort
 };
 
