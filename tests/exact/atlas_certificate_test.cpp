@@ -171,7 +171,7 @@ TEST(AtlasCertificate, CountsThePlacesWhereBoundariesTouch) {
 TEST(AtlasCertificate, AgreesWithAreasWhereAVertexOrAFaceOfAMosaicIsMisplaced) {
   Random random(3);
   int injective = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 200; ++i) {
     UvFaces atlas = random_mosaic(random);
     if (atlas.faces.empty()) continue;
     const auto any_place = [&] { return atlas.uvs[random.below(size_of(atlas.uvs))]; };
@@ -183,21 +183,21 @@ TEST(AtlasCertificate, AgreesWithAreasWhereAVertexOrAFaceOfAMosaicIsMisplaced) {
     }
     ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
   }
-  EXPECT_GT(injective, 50);
-  EXPECT_LT(injective, 550);
+  EXPECT_GT(injective, 15);
+  EXPECT_LT(injective, 185);
 }
 
 TEST(AtlasCertificate, AgreesWithAreasWhereRoundingMovesVerticesOffTheEdgesThatTheyTouched) {
   Random random(5);
   int injective = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 200; ++i) {
     UvFaces atlas = random_mosaic(random);
     const double x = random.unit(), y = random.unit();
     for (Vec2& w : atlas.uvs) w = {x * w.x() - y * w.y(), y * w.x() + x * w.y()};
     ASSERT_NO_FATAL_FAILURE(expect_as_by_force(atlas, injective)) << i;
   }
-  EXPECT_GT(injective, 50);
-  EXPECT_LT(injective, 550);
+  EXPECT_GT(injective, 15);
+  EXPECT_LT(injective, 185);
 }
 
 // ---- Charts within and beside each other ------------------------------------------------------

@@ -89,7 +89,7 @@ case $STEP in
       -DBELTRAMI_SIMPLIFIER="$(sed -n 's/^BELTRAMI_SIMPLIFIER:STRING=//p' "$BUILD/CMakeCache.txt")" \
       -DCMAKE_CXX_COMPILER_LAUNCHER="$HERE/reuse_object.sh" --log-level=WARNING >/dev/null
     # No build type is given: the library's is Release all the same.
-    if ! grep -q -e '-O3 -DNDEBUG' <<<"$(ninja -C build -t commands beltrami_stages)"; then
+    if ! grep -q -e '-O3 -DNDEBUG' <<<"$(ninja -C build -t commands beltrami_inner)"; then
       fail "the library of a project without a build type is not optimised"
     fi
     BELTRAMI_BUILT=$BUILD cmake --build build --target consumer >/dev/null

@@ -162,11 +162,11 @@ int read_damaged(Damage damage, int count) {
 
 // Damage that leaves nothing to read shows nothing.
 TEST(DamagedGltf, IsRefusedOrReadToTheLastProof) {
-  EXPECT_GT(read_damaged(Bytes{}, 5000), 30);
+  EXPECT_GT(read_damaged(Bytes{}, 1500), 10);
   Bytes chunk;
   chunk.chunk = true;
-  EXPECT_GT(read_damaged(chunk, 5000), 30);
-  EXPECT_GT(read_damaged(Values{}, 10000), 1000);
+  EXPECT_GT(read_damaged(chunk, 1500), 10);
+  EXPECT_GT(read_damaged(Values{}, 3000), 300);
 }
 
 }  // namespace

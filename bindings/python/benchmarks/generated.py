@@ -56,10 +56,13 @@ def foam(points: np.ndarray) -> np.ndarray:
 
 
 def samples(field: Field, side: int) -> np.ndarray:
-    """Return a cube of values of the field."""
+    """Return a cube of values of the field, which is asked for one layer after the other."""
     axis = np.linspace(-2, 2, side)
-    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1)
-    return field(grid.reshape(-1, 3)).reshape(side, side, side)
+    values = np.empty((side, side, side))
+    for layer, x in zip(values, axis, strict=True):
+        points = np.stack(np.meshgrid([x], axis, axis, indexing="ij"), -1)
+        layer[:] = field(points.reshape(-1, 3)).reshape(side, side)
+    return values
 
 
 def marching_cubes(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
