@@ -1,4 +1,4 @@
-"""Unwraps the meshes of docs/atlases.md: prints its table, and draws its picture.
+"""Unwraps the meshes of docs/guide/unwrap.md: prints its table, and draws its picture.
 
     atlases.py PROGRAM MESHES FOLDER
 

@@ -1,4 +1,4 @@
-// Charts onto the pages of a texture. The method is in docs/method.md.
+// Charts onto the pages of a texture. The method is in docs/design/method.md.
 #pragma once
 
 #include <optional>

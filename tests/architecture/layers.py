@@ -3,7 +3,7 @@
 
     layers.py [ROOT]
 
-ROOT is a checkout. docs/architecture.md draws the rooms; LIBRARY and PROGRAM are that drawing in few words.
+ROOT is a checkout. docs/design/architecture.md draws the rooms; LIBRARY and PROGRAM are that drawing in few words.
 """
 from __future__ import annotations
 

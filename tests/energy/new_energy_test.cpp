@@ -1,4 +1,4 @@
-// What docs/architecture.md promises: an energy is one small type. This one, the squared
+// What docs/design/architecture.md promises: an energy is one small type. This one, the squared
 // logarithmic strain (Hencky 1928), is no part of the library.
 #include <gtest/gtest.h>
 

@@ -1,0 +1,86 @@
+"""Refuses pages that are hard to read: long sentences, and what only a diary has.
+
+    sentences.py PAGE ...
+
+Prose is what is left of a page of Markdown without code, tables, pictures and headings. A sentence
+has at most MOST words, and those of a page at most MEAN in the mean.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+MOST, MEAN = 30, 16
+# Words that tell how something came to be. That is in the commits, and in benchmarks/history.
+DIARY = re.compile(r"\b(no longer|used to be|until now|as of late|meanwhile|this week)\b", re.I)
+
+
+def paragraphs(text: str) -> list[tuple[int, str]]:
+    """Return the prose of a page, a paragraph or an item of a list each, with its first line."""
+    found: list[tuple[int, str]] = []
+    fenced, number_of, lines = False, 0, []
+
+    def end() -> None:
+        if lines:
+            found.append((number_of, " ".join(lines)))
+            lines.clear()
+
+    text = re.sub(r"<!--.*?-->", lambda m: re.sub(r"[^\n]", "", m[0]), text, flags=re.S)
+    for number, line in enumerate(text.splitlines(), 1):
+        stripped = line.strip()
+        if re.match(r"(```|~~~|\$\$)", stripped):
+            fenced = not fenced if not re.match(r"\$\$.+\$\$$", stripped) else fenced
+            end()
+            continue
+        if fenced or not stripped or re.match(r"(#|\||!!!|---|<)", stripped) or line.startswith("    "):
+            end()
+            continue
+        if re.match(r"([-*+]|\d+[.)]) ", stripped):
+            end()
+            stripped = re.sub(r"^([-*+]|\d+[.)]) ", "", stripped)
+        if not lines:
+            number_of = number
+        lines.append(stripped)
+    end()
+    return found
+
+
+def sentences(paragraph: str) -> list[list[str]]:
+    """Return the words of each sentence of a paragraph. Code counts as one word, a link as its text."""
+    text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", paragraph)
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text)
+    text = re.sub(r"`[^`]*`", "CODE", text)
+    text = re.sub(r"\$[^$]*\$", "FORMULA", text)
+    text = re.sub(r"\b(e\.g|i\.e|cf|vs|et al|Fig|Sec|No)\.", r"\1", text)
+    parts = re.split(r"(?<=[.!?:])[\"')*_]*\s+(?=[\"'(*_]*[A-Z0-9])", text)
+    return [words for part in parts if (words := re.findall(r"[^\s]*\w[^\s]*", part))]
+
+
+def problems(page: Path) -> list[str]:
+    """Return a line for each thing that is wrong with a page."""
+    wrong, lengths = [], []
+    for number, paragraph in paragraphs(page.read_text()):
+        for words in sentences(paragraph):
+            lengths.append(len(words))
+            if len(words) > MOST:
+                start = " ".join(words[:8])
+                wrong.append(f"{page}:{number}: {len(words)} words, at most {MOST}: {start} ...")
+        if match := DIARY.search(paragraph):
+            wrong.append(f"{page}:{number}: '{match[0]}' is of a diary; say what is so today")
+    mean = sum(lengths) / len(lengths) if lengths else 0
+    if mean > MEAN:
+        wrong.append(f"{page}: {mean:.1f} words a sentence in the mean, at most {MEAN}")
+    return wrong
+
+
+def main() -> int:
+    """Look at the pages that the arguments name."""
+    wrong = [line for name in sys.argv[1:] for line in problems(Path(name))]
+    print("\n".join(wrong), file=sys.stderr, end="\n" if wrong else "")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
