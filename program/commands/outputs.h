@@ -26,7 +26,7 @@ void require_uv_set_of_gltf(std::uint32_t uv_set, const std::string& output);
 void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single);
 
 /// The verdict on the numbers that a file at `path` holds of the corner UVs of `file`; nothing
-/// where it holds them exactly. `share`: faces that have the UVs of another one are copies, and
+/// where it holds them exactly. `share`: faces that have the UVs of another one are copies or stacked, and
 /// overlap it on purpose. `mirrored`: charts that are mirrored as a whole are no fault. Throws
 /// Failure with the path of the input.
 std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,

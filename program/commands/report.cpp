@@ -126,7 +126,8 @@ Json admitted_json(const Report& report) {
           {"components", found.components},
           {"closed_components", found.closed_components},
           {"holes", found.holes},
-          {"filled_holes", found.filled_holes}};
+          {"filled_holes", found.filled_holes},
+          {"stacked_parts", found.stacked_parts}};
 }
 
 Json failed_charts_json(const Report& report) {
@@ -405,7 +406,8 @@ void append_admitted(const Report& report, std::string& text) {
       {atlas.one_sided_edges, "edges of a one-sided surface"},
       {atlas.split_vertices, "vertices split"},
       {atlas.reversed_faces, "faces turned over"},
-      {atlas.filled_holes, "holes filled"}};
+      {atlas.filled_holes, "holes filled"},
+      {atlas.stacked_parts, "parts stacked on others"}};
   std::string line;
   for (const auto& [count, what] : counts) {
     if (count > 0) line += (line.empty() ? "" : ", ") + std::to_string(count) + " " + what;

@@ -237,7 +237,8 @@ class Unwrapping {
 
   /// The last verdict is on the numbers that the file gets.
   void judge_held() {
-    const bool share = options_.integer(BELTRAMI_OPTION_SHARE_COPIES) != 0;
+    const bool share = options_.integer(BELTRAMI_OPTION_SHARE_COPIES) != 0 ||
+                       options_.integer(BELTRAMI_OPTION_STACK) != BELTRAMI_STACK_NONE;
     const auto found = judge_held_uvs(file_, arguments_.output, share, false);
     if (!found) return;
     note_held(*found, report_);

@@ -64,6 +64,7 @@ beltrami_atlas describe(const Unwrapped& result) {
   report.uv_vertices = result.uvs.size();
   describe_admitted(report, atlas.admitted);
   report.filled_holes = count(atlas.filled_holes);
+  report.stacked_parts = count(atlas.stacked_parts);
   report.left_out = count(atlas.energy.left_out);
   report.area = atlas.area;
   report.seam_length = atlas.seam_length;

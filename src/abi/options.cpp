@@ -66,6 +66,17 @@ Injectivity injectivity_of(std::int32_t value) {
   }
 }
 
+Stack stack_of(std::int32_t value) {
+  switch (value) {
+    case BELTRAMI_STACK_COPIES:
+      return Stack::kCopies;
+    case BELTRAMI_STACK_MIRRORED:
+      return Stack::kMirrored;
+    default:
+      return Stack::kNone;
+  }
+}
+
 /// The preset first: it is what set the others then.
 constexpr std::int32_t kOfTheSearch[] = {
     BELTRAMI_OPTION_PRESET,          BELTRAMI_OPTION_TARGET_ENERGY,  BELTRAMI_OPTION_TARGET_P99,
@@ -171,6 +182,7 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.admit.share_copies = options.share_copies;
   atlas.keep_disk = options.weld == BELTRAMI_WELD_AUTO && options.weld_distance == 0;
   atlas.fill_limit = options.fill_holes;
+  atlas.stack = stack_of(options.stack);
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
   atlas.effort = search_effort(effort_of(options.effort));

@@ -90,6 +90,7 @@ class Collector {
   void add(const AtlasChart& part, const std::vector<Vec2>& uvs);
   void put_aside(const std::vector<PinAside>& pins);
   void share();
+  void stack(const std::vector<StackedFace>& stacked);
 
  private:
   const std::vector<Triangle>& faces_;
@@ -174,6 +175,28 @@ void Collector::share() {
   }
 }
 
+/// UV vertices where those of other faces are, for what is stacked on these.
+void Collector::stack(const std::vector<StackedFace>& stacked) {
+  std::map<std::pair<Index, Index>, Index> own;  // by the vertex, and the UV vertex that it lies on
+  for (const StackedFace& face : stacked) {
+    poll_();
+    atlas_.chart_of_face[face.face] = atlas_.chart_of_face[face.on];
+    atlas_.reversed[face.face] = face.reversed;
+    atlas_.excepted[face.face] = true;
+    for (int k = 0; k < 3; ++k) {
+      const Index vertex = admitted_.welded(faces_[face.face][k]);
+      const Index on = atlas_.faces[face.on][face.corner[k]];
+      const auto [known, is_new] = own.try_emplace({vertex, on}, size_of(atlas_.uvs));
+      atlas_.faces[face.face][k] = known->second;
+      if (!is_new) continue;
+      const Vec2 place = atlas_.uvs[on];
+      atlas_.uvs.push_back(place);
+      if (atlas_.pages) atlas_.page_of_uv.push_back(atlas_.page_of_uv[on]);
+      atlas_.input_vertex.push_back(vertex);
+    }
+  }
+}
+
 /// Scales every map by the mean density of its faces, weighted by area. One per chart.
 std::vector<double> scale_by_density(const std::vector<double>& densities, const Admitted& admitted,
                                      const std::vector<AtlasChart>& charts,
@@ -245,6 +268,7 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const MappedSur
   atlas.admitted = admitted.counts;
   atlas.filled_holes = mapped.filled_holes;
   atlas.missed = mapped.missed;
+  atlas.stacked_parts = mapped.stacked_parts;
   Collector collector(input.faces, admitted, atlas);
   for (std::size_t c = 0; c < maps.size(); ++c) {
     collector.add(mapped.charts[c], maps[c].uvs);
@@ -255,6 +279,7 @@ void assemble(const AtlasInput& input, const Admitted& admitted, const MappedSur
     chart.pinned = maps[c].pinned();
   }
   collector.put_aside(mapped.pins_aside);
+  collector.stack(mapped.stacked);
   collector.share();
   atlas.energy = measure_charts(mapped.charts, maps, page_scale, atlas.charts, work);
   atlas.seam_length = seam_length(mapped.charts, admitted.input_vertex);

@@ -38,6 +38,9 @@ struct AtlasInput {
   std::vector<Pin> pins = {};  ///< their places single-precision numbers with `float32`
 };
 
+/// Which components of one shape lie on each other.
+enum class Stack { kNone, kCopies, kMirrored };
+
 struct AtlasOptions {
   AdmitOptions admit = {};
   /// With polygons: per face, bit k says whether its edge from corner k is inside its polygon;
@@ -53,6 +56,9 @@ struct AtlasOptions {
   SearchEffort effort = search_effort(Effort::kNormal);  ///< of that search, and of the packer
   SeamWeights weights = {};                              ///< likewise
   ChartOptions chart = {};                               ///< of every chart, but for what follows
+  /// Components that a rigid motion, or one and a reflection, carries onto one before them get its
+  /// UVs. Not with pins, nor with what the target asks of the whole.
+  Stack stack = Stack::kNone;
   /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
   /// pins: they lie side by side in that unit.
   std::optional<PackOptions> pack = {};
@@ -99,7 +105,8 @@ struct MissedTarget {
 
 /// Charts come by their least face, UV vertices by their chart. Faces that were set aside are in no
 /// chart: each is a point in the plane, with a UV vertex for each corner, of that corner's vertex.
-/// Copies that share the UV vertices of another face are in its chart, and not judged.
+/// Copies that share the UV vertices of another face are in its chart, and not judged; so are faces
+/// that are stacked on others, which have UV vertices of their own at the same numbers.
 struct Atlas {
   Outcome outcome = Outcome::kOk;
   std::vector<Vec2> uvs;             ///< one per UV vertex, in the input's unit, or where the atlas
@@ -113,7 +120,8 @@ struct Atlas {
   std::vector<ChartInfo> charts;
   AdmitCounts admitted;
   Index filled_holes = 0;
-  double area = 0;  ///< of the surface, in the input's unit squared
+  Index stacked_parts = 0;  ///< components that lie on others
+  double area = 0;          ///< of the surface but for these, in the input's unit squared
   AtlasEnergy energy;
   std::vector<MissedTarget> missed;  ///< by their least face; none without a target
   double seam_length = 0;  ///< in the input's unit, each seam once, and no border of the surface

@@ -57,14 +57,11 @@ class Laying {
   Laying(const SurfacePiece& from, const SurfacePiece& to)
       : from_(from), to_(to), unit_(std::ldexp(1.0, from.exponent - to.exponent)) {}
 
-  /// Per half-edge of `from` that of `to` on the same edge; reflected, it runs the other way.
-  std::optional<std::vector<Index>> run() {
-    const std::int64_t most = kLooks * size_of(from_.surface.twin);
-    for (Index start = 0; start < size_of(to_.surface.twin); ++start) {
-      for (const bool reflected : {false, true}) {
-        if (looks_ > most) return std::nullopt;
-        if (lies(start, reflected)) return std::move(onto_);
-      }
+  /// By a motion with a reflection or by one without.
+  std::optional<Laid> run(bool reflected) {
+    const std::int64_t most = looks_ + kLooks * size_of(from_.surface.twin);
+    for (Index start = 0; start < size_of(to_.surface.twin) && looks_ <= most; ++start) {
+      if (lies(start, reflected)) return Laid{std::move(onto_), reflected};
     }
     return std::nullopt;
   }
@@ -141,6 +138,12 @@ bool is_near(double a, double b) {
 
 }  // namespace
 
+std::optional<Laid> laid_onto(const SurfacePiece& from, const SurfacePiece& to, bool mirrored) {
+  Laying laying(from, to);
+  std::optional<Laid> laid = laying.run(false);
+  return laid || !mirrored ? std::move(laid) : laying.run(true);
+}
+
 std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
   std::vector<Index> first(pieces.size());
   std::map<std::tuple<Index, Index, Index, std::size_t>, std::vector<std::pair<Index, Measures>>>
@@ -153,7 +156,7 @@ std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
     auto& kind = kinds[own.counts];
     for (const auto& [other, measures] : kind) {
       if (!is_near(own.area, measures.area) || !is_near(own.edges, measures.edges)) continue;
-      if (!Laying(pieces[other], pieces[p]).run()) continue;
+      if (!laid_onto(pieces[other], pieces[p], true)) continue;
       first[p] = other;
       break;
     }
@@ -164,9 +167,9 @@ std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
 
 EdgeMarks carried_marks(const SurfacePiece& from, const EdgeMarks& marks, const SurfacePiece& to) {
   EdgeMarks carried(to.surface.twin.size(), false);
-  const std::optional<std::vector<Index>> onto = Laying(from, to).run();
-  if (!onto) return carried;
-  for (std::size_t h = 0; h < marks.size(); ++h) carried[(*onto)[h]] = marks[h];
+  const std::optional<Laid> laid = laid_onto(from, to, true);
+  if (!laid) return carried;
+  for (std::size_t h = 0; h < marks.size(); ++h) carried[laid->onto[h]] = marks[h];
   return carried;
 }
 

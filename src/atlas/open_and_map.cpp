@@ -74,6 +74,27 @@ void add_up(const std::vector<std::vector<StageStatistics>>& of_pieces, double s
   }
 }
 
+/// Stacks the faces of a piece on those of one that has maps; whether it lies on that.
+bool stack(const SurfacePiece& piece, const SurfacePiece& on, bool mirrored,
+           const Admitted& admitted, MappedSurface& all) {
+  const std::optional<Laid> laid = laid_onto(on, piece, mirrored);
+  if (!laid) return false;
+  for (Index f = 0; f < on.real_faces; ++f) {
+    const Index own = piece.face[laid->onto[3 * f] / 3];
+    StackedFace face{.face = admitted.input_face[own],
+                     .on = admitted.input_face[on.face[f]],
+                     .corner = {},
+                     .reversed = admitted.reversed[own] != laid->reflected};
+    for (int k = 0; k < 3; ++k) {
+      const Index h = laid->onto[3 * f + k], from = laid->reflected ? Surface::next(h) : h;
+      face.corner[admitted.input_corner(own, from % 3)] = admitted.input_corner(on.face[f], k);
+    }
+    all.stacked.push_back(face);
+  }
+  ++all.stacked_parts;
+  return true;
+}
+
 /// The charts of a piece, in the unit of the whole.
 void collect(const SurfacePiece& piece, const std::optional<SeamTarget>& target, Mapped mapped,
              const Admitted& admitted, MappedSurface& all) {
@@ -111,7 +132,8 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
         make_ready(admitted, input.cuts, options.fill_limit,
                    {options.admit.polygons, options.diagonals}, input.hints, inner);
     all.filled_holes = ready.filled_holes;
-    if (is_asked_of_whole(input, options)) {
+    const bool is_one = is_asked_of_whole(input, options);
+    if (is_one && (options.target || options.stack == Stack::kNone || !input.pins.empty())) {
       pieces.push_back(std::move(ready.whole));
     } else {
       pieces = components_of(std::move(ready.whole), inner);
@@ -123,8 +145,14 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   const double wall = wall_seconds(), cpu = cpu_seconds();
   std::vector<Index> first(pieces.size()), searched, copies;
   std::iota(first.begin(), first.end(), 0);
-  if (options.target) first = first_congruent(pieces);
-  for (Index p = 0; p < size_of(pieces); ++p) (first[p] == p ? searched : copies).push_back(p);
+  if (options.target || pieces.size() > 1) first = first_congruent(pieces);
+  for (Index p = 0; p < size_of(pieces); ++p) {
+    const bool is_stacked =
+        first[p] != p && options.stack != Stack::kNone &&
+        stack(pieces[p], pieces[first[p]], options.stack == Stack::kMirrored, admitted, all);
+    if (is_stacked) continue;
+    (first[p] == p || !options.target ? searched : copies).push_back(p);
+  }
   const double share = kReady + (1 - kReady) * static_cast<double>(searched.size()) /
                                     static_cast<double>(pieces.size());
   for_each_piece(
@@ -135,6 +163,7 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   });
   add_up(spent, wall_seconds() - wall, cpu_seconds() - cpu, stages);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
+    if (mapped[p].maps.empty()) continue;  // it is stacked
     if (!mapped[p].pins.aside.empty()) all.pins_aside = std::move(mapped[p].pins.aside);
     collect(pieces[p], options.target, std::move(mapped[p]), admitted, all);
   }

@@ -14,6 +14,13 @@
 
 namespace beltrami {
 
+/// A face of the input that lies on another one, which is in a chart.
+struct StackedFace {
+  Index face = 0, on = 0;
+  Triangle corner;         ///< per corner of the face that of the other with the same UV
+  bool reversed = false;   ///< positive in the plane the other way round
+};
+
 /// Charts and their maps, by their least face of the input.
 struct MappedSurface {
   std::vector<AtlasChart> charts;
@@ -21,6 +28,8 @@ struct MappedSurface {
   std::vector<PinAside> pins_aside;
   std::vector<MissedTarget> missed;
   Index filled_holes = 0;
+  std::vector<StackedFace> stacked;
+  Index stacked_parts = 0;  ///< components that these make
 };
 
 /// Opens the surface, which was scaled by 2^exponent, and flattens its charts, as the stages "cut"
@@ -29,7 +38,7 @@ struct MappedSurface {
 /// symmetry is asked of the whole. No component ends worse than a short cut graph leaves it. The
 /// limit of time ends the search for seams; the maps along them are finished. Charts that cannot be
 /// mapped within reason are split until they can, unless there are pins or a number of charts is
-/// asked for. Throws Error PINS where pins cannot be met together.
+/// asked for. Components that are to be stacked on others have no charts. Throws Error PINS where pins cannot be met together.
 MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                            const AtlasOptions& options, const Work& work,
                            std::vector<StageStatistics>& stages);

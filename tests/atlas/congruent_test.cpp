@@ -125,5 +125,94 @@ TEST(Congruent, CopiesHaveSeamsOfOneLengthEach) {
   EXPECT_EQ(all.charts.size(), 3 * one.charts.size());
 }
 
+using UvTriangle = std::vector<std::pair<double, double>>;
+
+/// The places of the corners of some faces, in any order.
+std::vector<UvTriangle> uv_triangles(const Atlas& atlas, Index first, Index end) {
+  std::vector<UvTriangle> all;
+  for (Index f = first; f < end; ++f) {
+    UvTriangle& corners = all.emplace_back();
+    for (const Index v : atlas.faces[f]) {
+      corners.emplace_back(atlas.uvs[v].x(), atlas.uvs[v].y());
+    }
+    std::sort(corners.begin(), corners.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// UV vertices are of the vertices of the corners that have them.
+void expect_own_vertices(const TriangleList& mesh, const Atlas& atlas) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(atlas.input_vertex[atlas.faces[f][k]], mesh.faces[f][k]) << f;
+    }
+  }
+}
+
+TEST(Stack, CopiesLieOnTheFirstOfTheirKindToTheLastBit) {
+  const Index n = size_of(blob().faces);
+  const TriangleList other = meshes::shaken(meshes::sphere(2), 0.1, 5);
+  const TriangleList mesh =
+      meshes::together({blob(), copied(blob(), 6), other, copied(reflected(blob()), 7)});
+  for (const bool is_searched : {true, false}) {
+    AtlasOptions options;
+    if (is_searched) options.target = SeamTarget{};
+    options.pack = PackOptions{};
+    const Atlas apart = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(apart.stacked_parts, 0);
+    options.stack = Stack::kCopies;
+    const Atlas copies = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(copies.outcome, Outcome::kOk);
+    EXPECT_EQ(copies.stacked_parts, 1);
+    EXPECT_EQ(copies.certificate.excepted, n);
+    EXPECT_LT(copies.charts.size(), apart.charts.size());
+    EXPECT_EQ(uv_triangles(copies, 0, n), uv_triangles(copies, n, 2 * n));
+    EXPECT_NE(uv_triangles(copies, 0, n), uv_triangles(copies, 3 * n, 4 * n));
+    expect_own_vertices(mesh, copies);
+    options.stack = Stack::kMirrored;
+    const Atlas mirrored = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(mirrored.outcome, Outcome::kOk);
+    EXPECT_EQ(mirrored.stacked_parts, 2);
+    EXPECT_EQ(uv_triangles(mirrored, 0, n), uv_triangles(mirrored, 3 * n, 4 * n));
+    EXPECT_GT(mirrored.pages->texels_per_unit, copies.pages->texels_per_unit);
+    EXPECT_FALSE(mirrored.reversed[n]);
+    EXPECT_TRUE(mirrored.reversed[3 * n]);
+    expect_own_vertices(mesh, mirrored);
+  }
+}
+
+TEST(Stack, AFaceLiesOnTheOneThatItIsACopyOf) {
+  const TriangleList mesh = meshes::together({blob(), copied(reflected(blob()), 7)});
+  AtlasOptions options;
+  options.target = SeamTarget{};
+  options.stack = Stack::kMirrored;
+  const Atlas atlas = atlases::unwrapped(mesh, options);
+  const auto lengths = [&](Index f) {
+    std::vector<std::pair<double, double>> of;  // in the plane, and on the surface
+    for (int k = 0; k < 3; ++k) {
+      const Index a = atlas.faces[f][k], b = atlas.faces[f][(k + 1) % 3];
+      const Vec3 edge = mesh.positions[mesh.faces[f][k]] - mesh.positions[mesh.faces[f][(k + 1) % 3]];
+      of.emplace_back((atlas.uvs[a] - atlas.uvs[b]).norm(), edge.norm());
+    }
+    std::sort(of.begin(), of.end());
+    return of;
+  };
+  const auto all = [&](Index first, Index end) {
+    std::vector<std::vector<std::pair<double, double>>> found;
+    for (Index f = first; f < end; ++f) found.push_back(lengths(f));
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  const Index n = size_of(blob().faces);
+  const auto own = all(0, n), stacked = all(n, 2 * n);
+  for (Index f = 0; f < n; ++f) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(own[f][k].first, stacked[f][k].first);
+      EXPECT_NEAR(own[f][k].second, stacked[f][k].second, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace beltrami

@@ -157,6 +157,8 @@ pub struct AtlasSummary {
     pub missed_triangles: usize,
     /// Its mean energy; 0 where there is none.
     pub missed_energy: f64,
+    /// Components that lie on others of their shape: no area, energy or verdict counts them.
+    pub stacked_parts: usize,
 }
 
 impl AtlasSummary {
@@ -200,6 +202,7 @@ impl AtlasSummary {
             missed_face: element(raw.missed_face),
             missed_triangles: count(raw.missed_triangles),
             missed_energy: raw.missed_energy,
+            stacked_parts: count(raw.stacked_parts),
         }
     }
 }
