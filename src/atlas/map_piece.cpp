@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -37,9 +38,11 @@ constexpr double kSearchedAll = 0.8;  // then creases are
 /// root of the mean square: an energy is about 2 + 2 (s1 - 1)^2 + 2 (s2 - 1)^2.
 constexpr double kFlat = 2.005;
 /// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
-/// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, the flat
-/// ones may be so many times as long too: a terrain of voxels would fall into thousands of charts.
+/// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, flat ones
+/// that are longer than that have to leave no more charts: a terrain of voxels would fall into
+/// thousands.
 constexpr double kUnfolded = 3;
+constexpr double kAnyLength = std::numeric_limits<double>::infinity();
 
 /// Missed by more, a target is worth further tries,
 constexpr double kMissed = 1e-6;
@@ -318,11 +321,12 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);
-  std::optional<Mapped> flat = map_unfolded(task, piece, most, work.part(kSearchedAll, 1), stages);
-  if (!flat || misses(*flat, target) || seam_length(flat->opened.charts, vertex) > most) {
-    return searched;
-  }
-  return *std::move(flat);
+  std::optional<Mapped> flat = map_unfolded(task, piece, missed ? kAnyLength : most,
+                                            work.part(kSearchedAll, 1), stages);
+  if (!flat || misses(*flat, target)) return searched;
+  const bool is_simpler = missed && flat->maps.size() <= searched.maps.size();
+  const bool is_short = seam_length(flat->opened.charts, vertex) <= most;
+  return is_simpler || is_short ? *std::move(flat) : std::move(searched);
 }
 
 /// Splits what cannot be mapped within reason, round after round, until all can.
