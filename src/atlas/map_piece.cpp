@@ -39,8 +39,8 @@ constexpr double kSearchedAll = 0.8;  // then creases are
 constexpr double kFlat = 2.005;
 /// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
 /// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, flat ones
-/// that are longer than that have to leave no more charts: a terrain of voxels would fall into
-/// thousands.
+/// that are longer than that have to leave no more charts, or to save one from being split: a terrain
+/// of voxels would fall into thousands.
 constexpr double kUnfolded = 3;
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
 
@@ -259,6 +259,14 @@ std::vector<std::array<Vec2, 3>> corners_of(const SurfacePiece& piece, const Map
   return corners;
 }
 
+/// Whether a chart is to be split.
+bool has_hopeless(const Mapped& mapped, const Work& work) {
+  for (std::size_t c = 0; c < mapped.maps.size(); ++c) {
+    if (is_hopeless(mapped.opened.charts[c], mapped.maps[c], work)) return true;
+  }
+  return false;
+}
+
 bool is_flat(const Mapped& mapped) {
   return mapped.broken == 0 && mapped.energy.symmetric_dirichlet < kFlat;
 }
@@ -324,7 +332,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   std::optional<Mapped> flat = map_unfolded(task, piece, missed ? kAnyLength : most,
                                             work.part(kSearchedAll, 1), stages);
   if (!flat || misses(*flat, target)) return searched;
-  const bool is_simpler = missed && flat->maps.size() <= searched.maps.size();
+  const bool is_simpler =
+      missed && (flat->maps.size() <= searched.maps.size() || has_hopeless(searched, work.aside()));
   const bool is_short = seam_length(flat->opened.charts, vertex) <= most;
   return is_simpler || is_short ? *std::move(flat) : std::move(searched);
 }

@@ -206,7 +206,8 @@ enum {
       38,                              /* float: share that symmetry may cost more; 0: not sought */
   BELTRAMI_OPTION_STRAIGHT_SEAMS = 39, /* float: what turns of seams cost; 0: nothing */
   BELTRAMI_OPTION_EFFORT = 40,         /* choice: BELTRAMI_EFFORT_ */
-  BELTRAMI_OPTION_FLAT_SEAMS = 41      /* float: how much longer, where parts then unfold flat; 0 */
+  BELTRAMI_OPTION_FLAT_SEAMS = 41,     /* float: how much longer, where parts then unfold flat; 0 */
+  BELTRAMI_OPTION_STACK = 42           /* choice: BELTRAMI_STACK_ */
 };
 
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
@@ -272,6 +273,17 @@ enum {
   /* Machined and built things: seams along hard edges and flat faces, though there be more:
    * hard-seams 0.5, flat-seams 6. */
   BELTRAMI_PRESET_HARD_SURFACE = 4
+};
+
+/* Whether components of one shape share texels: each corner of such a component has the UV of the
+ * corner that it lies on. Its UV vertices are its own, its faces are not judged. */
+enum {
+  BELTRAMI_STACK_FORCE_SIGNED_ = -1,
+  BELTRAMI_STACK_NONE = 0,
+  /* Those that a rigid motion carries onto one before them, lengths within a ten thousandth. */
+  BELTRAMI_STACK_COPIES = 1,
+  /* Mirror images, too. */
+  BELTRAMI_STACK_MIRRORED = 2
 };
 
 /* Whether vertices at one place are one. */
@@ -720,6 +732,8 @@ typedef struct beltrami_atlas {
   uint64_t missed_face;  /* the first face of the worst of them, or BELTRAMI_NO_ELEMENT */
   uint64_t missed_triangles; /* of that part */
   double missed_energy;      /* its mean */
+  uint64_t stacked_parts;    /* components that lie on others of their shape, by the option stack:
+                              * no area, energy or verdict counts them */
 } beltrami_atlas;
 
 /* A chart: a connected piece of the surface. */
@@ -746,7 +760,7 @@ typedef struct beltrami_atlas_certificate {
   uint64_t positive; /* triangles of positive, negative, zero area in UV */
   uint64_t negative;
   uint64_t degenerate;
-  uint64_t excepted;        /* not judged: without area on the surface, or sharing UVs */
+  uint64_t excepted;        /* not judged: without area on the surface, sharing UVs, or stacked */
   uint64_t mirrored_charts; /* all of whose triangles were negative, taken as their mirror images */
   uint64_t mirrored_faces;  /* triangles in them */
   uint64_t overlaps;        /* pairs of triangles that overlap, one at least at a seam or border:

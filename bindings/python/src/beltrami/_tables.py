@@ -18,6 +18,7 @@ PresetChoice = Literal["none", "lightmap", "texturing", "one-chart", "hard-surfa
 PackChoice = Literal["pages", "none"]
 PackTurnsChoice = Literal["any", "quarter", "none"]
 EffortChoice = Literal["quick", "normal", "high"]
+StackChoice = Literal["none", "copies", "mirrored"]
 
 #: Options that None leaves to the option `preset`.
 OF_PRESETS = (
@@ -94,6 +95,7 @@ class UnwrapOptions(TypedDict, total=False):
     straight_seams: float
     effort: EffortChoice
     flat_seams: float
+    stack: StackChoice
 
 
 class PackOptions(TypedDict, total=False):
@@ -346,6 +348,9 @@ class AtlasReport:
         Of that part.
     missed_energy : float
         Its mean.
+    stacked_parts : int
+        Components that lie on others of their shape, by the option stack: no area, energy or
+        verdict counts them.
     """
 
     vertices: int
@@ -388,6 +393,7 @@ class AtlasReport:
     missed_face: int | None
     missed_triangles: int
     missed_energy: float
+    stacked_parts: int
 
 
 @dataclass(frozen=True)

@@ -123,6 +123,7 @@ def unwrap(
     straight_seams: float = 0.0,
     effort: EffortChoice = "normal",
     flat_seams: float | None = None,
+    stack: StackChoice = "none",
     # end of options
     progress: Progress = None,
 ) -> Any:
@@ -318,6 +319,10 @@ def unwrap(
         How many times as long the seams of a part may be if it then unfolds without distortion, as
         boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
         or target-p99 sets this to 0: set it after them. A number from 0 to 100.
+    stack : {"none", "copies", "mirrored"}, default "none"
+        Whether components of one shape share texels: none, copies (those that a rigid motion
+        carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
+        with pins, max-charts, seam-budget or symmetric-seams.
 
     Returns
     -------
@@ -386,6 +391,7 @@ def unwrap(
         "straight_seams": straight_seams,
         "effort": effort,
         "flat_seams": flat_seams,
+        "stack": stack,
         # end of options
     }
     if faces is None and isinstance(vertices, (str, os.PathLike)):

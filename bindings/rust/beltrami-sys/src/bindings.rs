@@ -211,6 +211,8 @@ pub const BELTRAMI_OPTION_STRAIGHT_SEAMS: _bindgen_ty_3 = 39;
 pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
 /// float: how much longer, where parts then unfold flat; 0
 pub const BELTRAMI_OPTION_FLAT_SEAMS: _bindgen_ty_3 = 41;
+/// choice: BELTRAMI_STACK_
+pub const BELTRAMI_OPTION_STACK: _bindgen_ty_3 = 42;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Half the time of NORMAL, seams some 3% longer.
@@ -267,78 +269,87 @@ pub const BELTRAMI_PRESET_ONE_CHART: _bindgen_ty_8 = 3;
 pub const BELTRAMI_PRESET_HARD_SURFACE: _bindgen_ty_8 = 4;
 /// What the seams are for: setting one writes its values to the options of the search.
 pub type _bindgen_ty_8 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_9 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_9 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_9 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_9 = 2;
-/// Whether vertices at one place are one.
+pub const BELTRAMI_STACK_FORCE_SIGNED_: _bindgen_ty_9 = -1;
+pub const BELTRAMI_STACK_NONE: _bindgen_ty_9 = 0;
+/// Those that a rigid motion carries onto one before them, lengths within a ten thousandth.
+pub const BELTRAMI_STACK_COPIES: _bindgen_ty_9 = 1;
+/// Mirror images, too.
+pub const BELTRAMI_STACK_MIRRORED: _bindgen_ty_9 = 2;
+/** Whether components of one shape share texels: each corner of such a component has the UV of the
+ corner that it lies on. Its UV vertices are its own, its faces are not judged.*/
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_10 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_10 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_10 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_10 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_10 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_10 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_10 = 5;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_10 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_10 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_10 = 2;
+/// Whether vertices at one place are one.
 pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_11 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_11 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_11 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_11 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_11 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_11 = 5;
+pub type _bindgen_ty_11 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_12 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_11 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_12 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_11 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_12 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_11 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_12 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_11 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_12 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_11 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_12 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_11 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_12 = -1;
-/// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_12 = 0;
-/// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_12 = 1;
-/// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_12 = 2;
-/// What the optimisation sees to. The certificate always judges global injectivity.
 pub type _bindgen_ty_12 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+/// Global, but for the method CM: that is left as the literature has it, the reference.
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_13 = 0;
+/// No flips, and no part of the boundary may cross another.
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_13 = 1;
+/// No flips; the boundary may overlap itself, at a slightly lower energy.
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_13 = 2;
+/// What the optimisation sees to. The certificate always judges global injectivity.
+pub type _bindgen_ty_13 = ::core::ffi::c_int;
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_14 = -1;
 /// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_13 = 0;
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_14 = 0;
 /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_13 = 1;
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_14 = 1;
 /** 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
  most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
  a parabola instead of the exponential.*/
-pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_13 = 2;
-pub type _bindgen_ty_13 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_14 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_14 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_14 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_14 = 2;
-/// How an option's value is given.
+pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_14 = 2;
 pub type _bindgen_ty_14 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_15 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_15 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_15 = 2;
-/// beltrami_pack
-pub const BELTRAMI_CALL_PACK: _bindgen_ty_15 = 4;
-/// What an option is for.
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_15 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_15 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_15 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_15 = 2;
+/// How an option's value is given.
 pub type _bindgen_ty_15 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_16 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_16 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_16 = 2;
+/// beltrami_pack
+pub const BELTRAMI_CALL_PACK: _bindgen_ty_16 = 4;
+/// What an option is for.
+pub type _bindgen_ty_16 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -458,13 +469,13 @@ extern "C" {
         value: *mut f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_16 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_16 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_16 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_16 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_16 = 3;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_17 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_17 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_17 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_17 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_17 = 3;
 /// Element types of buffers.
-pub type _bindgen_ty_16 = ::core::ffi::c_int;
+pub type _bindgen_ty_17 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -1257,11 +1268,14 @@ pub struct beltrami_atlas {
     pub missed_triangles: u64,
     /// its mean
     pub missed_energy: f64,
+    /** components that lie on others of their shape, by the option stack:
+ no area, energy or verdict counts them*/
+    pub stacked_parts: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 320usize];
+    ["Size of beltrami_atlas"][::core::mem::size_of::<beltrami_atlas>() - 328usize];
     ["Alignment of beltrami_atlas"][::core::mem::align_of::<beltrami_atlas>() - 8usize];
     [
         "Offset of field: beltrami_atlas::struct_size",
@@ -1390,6 +1404,9 @@ const _: () = {
     [
         "Offset of field: beltrami_atlas::missed_energy",
     ][::core::mem::offset_of!(beltrami_atlas, missed_energy) - 312usize];
+    [
+        "Offset of field: beltrami_atlas::stacked_parts",
+    ][::core::mem::offset_of!(beltrami_atlas, stacked_parts) - 320usize];
 };
 /// A chart: a connected piece of the surface.
 #[repr(C)]
@@ -1471,7 +1488,7 @@ pub struct beltrami_atlas_certificate {
     pub positive: u64,
     pub negative: u64,
     pub degenerate: u64,
-    /// not judged: without area on the surface, or sharing UVs
+    /// not judged: without area on the surface, sharing UVs, or stacked
     pub excepted: u64,
     /// all of whose triangles were negative, taken as their mirror images
     pub mirrored_charts: u64,
@@ -1906,14 +1923,14 @@ extern "C" {
         out: *mut beltrami_atlas_certificate,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_17 = -1;
-pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_17 = 0;
+pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_18 = -1;
+pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_18 = 0;
 /// no further than the margin asked for from a covered one
-pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_17 = 1;
+pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_18 = 1;
 /// a face has a point in common with it
-pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_17 = 2;
+pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_18 = 2;
 /// What a byte of a mask says of its texel.
-pub type _bindgen_ty_17 = ::core::ffi::c_int;
+pub type _bindgen_ty_18 = ::core::ffi::c_int;
 extern "C" {
     /** Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
  down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,

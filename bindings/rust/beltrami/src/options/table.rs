@@ -186,6 +186,20 @@ choice! {
     }
 }
 
+choice! {
+    /// Whether components of one shape share texels: none, copies (those that a rigid motion
+    /// carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
+    /// with pins, max-charts, seam-budget or symmetric-seams. See [`UnwrapOptions::stack`].
+    Stack {
+        /// None.
+        None = "none",
+        /// Those that a rigid motion carries onto one before them, lengths within a ten thousandth.
+        Copies = "copies",
+        /// Mirror images, too.
+        Mirrored = "mirrored",
+    }
+}
+
 options! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
     /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
@@ -584,4 +598,13 @@ options! {
     flat_seams(f64) of [UnwrapOptions] = 41 "flat-seams"
         "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them."
         Float(&[]), 0..=100, default 1.5, calls 2;
+
+    /// Whether components of one shape share texels: none, copies (those that a rigid motion
+    /// carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
+    /// with pins, max-charts, seam-budget or symmetric-seams.
+    ///
+    /// Default: [`None`](Stack::None).
+    stack(Stack) of [UnwrapOptions] = 42 "stack"
+        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams."
+        Choice(Stack::NAMES), 0..=2, default 0, calls 2;
 }
