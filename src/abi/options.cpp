@@ -235,6 +235,14 @@ void require_effect_on_atlas(const Options& options, bool pins) {
       refuse_if_set(options, key, with_cut, "or take cut=auto");
     }
   }
+  const std::pair<bool, const char*> of_the_whole[] = {
+      {pins, "pins"},
+      {options.target.max_charts > 0, "a number of charts"},
+      {options.target.seam_budget > 0, "a budget of seams"},
+      {options.weights.symmetry > 0, "symmetric seams"}};
+  for (const auto& [is_asked, what] : of_the_whole) {
+    if (is_asked) refuse_if_set(options, BELTRAMI_OPTION_STACK, what, "or do without them");
+  }
   if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
     if (options.texels_per_unit > 0) {
       refuse_if_set(options, BELTRAMI_OPTION_PACK_SPLITS,
