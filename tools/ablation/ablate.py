@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 CASES = Path(__file__).parent / "cases.json"
 WORK = ROOT / "build" / "ablation"
 TREE = WORK / "tree"
-COPIED = ("src", "include", "program", "cmake", "abi", "CMakeLists.txt")
+COPIED = ("src", "include", "program", "cmake", "abi", "benchmarks", "CMakeLists.txt")
 # A case stays if it is worth one of these: of the CPU and of the energy in the mean, of either on
 # one of the hardest two meshes, or a map that is injective.
 WORTH_CPU, WORTH_ENERGY, WORTH_HARDEST = 0.01, 0.0005, 0.1
