@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/completions.h"
 #include "commands/options.h"
 #include "commands/spelling.h"
 #include "files/inside_folder.h"
@@ -141,7 +142,7 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
   command->add_option("--picture", arguments.picture, "Write a picture of the pages")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
-  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kPack) + "\n\n" + kPages + "\n\n" + kExitCodes);
   return command;
 }
@@ -173,7 +174,7 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   add_reach(*command, arguments.reach);
-  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kTransfer) +
                   "\n\nExit codes: 0 done, 2 unusable arguments or files, 4 out of memory or an\n"
                   "internal failure, 130 cancelled.");
@@ -238,7 +239,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
-  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kPages + "\n\n" + kKept +
                   "\n\n" + kExitCodes);
   return command;
@@ -257,7 +258,7 @@ CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& optio
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
-  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string("IN is one disk; unwrap takes any mesh.\n\n") + kKept + "\n\n" +
                   kExitCodes);
   return command;
@@ -296,10 +297,22 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
-  command->add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(
       std::string(kExitCodes) +
       "\nUVs that are not as --margin, --within-page and --within-tiles ask end with 3.");
+  return command;
+}
+
+CLI::App* add_completions(CLI::App& app, std::string& shell) {
+  CLI::App* command = app.add_subcommand("completions", "Print what a shell completes commands by");
+  command->add_option("SHELL", shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  command->footer(
+      "  beltrami completions bash > ~/.local/share/bash-completion/completions/beltrami\n"
+      "  beltrami completions zsh > ~/.zfunc/_beltrami      where fpath names that folder\n"
+      "  beltrami completions fish > ~/.config/fish/completions/beltrami.fish");
   return command;
 }
 
@@ -315,6 +328,33 @@ std::vector<std::string> option_names(const CLI::App& command) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   return names;
+}
+
+/// What a shell completes of a command.
+CompletedCommand completed(const CLI::App& command) {
+  CompletedCommand all{command.get_name(), command.get_description(), {}};
+  for (const CLI::Option* option : command.get_options()) {
+    CompletedOption own;
+    for (const std::string& name : option->get_snames()) own.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) own.names.push_back("--" + name);
+    if (own.names.empty()) continue;  // a file, in its place
+    own.takes_value = option->get_items_expected_max() > 0;
+    const std::string type = option->get_type_name();
+    if (own.takes_value && type.find('|') != std::string::npos) {
+      std::istringstream choices(type);
+      for (std::string choice; std::getline(choices, choice, '|');) own.choices.push_back(choice);
+    }
+    const std::string text = option->get_description();
+    own.summary = text.substr(0, text.find_first_of(".,:(\n"));
+    all.options.push_back(std::move(own));
+  }
+  return all;
+}
+
+std::vector<CompletedCommand> completed_commands(const CLI::App& app) {
+  std::vector<CompletedCommand> all;
+  for (const CLI::App* command : app.get_subcommands({})) all.push_back(completed(*command));
+  return all;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -387,6 +427,8 @@ int run(int argc, char** argv) {
   add_check(app, check);
   const CLI::App* pack_app = add_pack(app, pack, of_pack);
   const CLI::App* transfer_app = add_transfer(app, transfer);
+  std::string shell;
+  const CLI::App* completions_app = add_completions(app, shell);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -397,6 +439,9 @@ int run(int argc, char** argv) {
     const std::string unknown = unknown_word(app, {argv + std::min(argc, 1), argv + argc});
     if (!unknown.empty()) return tell(kExitUnusable, {"beltrami: ", unknown});
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
+  }
+  if (completions_app->parsed()) {
+    return print(completions(shell, completed_commands(app)), "the completions", 0);
   }
   if (pack_app->parsed()) return pack_command(pack, of_pack);
   if (transfer_app->parsed()) return transfer_command(transfer);

@@ -39,8 +39,8 @@ constexpr double kSearchedAll = 0.8;  // then creases are
 constexpr double kFlat = 2.005;
 /// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
 /// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, flat ones
-/// that are longer than that have to leave no more charts, or to save one from being split: a terrain
-/// of voxels would fall into thousands.
+/// that are longer than that have to leave no more charts, or to save one from being split: a
+/// terrain of voxels would fall into thousands.
 constexpr double kUnfolded = 3;
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
 
@@ -329,8 +329,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);
-  std::optional<Mapped> flat = map_unfolded(task, piece, missed ? kAnyLength : most,
-                                            work.part(kSearchedAll, 1), stages);
+  std::optional<Mapped> flat =
+      map_unfolded(task, piece, missed ? kAnyLength : most, work.part(kSearchedAll, 1), stages);
   if (!flat || misses(*flat, target)) return searched;
   const bool is_simpler =
       missed && (flat->maps.size() <= searched.maps.size() || has_hopeless(searched, work.aside()));

@@ -192,7 +192,8 @@ TEST(Stack, AFaceLiesOnTheOneThatItIsACopyOf) {
     std::vector<std::pair<double, double>> of;  // in the plane, and on the surface
     for (int k = 0; k < 3; ++k) {
       const Index a = atlas.faces[f][k], b = atlas.faces[f][(k + 1) % 3];
-      const Vec3 edge = mesh.positions[mesh.faces[f][k]] - mesh.positions[mesh.faces[f][(k + 1) % 3]];
+      const Vec3 edge =
+          mesh.positions[mesh.faces[f][k]] - mesh.positions[mesh.faces[f][(k + 1) % 3]];
       of.emplace_back((atlas.uvs[a] - atlas.uvs[b]).norm(), edge.norm());
     }
     std::sort(of.begin(), of.end());

@@ -1,6 +1,8 @@
 // What is misspelt, or could not be meant: said, and not taken in silence.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -49,7 +51,7 @@ TEST(Arguments, NameTheNearestSpelling) {
             "beltrami: there is no option --no-such-thing of check: see beltrami check --help\n");
   EXPECT_EQ(refusal({"a.obj", "b.obj"}),
             "beltrami: there is no command 'a.obj': the commands are unwrap, flatten, check, pack, "
-            "transfer\n");
+            "transfer, completions\n");
   EXPECT_EQ(refusal({"--vresion"}),
             "beltrami: there is no option --vresion before a command: did you mean --version?\n");
 }
@@ -129,6 +131,49 @@ TEST(Arguments, NamesFromFilesReachNoTerminalRaw) {
   EXPECT_EQ(missing.exit_code, kExitUnusable);
   EXPECT_EQ(missing.err.find('\x1b'), std::string::npos);
   EXPECT_EQ(missing.err_lines(), 1);
+}
+
+/// What a shell says to a script, of which "$1" is the file of completions.
+std::string answer_of(const std::string& shell, const std::string& script,
+                      const std::string& completions) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("completions", completions);
+  const std::string command = shell + " -c '" + script + "' - " + file;
+  std::string text;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 256> part;
+  while (pipe != nullptr && std::fgets(part.data(), part.size(), pipe) != nullptr) {
+    text += part.data();
+  }
+  EXPECT_EQ(pipe != nullptr ? pclose(pipe) : -1, 0) << shell;
+  return text;
+}
+
+TEST(Completions, AreOfEveryCommandAndOption) {
+  for (const std::string& shell : {std::string("bash"), std::string("zsh"), std::string("fish")}) {
+    const Outcome outcome = run({"completions", shell});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    for (const char* word : {"unwrap", "flatten", "check", "pack", "transfer", "target-energy",
+                             "within-tiles", "hard-surface", "quiet"}) {
+      EXPECT_NE(outcome.out.find(word), std::string::npos) << shell << ": " << word;
+    }
+  }
+  EXPECT_EQ(run({"completions", "tcsh"}).exit_code, kExitUnusable);
+}
+
+TEST(Completions, OfBashAreChoicesOfTheOptionBeforeAndNamesOfOptions) {
+  const std::string bash = run({"completions", "bash"}).out;
+  const auto completed = [&](const std::string& words, int at) {
+    return answer_of("bash",
+                     ". \"$1\"; COMP_WORDS=(beltrami " + words + "); COMP_CWORD=" +
+                         std::to_string(at) + "; _beltrami; echo \"${COMPREPLY[*]}\"",
+                     bash);
+  };
+  EXPECT_EQ(completed("un", 1), "unwrap\n");
+  EXPECT_EQ(completed("unwrap --effort \"\"", 3), "quick normal high\n");
+  EXPECT_EQ(completed("unwrap --flat-", 2), "--flat-seams\n");
+  EXPECT_EQ(completed("unwrap out.o", 2), "\n");  // a file, which bash itself completes
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// What shells complete: the commands, their options, and the choices of these.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace beltrami::cli {
+
+/// An option of a command, as it is typed.
+struct CompletedOption {
+  std::vector<std::string> names;    ///< with their dashes: "-q", "--quiet"
+  std::vector<std::string> choices;  ///< what may follow, or none
+  bool takes_value = false;          ///< a file, unless there are choices
+  std::string summary;               ///< one line
+};
+
+struct CompletedCommand {
+  std::string name, summary;
+  std::vector<CompletedOption> options;
+};
+
+/// The script for "bash", "zsh" or "fish". Precondition: one of them.
+std::string completions(const std::string& shell, const std::vector<CompletedCommand>& commands);
+
+}  // namespace beltrami::cli
