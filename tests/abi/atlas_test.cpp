@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abi/host.h"
@@ -313,6 +314,51 @@ TEST(AbiAtlas, AnOptionWithoutEffectIsNamedWithItsValue) {
   EXPECT_NE(message(context).find("weld-distance=0.5 has no effect with weld=off"),
             std::string::npos)
       << message(context);
+}
+
+TEST(AbiAtlas, StacksGoWithNothingThatIsAskedOfTheWhole) {
+  const QuadCube cube;
+  for (const std::int32_t key :
+       {BELTRAMI_OPTION_MAX_CHARTS, BELTRAMI_OPTION_SEAM_BUDGET, BELTRAMI_OPTION_SYMMETRIC_SEAMS}) {
+    const Context context = create();
+    set_option(context, BELTRAMI_OPTION_STACK, BELTRAMI_STACK_MIRRORED);
+    if (key == BELTRAMI_OPTION_MAX_CHARTS) {
+      set_option(context, key, 1);
+    } else {
+      set_option(context, key, 1.0);
+    }
+    EXPECT_EQ(unwrap(context, cube.view()), BELTRAMI_E_INVALID_ARGUMENT) << key;
+    EXPECT_NE(message(context).find("stack=mirrored has no effect with"), std::string::npos)
+        << message(context);
+  }
+}
+
+TEST(AbiAtlas, CubesThatAreStackedHaveTheSameUvs) {
+  const QuadCube one;
+  TriangleList both = one.corners;
+  for (const Vec3& p : one.corners.positions) both.positions.emplace_back(p.x() + 3, p.z(), -p.y());
+  std::vector<std::uint32_t> indices = one.indices;
+  for (const std::uint32_t v : one.indices) indices.push_back(v + 8);
+  auto surface = one.view();
+  surface.vertex_count = 16;
+  surface.face_count = 12;
+  surface.corner_count = 48;
+  surface.positions = {both.positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {indices.data(), 0, BELTRAMI_U32, 0};
+  const std::vector<std::uint64_t> sizes(12, 4);
+  surface.face_sizes = {sizes.data(), 0, BELTRAMI_U64, 0};
+  const Context context = create();
+  set_option(context, BELTRAMI_OPTION_STACK, BELTRAMI_STACK_COPIES);
+  ASSERT_EQ(unwrap(context, surface), BELTRAMI_OK) << message(context);
+  EXPECT_EQ(atlas_of(context).stacked_parts, 1u);
+  EXPECT_EQ(atlas_of(context).components, 2u);
+  const std::vector<double> uvs = corner_uvs(context);
+  const auto places = [&](std::size_t begin, std::size_t end) {
+    std::multiset<std::pair<double, double>> all;
+    for (std::size_t c = begin; c < end; ++c) all.insert({uvs[2 * c], uvs[2 * c + 1]});
+    return all;
+  };
+  EXPECT_EQ(places(0, 24), places(24, 48));
 }
 
 TEST(AbiAtlas, VerticesThatNoFaceNamesMayBeAnything) {
