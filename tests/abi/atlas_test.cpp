@@ -325,7 +325,7 @@ TEST(AbiAtlas, StacksGoWithNothingThatIsAskedOfTheWhole) {
     if (key == BELTRAMI_OPTION_MAX_CHARTS) {
       set_option(context, key, 1);
     } else {
-      set_option(context, key, 1.0);
+      beltrami_set_float(context.get(), key, 1);
     }
     EXPECT_EQ(unwrap(context, cube.view()), BELTRAMI_E_INVALID_ARGUMENT) << key;
     EXPECT_NE(message(context).find("stack=mirrored has no effect with"), std::string::npos)
