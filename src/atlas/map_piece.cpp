@@ -28,11 +28,13 @@ namespace beltrami {
 namespace {
 
 // Where these end in the progress.
-constexpr double kMapped = 0.95;      // of a piece; what is left is to rescue charts
-constexpr double kCut = 0.15;         // of opening and mapping
-constexpr double kFirstTry = 0.6;     // at a target that may be missed
-constexpr double kSearched = 0.95;    // then a short cut is tried
-constexpr double kSearchedAll = 0.8;  // then creases are
+constexpr double kMapped = 0.95;       // of a piece; what is left is to rescue charts
+constexpr double kCut = 0.15;          // of opening along a short cut and mapping
+constexpr double kFirstTry = 0.9;      // at a target that may be missed: most need no other
+constexpr double kSearched = 0.98;     // then a short cut is tried
+constexpr double kSearchedAll = 0.95;  // then creases are
+/// A search for seams takes about as long as maps of so many faces, whatever it is made for.
+constexpr double kSearchInFaces = 300'000;
 
 /// The mean energy up to which a piece counts as flat. Stretches s are off by 3.5% then, in the
 /// root of the mean square: an energy is about 2 + 2 (s1 - 1)^2 + 2 (s2 - 1)^2.
@@ -96,18 +98,18 @@ void measure(const Work& work, Mapped& mapped) {
       [](const MappedChart& map) { return map.error || map.outcome > Outcome::kNotConverged; }));
 }
 
-/// One try: charts as `open(work)` makes them, and their maps.
+/// One try: charts as `open(work)` makes them in a share `cut` of the time, and their maps.
 template <class Open>
-Mapped open_and_map_once(const Task& task, const Open& open, bool is_timed, const Work& work,
-                         std::vector<StageStatistics>& stages) {
+Mapped open_and_map_once(const Task& task, const Open& open, double cut, bool is_timed,
+                         const Work& work, std::vector<StageStatistics>& stages) {
   Mapped mapped;
-  run_stage("cut", work.part(0, kCut), stages,
+  run_stage("cut", work.part(0, cut), stages,
             [&](StageStatistics&, const Work& inner) { mapped.opened = open(inner); });
   const AtlasInput& input = task.input;
   std::vector<AtlasChart>& charts = mapped.opened.charts;
   mapped.pins = assign_pins(input.pins, input.faces, task.admitted, charts, task.exponent);
   require_no_conflict(charts, mapped.pins, input.pins);
-  run_stage("flatten", work.part(kCut, 1), stages, [&](StageStatistics&, const Work& inner) {
+  run_stage("flatten", work.part(cut, 1), stages, [&](StageStatistics&, const Work& inner) {
     mapped.maps =
         map_charts(charts, mapped.pins, task.options.chart, is_timed ? inner : inner.untimed());
     require_met(mapped.maps, input.pins);
@@ -160,38 +162,6 @@ std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& m
   return higher;
 }
 
-/// The energies at which tries aimed, and those of their maps: the last that missed the target, and
-/// the last that did not.
-struct Tries {
-  std::optional<Vec2> missed, reached;
-
-  void add(double aimed, double energy, bool misses) {
-    (misses ? missed : reached) = Vec2(aimed, energy);
-  }
-
-  /// The target between them, where maps are to have nearly the energy that is allowed.
-  std::optional<SeamTarget> between(const SeamTarget& target) const {
-    const double asked = target.energy - 2;
-    if (reached->y() - 2 > kUnused * asked) return std::nullopt;
-    const Vec2 way = *missed - *reached;
-    const double share = (2 + kAim * asked - reached->y()) / way.y();
-    SeamTarget aim = target;
-    aim.energy = reached->x() + share * way.x();
-    return way.x() > 0 && way.y() > 0 ? std::optional(aim) : std::nullopt;
-  }
-};
-
-/// What to aim at after maps that were made for `aimed`, if it is worth a further try.
-std::optional<SeamTarget> aimed_again(const SeamTarget& target, const SeamTarget& aimed,
-                                      const Mapped& mapped, const Tries& tries, bool uses_rest) {
-  const bool missed = misses(mapped, target);
-  if (tries.missed && tries.reached) {
-    return uses_rest && target.p99 == 0 ? tries.between(target) : std::nullopt;
-  }
-  if (missed) return aimed_lower(target, aimed, mapped);
-  return uses_rest ? aimed_higher(target, mapped) : std::nullopt;
-}
-
 /// `vertex`: as seam_length has it.
 bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
                const std::vector<Index>& vertex) {
@@ -210,8 +180,9 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
   std::optional<SeamTarget> aim = target;
   BegunSearch begun;
   std::optional<Mapped> best;
-  Tries tries;
+  bool is_reached = false;
   const int most = effort.tries;
+  const double cut = kSearchInFaces / (kSearchInFaces + piece.real_faces);
   const bool uses_rest = piece.real_faces >= effort.rest_faces;
   for (int i = 0; i < most && aim && !work.out_of_time(); ++i) {
     const double from = i == 0 ? 0 : kFirstTry + (kSearched - kFirstTry) * (i - 1) / (most - 1);
@@ -219,15 +190,20 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
     const auto open = [&](const Work& inner) {
       return open_searched(piece, *aim, effort, task.options.weights, begun, inner);
     };
-    Mapped mapped = open_and_map_once(task, open, false, work.part(from, to), stages);
+    Mapped mapped = open_and_map_once(task, open, cut, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);
-    tries.add(aim->energy, mapped.energy.symmetric_dirichlet, misses(mapped, target));
-    aim = aimed_again(target, *aim, mapped, tries, uses_rest);
+    if (misses(mapped, target)) {
+      aim = is_reached ? std::nullopt : aimed_lower(target, *aim, mapped);
+    } else {
+      // After a try that missed, or a further one, what is left is next to nothing.
+      aim = i == 0 && uses_rest ? aimed_higher(target, mapped) : std::nullopt;
+      is_reached = true;
+    }
     if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
   }
   if (best && !misses(*best, target)) return *std::move(best);
   const auto open = [&](const Work& inner) { return open_short(piece, inner); };
-  Mapped shorter = open_and_map_once(task, open, false, work.part(kSearched, 1), stages);
+  Mapped shorter = open_and_map_once(task, open, kCut, false, work.part(kSearched, 1), stages);
   return best && !is_better(shorter, *best, target, vertex) ? *std::move(best) : std::move(shorter);
 }
 
@@ -307,14 +283,14 @@ std::optional<Mapped> map_unfolded(const Task& task, const SurfacePiece& piece, 
     parted = parted_along(piece, seams, task.options.fill_limit, inner.part(0, 0.5));
     return open_parted(piece, seams, parted, inner.part(0.5, 1));
   };
-  Mapped apart = open_and_map_once(task, open, false, work.part(0, 0.5), stages);
+  Mapped apart = open_and_map_once(task, open, kCut, false, work.part(0, 0.5), stages);
   if (!is_flat(apart)) return std::nullopt;
   EdgeMarks all(creases.size());
   std::copy_n(apart.opened.seams.begin(), all.size(), all.begin());
   const EdgeMarks kept =
       unfolded(real.surface, std::move(all), filled_rims(piece, parted), corners_of(piece, apart));
   std::copy(kept.begin(), kept.end(), seams.begin());
-  Mapped joined = open_and_map_once(task, open, false, work.part(0.5, 1), stages);
+  Mapped joined = open_and_map_once(task, open, kCut, false, work.part(0.5, 1), stages);
   return is_flat(joined) ? std::move(joined) : std::move(apart);
 }
 
@@ -379,7 +355,7 @@ Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,
     mapped = map_for_target(task, piece, *task.options.target, own, stages);
   } else {
     const auto open = [&](const Work& inner) { return open_short(piece, inner); };
-    mapped = open_and_map_once(task, open, true, own, stages);
+    mapped = open_and_map_once(task, open, kCut, true, own, stages);
   }
   rescue(task, work.part(kMapped, 1), stages, mapped);
   return mapped;
@@ -395,7 +371,7 @@ Mapped map_likewise(const Task& task, const SurfacePiece& piece, const SurfacePi
         parted_along(piece, seams, task.options.fill_limit, inner.part(0, 0.5));
     return open_parted(piece, seams, parted, inner.part(0.5, 1));
   };
-  Mapped mapped = open_and_map_once(task, open, false, work.part(0, kMapped), stages);
+  Mapped mapped = open_and_map_once(task, open, kCut, false, work.part(0, kMapped), stages);
   if (misses(mapped, target) && !misses(known, target)) {
     return map_piece(task, piece, work, stages);
   }

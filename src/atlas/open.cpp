@@ -27,7 +27,7 @@ namespace beltrami {
 namespace {
 
 // Where the stages end in the progress.
-constexpr double kParted = 0.7, kSearched = 0.6;
+constexpr double kParted = 0.7, kSearched = 0.95;
 
 /// A chart inherits a level of so many times the faces of its coarse mesh: how the surface spread
 /// its faces over charts is not how their own meshes will.

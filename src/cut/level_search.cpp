@@ -25,6 +25,8 @@ namespace {
 /// First paths go astray by what they cost: times exp(a sin), waves of so many roots of the area in
 /// three directions.
 constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
+/// Of a search, about: for its progress.
+constexpr double kUsualSteps = 8;
 /// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Descents that end sooner may stop on a plateau.
@@ -113,8 +115,20 @@ LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const St
       work_(work),
       path_cost_(path_costs(level)),
       search_(level.surface, level.real_faces, path_cost_, std::move(seams.seams),
-              target.seam_budget * kSpent, start.least_cost, work, std::move(seams.anchors),
-              mirror) {}
+              target.seam_budget * kSpent, start.least_cost, work.part(0, 0),
+              std::move(seams.anchors), mirror) {}
+
+/// How many steps there will be is not known: the progress nears the end of its share.
+void LevelSearch::report_step() {
+  ++steps_;
+  work_.report(steps_ / (steps_ + kUsualSteps));
+}
+
+/// For what is a part of a step, and would take the progress to the end of the share.
+Work LevelSearch::here() const {
+  const double done = steps_ / (steps_ + kUsualSteps);
+  return work_.part(done, done);
+}
 
 /// Of the seams, and of their turns where these count.
 double LevelSearch::cost_with_turns() const {
@@ -127,6 +141,7 @@ double LevelSearch::cost_with_turns() const {
 /// shorter with what has to be added to them, exactly so much or what is worth most.
 void LevelSearch::shorten_seams(double model_energy, bool exactly) {
   // Each side on its own they would not stay alike.
+  report_step();
   if (mirror_ != nullptr || work_.out_of_time()) return;
   const EdgeMarks before = search_.seams();
   const std::vector<bool> anchors = search_.anchors();
@@ -173,7 +188,7 @@ double LevelSearch::tolerance() const {
 
 LocalMaps LevelSearch::map(const LocalMaps* before) const {
   return map_locally(level_.surface, level_.real_faces, search_.seams(), tolerance(), before,
-                     work_);
+                     here());
 }
 
 /// Parts the charts that lie on themselves on more of their area. Whether there was one.
@@ -209,7 +224,7 @@ void LevelSearch::mirror_seams() {
   std::array<double, 2> cost = {};
   for (const int i : {0, 1}) {
     mirrored[i] = mirrored_seams(level_.surface, *mirror_, {search_.seams(), search_.anchors()},
-                                 2 * i - 1, path_cost_, level_.locked, work_);
+                                 2 * i - 1, path_cost_, level_.locked, here());
     for (Index h = 0; h < size_of(path_cost_); ++h) {
       if (mirrored[i].seams[h] && level_.surface.edge(h) == h) cost[i] += path_cost_[h];
     }
@@ -228,6 +243,7 @@ double LevelSearch::missed_by(const LocalMaps& maps) const {
 /// Maps along the seams that there are, and what they are worth, overlaps parted where they are
 /// near what is asked for. Whether they are.
 bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
+  report_step();
   attempt = Attempt();
   if (work_.out_of_time()) return false;  // maps that are cut short say nothing
   maps = map(maps.uvs.empty() ? nullptr : &maps);
@@ -247,7 +263,7 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
       return true;
     }
     apart = with_contact(maps, level_.real_faces, tolerance(),
-                         apart_.uvs.empty() ? nullptr : &apart_, work_);
+                         apart_.uvs.empty() ? nullptr : &apart_, here());
     apart_ = apart;
     contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
@@ -345,7 +361,6 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
   double excess = kFar;
   double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
   for (int round = 0; round < kMostRounds; ++round) {
-    work_.report(static_cast<double>(round) / kMostRounds);
     const bool is_first = round == 0 && !is_sketched;
     if (search_.energy() < model_energy) search_.shrink(model_energy);
     const bool is_correction = round > 0;
@@ -437,9 +452,8 @@ void LevelSearch::improve(int rounds, Attempt& best) {
 void LevelSearch::join_charts(Attempt& best) {
   std::vector<Index> tried;
   for (int i = 0; i < effort_.joins && best.excess <= 1 && !work_.out_of_time();) {
-    work_.report(static_cast<double>(i) / effort_.joins);
     search_.take(best.seams.seams, best.seams.anchors);
-    const CutSurface cut = cut_into_charts(level_.surface, search_.seams(), work_);
+    const CutSurface cut = cut_into_charts(level_.surface, search_.seams(), here());
     const double energy = aim(best.excess);
     bool gained = false;
     for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, energy)) {

@@ -65,6 +65,8 @@ class LevelSearch {
   void improve(int rounds, Attempt& best);
 
  private:
+  void report_step();
+  Work here() const;
   bool extend_astray(double model_energy, int number, bool reopens);
   void shorten_seams(double model_energy, bool exactly = false);
   double cost_with_turns() const;
@@ -87,6 +89,7 @@ class LevelSearch {
   const SeamTarget& target_;
   const SearchEffort& effort_;
   const Work work_;
+  int steps_ = 0;                  ///< that were reported
   std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
   SeamSearch search_;
   LocalMaps apart_;     ///< judged last, with contact

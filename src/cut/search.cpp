@@ -34,6 +34,10 @@ constexpr Index kLeastRounds = 2, kMostRounds = 40;
 constexpr double kMirrorTolerance = 0.01;
 /// Straightening that gains more than the rest moves seams from where they are needed.
 constexpr double kStraight = 0.95;
+// Shares of the progress: where a coarser level is made; of the search on it where sketches begin
+// and end; where that search ends if what it finds is improved; and where all of it ends.
+constexpr double kCoarser = 0.1, kSketching = 0.05, kSketched = 0.4, kSearched = 0.35,
+                 kFound = 0.94;
 
 /// A cut graph that is as short as is easily had.
 AnchoredSeams opened(const SearchLevel& level, const Work& work) {
@@ -77,19 +81,20 @@ Attempt search_level(const SearchLevel& level, const SeamTarget& target, const S
     starts.push_back({i % 2 == 0 ? kFewPaths : kManyPaths, i / 2});
   }
   const Surface& surface = level.surface;
-  const Topology topology = topology_of(surface, work);
+  const Work begin = work.part(0, kSketching);
+  const Topology topology = topology_of(surface, begin);
   const bool is_rough =
       coarse_target(surface, topology, effort.rough_faces) == surface.face_count();
   SearchLevel rough;
   if (!is_rough) {
     rough = coarser_level(surface, level.real_faces, topology, {}, effort.rough_faces, weights,
-                          level.hints, work);
+                          level.hints, begin);
     if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
   }
   const SearchLevel& sketched = is_rough ? level : rough;
-  const AnchoredSeams open = opened(sketched, work);
+  const AnchoredSeams open = opened(sketched, begin);
   const std::vector<Attempt> sketches =
-      attempts(work.part(0, 0.3), starts, [&](const Start& start, const Work& part) {
+      attempts(work.part(kSketching, kSketched), starts, [&](const Start& start, const Work& part) {
         if (part.out_of_time()) return Attempt();
         return LevelSearch(sketched, open, start, target, effort, part).sketch();
       });
@@ -103,14 +108,14 @@ Attempt search_level(const SearchLevel& level, const SeamTarget& target, const S
     if (part.out_of_time() || sketches[i].seams.seams.empty()) return Attempt();
     AnchoredSeams carried = is_rough ? sketches[i].seams
                                      : carry_to_finer(rough, surface, level.cost, level.locked,
-                                                      sketches[i].seams, part);
+                                                      sketches[i].seams, part.part(0, 0));
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
     const bool is_open = is_rough || level.locked.empty() ||
-                         cut_into_charts(surface, carried.seams, part).non_disks.empty();
-    if (!is_open) carried = opened(level, part);
+                         cut_into_charts(surface, carried.seams, part.part(0, 0)).non_disks.empty();
+    if (!is_open) carried = opened(level, part.part(0, 0));
     return LevelSearch(level, std::move(carried), starts[i], target, effort, part).run(is_open);
   };
-  return best_of(attempts(work.part(0.3, 1), order, finish));
+  return best_of(attempts(work.part(kSketched, 1), order, finish));
 }
 
 double sum_of(const Surface& surface, const EdgeMarks& marks, const std::vector<double>& cost) {
@@ -170,17 +175,18 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
 /// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
 Attempt search_anew(const SearchLevel& level, const SeamTarget& target, const SearchEffort& effort,
                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
-  AnchoredSeams open = opened(level, work);
+  AnchoredSeams open = opened(level, work.part(0, 0));
   if (!any_of(open.seams)) {
     Attempt whole = LevelSearch(level, open, Start(), target, effort, work.aside()).judged();
     if (whole.excess <= 1) return whole;
   }
-  Attempt found = search_level(level, target, effort, weights, mirror, work.part(0, 0.8));
+  const double searched = effort.improves ? kSearched : 1;
+  Attempt found = search_level(level, target, effort, weights, mirror, work.part(0, searched));
   if (found.seams.seams.empty()) found.seams = std::move(open);
   if (effort.improves) {
     const Index rounds =
         std::clamp(effort.varied_faces / level.surface.face_count(), kLeastRounds, kMostRounds);
-    LevelSearch(level, found.seams, Start(), target, effort, work.part(0.8, 1))
+    LevelSearch(level, found.seams, Start(), target, effort, work.part(searched, 1))
         .improve(effort.varied_faces > 0 ? rounds : 0, found);
   }
   return found;
@@ -217,28 +223,28 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   search = {begun.level, {}, begun.mirror};
   Attempt found;
   if (begun.level && !begun.seams.seams.empty()) {
-    LevelSearch again(*begun.level, begun.seams, Start(), target, effort, work.part(0.3, 0.9),
-                      begun.mirror.get());
+    LevelSearch again(*begun.level, begun.seams, Start(), target, effort,
+                      work.part(kCoarser, kFound), begun.mirror.get());
     found = effort.improves ? again.run_calibrated(0) : again.run(true);
     if (found.seams.seams.empty()) found.seams = begun.seams;
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
     if (!begun.level || weights.symmetry > 0) {
       SearchLevel level = coarser_level(surface, real_faces, topology, locked, effort.coarse_faces,
-                                        weights, hints, work.part(0, 0.3));
+                                        weights, hints, work.part(0, kCoarser));
       cost = level.cost;
       if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
     }
     found = search_anew(*search.level, target, effort, weights, search.mirror.get(),
-                        work.part(0.3, 0.85));
+                        work.part(kCoarser, kFound));
     if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, effort, cost,
-                                         1 + weights.symmetry, work.part(0.85, 0.88), found)) {
+                                         1 + weights.symmetry, work.part(kFound, 0.96), found)) {
       search.mirror.reset();
       SearchLevel level = *search.level;
       level.cost = std::move(cost);
       search.level = std::make_shared<const SearchLevel>(std::move(level));
-      found = search_anew(*search.level, target, effort, weights, nullptr, work.part(0.88, 0.9));
+      found = search_anew(*search.level, target, effort, weights, nullptr, work.part(0.96, 0.97));
     }
   }
   searched.energy = found.energy;
@@ -253,7 +259,7 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
   std::vector<double> cost = finer_costs(coarse, surface, real_faces, weights, hints, work);
   if (search.mirror) weigh_mirror(surface, *search.mirror, kAlongMirror, cost, work);
   AnchoredSeams carried =
-      carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.9, 1));
+      carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.97, 1));
   if (surface.face_count() <= effort.finest_faces && !work.out_of_time() && any_of(carried.seams) &&
       !search.mirror && cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
     auto whole = std::make_shared<const SearchLevel>(coarser_level(
