@@ -287,6 +287,12 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
       ->check(CLI::Range(0.0, 1024.0))
       ->group("Pages")
       ->type_name("X");
+  command
+      ->add_option("--labels", arguments.labels,
+                   "Say the density of each of the materials, groups or objects of an OBJ file,\n"
+                   "or of each value of a property of the faces of a PLY file")
+      ->group("Pages")
+      ->type_name("NAME");
   command->add_flag("--within-page", arguments.within_page, "Fail where UVs leave [0,1]^2")
       ->group("Pages");
   command

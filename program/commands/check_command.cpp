@@ -206,7 +206,8 @@ class Check {
     throw_if_interrupted();
     bar_.show(0.7, "pages");
     StageClock clock(report_, "pages");
-    report_.layout = page_layout(file_, triangle_corners(file_), arguments_.resolution);
+    report_.layout =
+        page_layout(file_, triangle_corners(file_), arguments_.resolution, arguments_.labels);
     const PageLayout& found = *report_.layout;
     if (arguments_.within_page && found.outside > 0) {
       report_.unmet.push_back("--within-page: " + std::to_string(found.outside) +

@@ -67,6 +67,7 @@ struct CheckArguments {
   bool float32 = false;             ///< judge the UVs rounded to single precision
   bool weld = false;                ///< vertices at one place and with one UV count as one
   bool mirrored = false;            ///< charts that are mirrored as a whole are no fault
+  std::string labels;               ///< what densities are told by, or ""
   std::uint64_t resolution = 1024;  ///< texels to the side of a page
   double margin = 0;                ///< texels that there have to be
   bool within_page = false;         ///< all UVs have to be in [0,1]^2

@@ -7,10 +7,13 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "commands/command.h"
 #include "commands/pages.h"
 #include "commands/uv_mesh.h"
+#include "files/given_cuts.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {
@@ -227,6 +230,66 @@ void place(const std::vector<Chart>& charts, PageLayout& layout) {
   layout.tiles.erase(std::unique(layout.tiles.begin(), layout.tiles.end()), layout.tiles.end());
 }
 
+/// The sums of triangles by what they belong to: one number of `count` for each.
+class Densities {
+ public:
+  explicit Densities(std::size_t count) : sums_(count) {}
+
+  void add(std::size_t number, std::uint64_t face, double uv_area, double area) {
+    Sum& sum = sums_[number];
+    sum.first_face = std::min(sum.first_face, face);
+    sum.uv_area += uv_area;
+    sum.area += area;
+  }
+
+  /// Those that have a face, by their first ones. `name(number)`.
+  template <class Name>
+  std::vector<Density> taken(std::uint64_t resolution, const Name& name) const {
+    std::vector<Density> all;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const Sum& sum = sums_[i];
+      if (sum.first_face == kNoTile) continue;
+      const double scale = sum.area > 0 ? std::sqrt(sum.uv_area / sum.area) : 0;
+      all.push_back({name(i), sum.first_face, sum.area, scale * static_cast<double>(resolution)});
+    }
+    std::sort(all.begin(), all.end(),
+              [](const Density& a, const Density& b) { return a.first_face < b.first_face; });
+    return all;
+  }
+
+ private:
+  struct Sum {
+    std::uint64_t first_face = kNoTile;
+    double uv_area = 0, area = 0;
+  };
+  std::vector<Sum> sums_;
+};
+
+void measure_densities(const MeshFile& file, const UvMesh& mesh,
+                       const std::vector<std::uint32_t>& corners,
+                       const std::vector<std::uint32_t>& chart_of_triangle, const std::string& name,
+                       PageLayout& layout) {
+  std::vector<std::uint64_t> labels, known;
+  if (!name.empty()) {
+    labels = face_labels(file, name, "--labels", "tell densities by");
+    known = labels;
+    std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+  }
+  Densities charts(layout.charts), by_label(known.size());
+  for (std::size_t i = 0; i < mesh.uv_indices.size(); i += 3) {
+    const std::uint64_t face = file.polygons.of_corner(corners[i]);
+    const double uv_area = area_in_plane(mesh, i), area = area_in_space(file, &mesh.vertices[i]);
+    charts.add(chart_of_triangle[i / 3], face, uv_area, area);
+    if (name.empty()) continue;
+    const auto place = std::lower_bound(known.begin(), known.end(), labels[face]);
+    by_label.add(static_cast<std::size_t>(place - known.begin()), face, uv_area, area);
+  }
+  layout.of_charts = charts.taken(layout.resolution, [](std::size_t) { return std::string(); });
+  layout.of_labels = by_label.taken(
+      layout.resolution, [&](std::size_t i) { return label_text(file, name, known[i]); });
+}
+
 void measure_density(const std::vector<Chart>& charts, PageLayout& layout) {
   double uv_area = 0, area = 0;
   for (const Chart& chart : charts) {
@@ -245,7 +308,7 @@ void measure_density(const std::vector<Chart>& charts, PageLayout& layout) {
 }  // namespace
 
 PageLayout page_layout(const MeshFile& file, const std::vector<std::uint32_t>& corners,
-                       std::uint64_t resolution) {
+                       std::uint64_t resolution, const std::string& labels) {
   PageLayout layout;
   layout.resolution = resolution;
   const UvMesh mesh = uv_mesh_of(file, corners);
@@ -256,6 +319,7 @@ PageLayout page_layout(const MeshFile& file, const std::vector<std::uint32_t>& c
   throw_if_interrupted();
   place(charts, layout);
   measure_density(charts, layout);
+  measure_densities(file, mesh, corners, chart_of_triangle, labels, layout);
   layout.chart_distance = Measured(mesh, chart_of_triangle, charts, layout).least_distance();
   const double least =
       std::min(layout.chart_distance.value_or(kInfinity), 2 * layout.edge_distance);

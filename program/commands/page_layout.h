@@ -4,11 +4,20 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "files/mesh_file.h"
 
 namespace beltrami::cli {
+
+/// What some faces have of the texels of a page.
+struct Density {
+  std::string name;              ///< of what they are, or ""
+  std::uint64_t first_face = 0;  ///< of the file
+  double area = 0;               ///< on the surface
+  double texels_per_unit = 0;    ///< of length; 0 where there is no area
+};
 
 /// Lengths are in texels of pages with `resolution` of them to the side.
 struct PageLayout {
@@ -24,11 +33,13 @@ struct PageLayout {
   std::optional<double> density, least_density,
       greatest_density;    ///< per unit: mean, and of charts
   double utilisation = 0;  ///< area of UVs over that of the tiles
+  std::vector<Density> of_charts, of_labels;  ///< by their first faces
 };
 
-/// `corners`: of the file's faces, three for each triangle, with finite UVs. Throws Failure where
-/// interrupted(); std::bad_alloc.
+/// `corners`: of the file's faces, three for each triangle, with finite UVs. `labels`: as
+/// face_labels has it, or "". Throws Failure where interrupted(), or where the file has no such
+/// labels; std::bad_alloc.
 PageLayout page_layout(const MeshFile& file, const std::vector<std::uint32_t>& corners,
-                       std::uint64_t resolution);
+                       std::uint64_t resolution, const std::string& labels);
 
 }  // namespace beltrami::cli

@@ -199,6 +199,18 @@ Json packing_json(const Report& report) {
           {"unsplit_utilisation", number(found.unsplit_utilisation)}};
 }
 
+Json densities_json(const std::vector<Density>& densities) {
+  Json all = Json::array();
+  for (const Density& density : densities) {
+    Json one = {{"first_face", density.first_face},
+                {"area", number(density.area)},
+                {"texels_per_unit", number(density.texels_per_unit)}};
+    if (!density.name.empty()) one["name"] = density.name;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 Json layout_json(const Report& report) {
   if (!report.layout) return nullptr;
   const PageLayout& found = *report.layout;
@@ -216,6 +228,8 @@ Json layout_json(const Report& report) {
       {"greatest_texels_per_unit",
        found.greatest_density ? number(*found.greatest_density) : Json(nullptr)},
       {"utilisation", number(found.utilisation)},
+      {"charts", densities_json(found.of_charts)},
+      {"labels", densities_json(found.of_labels)},
       {"unmet", report.unmet}};
 }
 
@@ -388,6 +402,10 @@ void append_layout(const Report& report, std::string& text) {
     append(text, "density    %.4g texels per unit, charts from %.4g to %.4g; %.1f%% used\n",
            *found.density, found.least_density.value_or(0), found.greatest_density.value_or(0),
            100 * found.utilisation);
+  }
+  for (const Density& density : found.of_labels) {
+    append(text, "density    %.4g texels per unit of %s\n", density.texels_per_unit,
+           density.name.c_str());
   }
   for (const std::string& what : report.unmet) text += "unmet      " + what + "\n";
 }

@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -93,6 +94,22 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
     labels.push_back(std::bit_cast<std::uint64_t>((*column)[i] + 0.0));  // -0 becomes 0
   }
   return labels;
+}
+
+std::string label_text(const MeshFile& file, const std::string& name, std::uint64_t label) {
+  for (const auto& [list, keyword] : kStatements) {
+    if (list != name) continue;
+    std::set<std::string> known;
+    for (const Statement& statement : file.statements) {
+      if (keyword_of(statement) != keyword || !known.insert(statement.text).second) continue;
+      if (known.size() == label) return statement.text;
+    }
+    return "none of the " + name;
+  }
+  std::array<char, 32> digits{};
+  const double value = std::bit_cast<double>(label);
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return name + " " + std::string(digits.data(), end);
 }
 
 std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file) {

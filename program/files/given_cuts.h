@@ -15,6 +15,10 @@ namespace beltrami::cli {
 std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name,
                                        const std::string& flag, const std::string& to);
 
+/// What a label of face_labels is called in the file: "usemtl wood", or a number. Precondition: it
+/// has it.
+std::string label_text(const MeshFile& file, const std::string& name, std::uint64_t label);
+
 /// Pairs of vertex numbers, counted from 0, from a text file: anything but digits parts them.
 /// Throws Failure for an odd count of numbers and for those that are no vertex of the file.
 std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file);

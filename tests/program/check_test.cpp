@@ -154,6 +154,31 @@ TEST(Check, SaysWhereChartsLieHowFarApartAndHowDense) {
   }
 }
 
+TEST(Check, SaysTheDensityOfEachMaterialAndChart) {
+  // Two squares: the one of wood has a quarter of the page, that of brass a sixteenth.
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.obj",
+      "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 5 0 0\nv 7 0 0\nv 7 2 0\nv 5 2 0\n"
+      "vt 0 0\nvt .5 0\nvt .5 .5\nvt 0 .5\nvt .6 .6\nvt .85 .6\nvt .85 .85\nvt .6 .85\n"
+      "usemtl wood\nf 1/1 2/2 3/3 4/4\nusemtl brass\nf 5/5 6/6 7/7 8/8\n");
+  const Outcome outcome = run({"check", in, "--labels", "materials", "--resolution", "256",
+                               "--report", directory.path("r.json")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("density    64 texels per unit of usemtl wood\n"), std::string::npos)
+      << outcome.out;
+  const Json layout = Json::parse(directory.read("r.json"))["layout"];
+  ASSERT_EQ(layout["charts"].size(), 2);
+  EXPECT_EQ(layout["charts"][0]["first_face"], 0);
+  EXPECT_NEAR(layout["charts"][0]["texels_per_unit"], 64, 1e-9);
+  EXPECT_NEAR(layout["charts"][1]["texels_per_unit"], 32, 1e-9);
+  EXPECT_NEAR(layout["charts"][1]["area"], 4, 1e-9);
+  ASSERT_EQ(layout["labels"].size(), 2);
+  EXPECT_EQ(layout["labels"][1]["name"], "usemtl brass");
+  EXPECT_NEAR(layout["labels"][1]["texels_per_unit"], 32, 1e-9);
+  EXPECT_EQ(run({"check", in, "--labels", "groups"}).exit_code, 2);
+}
+
 TEST(Check, FailsWhereUvsAreNotAsAsked) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", two_squares("0")),
