@@ -92,7 +92,8 @@ class Check {
   void read() {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
-    file_ = read_mesh(arguments_.input, Content::kUvs, arguments_.reach);
+    const Content content = arguments_.labels.empty() ? Content::kUvs : Content::kAll;
+    file_ = read_mesh(arguments_.input, content, arguments_.reach);
     require_whole(file_);
     if (arguments_.float32) {
       round_to_float32(file_.uvs);

@@ -16,13 +16,16 @@ from collections.abc import Iterator
 
 FILE_LINES = 600
 # One header is the whole of the interface, most of it comments.
-LONGER = {"include/beltrami/beltrami.h": 1000}
+LONGER = {"include/beltrami/beltrami.h": 1100}
 FUNCTION_LINES = 70
 TREES = ["src", "program", "include", "tests", "benchmarks", "bindings"]
 FUNCTION_TREES = ["src", "program"]
 SUFFIXES = {".h", ".c", ".cpp", ".py", ".rs"}
 # Written by programs.
-GENERATED = {"bindings/rust/beltrami-sys/src/bindings.rs"}
+GENERATED = {
+    "bindings/rust/beltrami-sys/src/bindings.rs",
+    "bindings/rust/beltrami/src/options/table.rs",
+}
 # What is built, not written, may lie beside the sources.
 BUILT = {"build", "target", "dist", "vendor"}
 

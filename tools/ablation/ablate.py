@@ -5,7 +5,7 @@
     ablate.py --check
 
 A case of cases.json is a text of a source and what stands in its place without the case. A copy of
-the sources in build/ablation is compiled for each, and flattens the meshes in turns with the program
+the sources in build/ablation is compiled for each. It flattens the meshes in turns with the program
 as it is, on one thread. The record has a line for each case and mesh; a table is made of it.
 """
 
@@ -92,7 +92,7 @@ def build(case: dict[str, str] | None) -> Path:
 
 
 def run(program: Path, mesh: Path) -> dict[str, Any]:
-    """Flatten a mesh and return its energy, its CPU without reading and writing, and its verdict."""
+    """Flatten a mesh: its energy, its CPU without reading and writing, and its verdict."""
     folder = program / str(os.getpid())
     folder.mkdir(exist_ok=True)
     report = folder / f"{mesh.stem}.json"
@@ -147,10 +147,7 @@ def verdict(rows: list[dict[str, Any]]) -> dict[str, Any]:
         default=math.nan,
     )
     stays = (
-        lost > won
-        or cpu > 1 + WORTH_CPU
-        or energy > 1 + WORTH_ENERGY
-        or worst > 1 + WORTH_HARDEST
+        lost > won or cpu > 1 + WORTH_CPU or energy > 1 + WORTH_ENERGY or worst > 1 + WORTH_HARDEST
     )
     return {
         "lost": lost - won,
@@ -176,7 +173,7 @@ def table(record: Path) -> Iterable[str]:
     rows = read(record)
     told = {case["name"]: case for case in cases()}
     judged = {name: verdict(of_case) for name, of_case in rows.items() if name in told}
-    yield "| Case | Source | Maps changed | CPU without | Energy without | Hardest two | Maps lost |"
+    yield "| Case | Source | Maps changed | CPU | Energy | Hardest two | Maps lost |"
     yield "|---|---|---:|---:|---:|---:|---:|"
     for name in sorted(judged, key=lambda n: (-judged[n]["lost"], -judged[n]["cpu"])):
         is_worth, what = judged[name], told[name]["what"].rstrip(".")

@@ -1,6 +1,6 @@
 """Refuses links of pages that lead nowhere within the project: files, and headings of pages.
 
-    links.py PAGE ...
+links.py PAGE ...
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ def anchors(page: Path) -> set[str]:
 def problems(page: Path) -> list[str]:
     """Return a line for each link of a page that leads nowhere."""
     wrong = []
-    text = re.sub(r"^```.*?^```", lambda m: re.sub(r"[^\n]", "", m[0]), page.read_text(), flags=re.S | re.M)
+    text = re.sub(
+        r"^```.*?^```", lambda m: re.sub(r"[^\n]", "", m[0]), page.read_text(), flags=re.S | re.M
+    )
     for number, line in enumerate(re.sub(r"`[^`\n]*`", "", text).splitlines(), 1):
         for target in LINK.findall(line):
             if re.match(r"[a-z]+:", target):

@@ -34,7 +34,12 @@ def paragraphs(text: str) -> list[tuple[int, str]]:
             fenced = not fenced if not re.match(r"\$\$.+\$\$$", stripped) else fenced
             end()
             continue
-        if fenced or not stripped or re.match(r"(#|\||!!!|---|<)", stripped) or line.startswith("    "):
+        if (
+            fenced
+            or not stripped
+            or re.match(r"(#|\||!!!|---|<)", stripped)
+            or line.startswith("    ")
+        ):
             end()
             continue
         if re.match(r"([-*+]|\d+[.)]) ", stripped):
@@ -48,7 +53,7 @@ def paragraphs(text: str) -> list[tuple[int, str]]:
 
 
 def sentences(paragraph: str) -> list[list[str]]:
-    """Return the words of each sentence of a paragraph. Code counts as one word, a link as its text."""
+    """Return the words of each sentence. Code counts as one word, a link as its text."""
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", paragraph)
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text)
     text = re.sub(r"`[^`]*`", "CODE", text)

@@ -97,7 +97,7 @@ def test_arrays_are_documented_with_shapes_and_types():
                 assert f"edge_paint : {pair}" in text
                 continue
             shape = r"\((n, [23]|n,|m, 3|m, 2|m,|3,|[mtks], [23k]|[kcpm],|m, k, 2|t,)\) "
-            shape += r"array(_like)? of (floats|integers|(float|int)\d\d)"
+            shape += r"array(_like)? of (floats|integers|(float|u?int)\d\d)"
             assert re.search(rf"^{array} : {shape}", text, re.M), (name, array)
             described += 1
         if isinstance(thing, property) and thing.fget.__annotations__["return"] == "Array":

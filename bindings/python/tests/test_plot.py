@@ -73,6 +73,39 @@ def test_an_atlas_shows_its_charts_in_colours_of_their_own():
     assert share(picture(plot.atlas(quads, edges=False, resolution=300)), plot._CHARTS[0]) > 0.3
 
 
+def test_a_heat_map_takes_an_atlas_at_its_own_scale():
+    vertices, faces = grid(20)
+    packed = beltrami.unwrap(vertices, faces)
+    alone = beltrami.unwrap(vertices, faces, pack="none")
+    ends = []
+    for unwrapped in (packed, alone):
+        ax = plot.heat_map(unwrapped, resolution=200)
+        image = picture(ax)
+        assert share(image, plot._BAD) == 0
+        ends.append(ax.figure.axes[1].get_ylim())
+        width = np.ptp(ax.images[0].get_extent()[:2])
+        assert 1.5 < width < 5  # of a square of side 2, in its unit of length
+    assert ends[0] == pytest.approx(ends[1], rel=0.05)
+    assert ends[0][1] < 4
+    _, axes = pyplot.subplots(1, 2)
+    assert plot.heat_map(packed, ax=axes[0], measure="area", resolution=99) is axes[0]
+    with pytest.raises(TypeError, match="give ax by its name"):
+        plot.heat_map(packed, axes[1])
+    with pytest.raises(TypeError, match="faces and uv are missing"):
+        plot.heat_map(vertices)
+
+
+def test_pages_lie_side_by_side():
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    cube = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
+    unwrapped = beltrami.unwrap(cube, sides, hard_angle=60, resolution=64, texels_per_unit=60)
+    left, right, low, high = plot.atlas(unwrapped, resolution=300).images[0].get_extent()
+    assert right - left > 5 * (high - low)
+    ax = plot.heat_map(unwrapped, resolution=300)
+    left, right, low, high = ax.images[0].get_extent()
+    assert right - left > 5 * (high - low)
+
+
 def test_edges_are_drawn_where_faces_are_large():
     vertices, faces = grid(20)
     uv = vertices[:, :2]

@@ -328,10 +328,10 @@ def test_options_of_unwrapping():
     shared = beltrami.unwrap(*doubled(), share_copies=True)
     assert shared.injective
     assert shared.certificate.excepted == 32
-    cubes = np.concatenate([CUBE, CUBE + [3, 0, 0]])
+    cubes = np.concatenate([CUBE, CUBE + np.array([3, 0, 0])])
     stacked = beltrami.unwrap(cubes, np.concatenate([QUADS, QUADS + 8]), stack="copies")
     assert stacked.report.stacked_parts == 1
-    assert np.array_equal(np.sort(stacked.corner_uvs[:24], 0), np.sort(stacked.corner_uvs[24:], 0))
+    assert np.array_equal(stacked.corner_uvs[:6], stacked.corner_uvs[6:])
     unit = beltrami.unwrap(CUBE, QUADS, pack="none", unit_square=True)
     assert unit.uvs.min() == 0
     assert 0.5 <= unit.uvs.max() <= 1

@@ -127,6 +127,101 @@ def test_a_path_is_that_of_a_file_that_trimesh_loads(kind, tmp_path):
         beltrami.unwrap(kind(tmp_path / "points.ply"))
 
 
+@pytest.mark.parametrize("kind", [str, lambda path: path])
+def test_a_path_without_a_file_says_so(kind, tmp_path):
+    missing = kind(tmp_path / "nowhere.obj")
+    with pytest.raises(FileNotFoundError, match=r"nowhere\.obj") as caught:
+        beltrami.unwrap(missing)
+    assert str(caught.value.filename) == str(missing)
+    with pytest.raises(IsADirectoryError):
+        beltrami.unwrap(kind(tmp_path))
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "off", "glb"])
+def test_every_file_comes_back_as_a_mesh(suffix, tmp_path):
+    path = tmp_path / f"box.{suffix}"
+    box().export(path)
+    mesh = beltrami.unwrap(path).mesh
+    assert mesh.area == pytest.approx(6)
+    assert mesh.visual.uv.shape == (len(mesh.vertices), 2)
+    mesh.export(tmp_path / "out.obj")
+
+
+def test_a_scene_comes_back_as_a_mesh_at_its_places(tmp_path):
+    given = scene()
+    result = beltrami.unwrap(given, share_page=True)
+    mesh = result.mesh
+    assert mesh.bounds == pytest.approx(given.bounds)
+    assert len(mesh.faces) == 2 * 12 + 80
+    assert mesh.visual.uv.shape == (len(mesh.vertices), 2)
+    assert mesh.volume == pytest.approx(2 + given.geometry["ball"].volume * 8, rel=1e-6)
+    one = trimesh.Scene(box())
+    one.apply_translation([5, 0, 0])
+    alone = beltrami.unwrap(one).mesh
+    assert alone.bounds[0] == pytest.approx([4.5, -0.5, -0.5])
+    assert (alone.face_attributes["part"] == np.arange(12)).all()
+    assert beltrami.unwrap(trimesh.Scene(trimesh.PointCloud(np.eye(3)))).mesh is None
+
+
+def test_meshes_of_a_scene_share_a_page():
+    given = scene()
+    seen = []
+    apart = beltrami.unwrap(given)
+    result = beltrami.unwrap(
+        given, share_page=True, resolution=512, progress=lambda *now: seen.append(now)
+    )
+    assert result.injective
+    assert [fraction for fraction, _ in seen] == sorted(fraction for fraction, _ in seen)
+    assert seen[-1][0] == pytest.approx(1)
+    atlases = list(result.atlases.values())
+    assert atlases[0].packing == atlases[1].packing
+    assert (atlases[0].packing.pages, atlases[0].packing.resolution) == (1, 512)
+    assert atlases[0].packing.margin >= 2
+    assert atlases[0].options["pack"] == "pages"
+    covered = 0.0
+    for name, atlas in result.atlases.items():
+        before = apart.atlases[name]
+        assert (atlas.uv_faces == before.uv_faces).all()
+        assert atlas.energy == pytest.approx(before.energy)
+        assert result.scene.geometry[name] is atlas.mesh
+        assert (atlas.mesh.visual.uv == atlas.uvs).all()
+        assert (atlas.page_of_uv == 0).all()
+        low, high = atlas.uvs.min(axis=0), atlas.uvs.max(axis=0)
+        boxes = np.array([chart.box for chart in atlas.charts])
+        assert (low == boxes[:, :2].min(axis=0)).all()
+        assert (high == boxes[:, 2:].max(axis=0)).all()
+        a, b, c = np.moveaxis(atlas.uvs[atlas.uv_triangles], 1, 0)
+        covered += 0.5 * np.abs(np.linalg.det(np.stack([b - a, c - a], axis=1))).sum()
+    assert covered == pytest.approx(result.atlases["box"].utilisation)
+    corners = [atlas.corner_uvs for atlas in atlases]
+    meshes = [given.geometry[name] for name in result.atlases]
+    vertices = np.concatenate([mesh.vertices + 9 * k for k, mesh in enumerate(meshes)])
+    faces = np.concatenate([meshes[0].faces, meshes[1].faces + len(meshes[0].vertices)])
+    assert beltrami.check_atlas(vertices, faces, np.concatenate(corners)).injective
+    assert beltrami.unwrap(box(), share_page=True).injective
+
+
+def test_pages_are_shared_by_as_many_as_there_have_to_be():
+    result = beltrami.unwrap(
+        scene(), share_page=True, resolution=128, texels_per_unit=50, hard_angle=10
+    )
+    pages = {page for atlas in result.atlases.values() for page in atlas.page_of_uv}
+    assert len(pages) == result.atlases["box"].packing.pages > 1
+    assert len(result.atlases["box"].page_utilisations) == len(pages)
+    for atlas in result.atlases.values():
+        chart = atlas.chart_of_face[atlas.face_of_triangle]
+        of_charts = np.array([chart.page for chart in atlas.charts])
+        assert (atlas.page_of_uv[atlas.uv_triangles] == of_charts[chart][:, None]).all()
+
+
+@pytest.mark.parametrize(
+    "options", [{"pack": "none"}, {"pack_splits": 1.0}, {"stack": "copies"}, {"share_copies": True}]
+)
+def test_options_of_one_atlas_do_not_go_with_a_shared_page(options):
+    with pytest.raises(ValueError, match=f"does not go with {next(iter(options))}="):
+        beltrami.unwrap(scene(), share_page=True, **options)
+
+
 def test_a_disk_stays_the_disk_that_it_is():
     atlas = beltrami.unwrap(BUST, cut="minimal")
     assert len(atlas.charts) == 1

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import beltrami
+import beltrami.xatlas as xatlas
 
 
 def flatten(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> float:
@@ -33,9 +34,23 @@ def unwrap(vertices: npt.NDArray[np.float32], quads: npt.NDArray[np.int64]) -> f
     good: bool = atlas.injective and bool(beltrami.check_atlas(vertices, quads, atlas.corner_uvs))
     split, _, uvs = atlas.split()
     beltrami.plot.atlas(atlas)
+    beltrami.plot.heat_map(atlas, measure="area")
     records = beltrami.unwrap_batch(["a.obj"], "out", cut="islands", labels="materials")
     print(names, good, split, uvs, records[0].ok, atlas.options["weld"])
     return atlas.energy
+
+
+def as_xatlas(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64]) -> int:
+    """Use the interface of xatlas."""
+    vmapping, indices, uvs = xatlas.parametrize(vertices, faces, effort="normal")
+    options = xatlas.PackOptions()
+    options.padding, options.blockAlign = 2, True
+    several = xatlas.Atlas()
+    several.add_mesh(vertices, faces, uvs=uvs)
+    several.generate(xatlas.ChartOptions(), options, target_energy=2.1)
+    charts: list[xatlas.Chart] = [several.get_mesh_chart(0, 0)]
+    print(vmapping, indices, charts[0].type is xatlas.ChartType.LSCM, several[0])
+    return len(several)
 
 
 def refused(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> None:
@@ -46,5 +61,6 @@ def refused(vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.int64]) -> 
     beltrami.parameterize(vertices, faces, weld="off")  # type: ignore[call-arg]
     beltrami.unwrap(vertices, faces, delaunay=True)  # type: ignore[call-overload]
     beltrami.unwrap(vertices, faces, weld="maybe")  # type: ignore[call-overload]
+    xatlas.parametrize(vertices, faces, colour="red")  # type: ignore[call-arg]
     beltrami.Flattener().set_options(thread=2)  # type: ignore[call-arg]
-    beltrami.plot.heat_map(vertices, faces, vertices, measure="angle")  # type: ignore[arg-type]
+    beltrami.plot.heat_map(vertices, faces, vertices, measure="angle")  # type: ignore[call-overload]

@@ -15,7 +15,7 @@ that are no disk are cut into charts: every corner of every face gets a UV.
 ((4, 3, 2), True)
 """
 
-from . import _library, plot
+from . import _library, plot, xatlas
 from ._atlas import Atlas, SceneAtlases
 from ._atlas_checks import AtlasCheck, Triangulation, check_atlas, triangulate
 from ._batch import batch
@@ -109,4 +109,5 @@ __all__ = [
     "triangulate",
     "unwrap",
     "unwrap_batch",
+    "xatlas",
 ]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _html, _trimesh
 from ._arrays import Array
 from ._tables import (
     AtlasCertificate,
@@ -79,7 +80,8 @@ class Atlas:
     page_utilisations : (p,) array of float64
         The share of each page that charts cover.
     mesh : trimesh.Trimesh | None
-        Where a ``trimesh.Trimesh`` was given: a copy with the UVs, split along the seams.
+        Where a ``trimesh.Trimesh`` or the path of a file was given: a copy with the UVs, split
+        along the seams. None where arrays were given: `split` has what a mesh is made of.
     """
 
     uvs: Array = field(repr=False)
@@ -182,6 +184,10 @@ class Atlas:
         faces = self.uv_triangles if triangles else self.uv_faces
         return self.vertices[self.origins], faces, self.uvs
 
+    def _repr_html_(self) -> str:
+        """Return a picture of the layout and its figures, as notebooks show them."""
+        return _html.of_atlas(self)
+
     def _faces(self) -> Array:
         """Return the UV vertices of corners as one array."""
         return np.concatenate(self.uv_faces) if isinstance(self.uv_faces, list) else self.uv_faces
@@ -196,7 +202,8 @@ class SceneAtlases:
     scene : trimesh.Scene
         A copy with UVs. What is no mesh, such as a point cloud, is as it was.
     atlases : dict
-        The `Atlas` of each mesh, by its name in ``scene.geometry``.
+        The `Atlas` of each mesh, by its name in ``scene.geometry``. With ``share_page`` what it
+        says of pages and the verdict on its UVs is that on all of the meshes.
     """
 
     scene: Any
@@ -206,3 +213,18 @@ class SceneAtlases:
     def injective(self) -> bool:
         """Whether every atlas is proven to be injective."""
         return all(atlas.injective for atlas in self.atlases.values())
+
+    @property
+    def mesh(self) -> Any | None:
+        """All meshes as one ``trimesh.Trimesh`` with UVs, at their places in the scene; or None.
+
+        A scene with one mesh keeps its material, normals and attributes. Of several, positions,
+        normals and UVs are joined: with ``share_page`` no two of them overlap on the texture, and
+        without it each has a page of its own. It is made anew by every call, and None where the
+        scene has no mesh.
+        """
+        return _trimesh.joined(self.scene)
+
+    def _repr_html_(self) -> str:
+        """Return the picture and the figures of each atlas, as notebooks show them."""
+        return _html.of_scene(self)

@@ -114,7 +114,7 @@ def run_batch(
     done = {job.name: known[job.name] for job in work if _is_done(job, known.get(job.name))}
     left = list({job.name: job for job in work if job.name not in done}.values())
     if jobs is None:
-        jobs = _cores() // task.threads
+        jobs = cores() // task.threads
     run = _on_processes(left, jobs) if scheduler is None else _on_dask(left, scheduler)
     fresh: dict[str, dict[str, Any]] = {}
     with hook_for(progress) as hook, _open_log(folder / LOG) as log:
@@ -169,7 +169,7 @@ def _job(
     return Job(str(path), output, name.as_posix(), task.command, task.arguments, identity)
 
 
-def _cores() -> int:
+def cores() -> int:
     """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

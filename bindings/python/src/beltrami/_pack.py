@@ -229,9 +229,8 @@ def pack(
         # end of options
     }
     listed = [meshes] if isinstance(meshes, (UvMesh, Atlas)) else list(meshes)
-    arrays = [_uv_mesh(mesh).arrays() for mesh in listed]
     with hook_for(progress) as hook:
-        packing = _pack(arrays, given, masks, hook)
+        packing = packed(listed, given, masks, hook)
     if not packing.injective:
         found = packing.certificate
         warnings.warn(
@@ -251,7 +250,11 @@ def _uv_mesh(mesh: Any) -> UvMesh:
     return UvMesh(mesh.uvs, mesh.uv_triangles, mesh.vertices[mesh.origins])
 
 
-def _pack(meshes: Sequence[UvArrays], given: dict[str, object], masks: bool, hook: Hook) -> Packing:
+def packed(
+    things: Sequence[UvMesh | Atlas], given: dict[str, object], masks: bool, hook: Hook
+) -> Packing:
+    """Pack with these options, and without a warning."""
+    meshes: list[UvArrays] = [_uv_mesh(thing).arrays() for thing in things]
     context = PackContext()
     single = all(mesh.uvs.dtype == np.float32 for mesh in meshes)
     if single and given["float32"] is False:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import errno
 import os
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -51,8 +53,11 @@ def is_scene(thing: object) -> bool:
 def load(path: Any) -> Any:
     """Return the mesh in a file, or the scene where it holds several. Vertices stay as they are.
 
-    Raises ImportError without trimesh.
+    Raises FileNotFoundError and IsADirectoryError with the path, and ImportError without trimesh.
     """
+    if Path(path).is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
+    Path(path).stat()  # trimesh takes the path of no file for what it is to read
     import trimesh
 
     loaded = trimesh.load(path, process=False)
@@ -101,6 +106,29 @@ def split(mesh: Any, origins: Array, faces: Array | list[Array], uvs: Array) -> 
         face_attributes=face_attributes,
         metadata=copy.deepcopy(mesh.metadata),
         visual=visual,
+        process=False,
+    )
+
+
+def joined(scene: Any) -> Any:
+    """Return all meshes of a scene as one, at their places, each with its UVs; None without any."""
+    import trimesh
+    from trimesh.visual import TextureVisuals
+
+    placed = []
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        if is_mesh(scene.geometry[name]):
+            mesh = scene.geometry[name].copy()
+            placed.append(mesh.apply_transform(matrix))
+    if len(placed) <= 1:
+        return placed[0] if placed else None
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in placed[:-1])])
+    return trimesh.Trimesh(
+        vertices=np.concatenate([mesh.vertices for mesh in placed]),
+        faces=np.concatenate([mesh.faces + start for mesh, start in zip(placed, starts)]),
+        vertex_normals=np.concatenate([mesh.vertex_normals for mesh in placed]),
+        visual=TextureVisuals(uv=np.concatenate([mesh.visual.uv for mesh in placed])),
         process=False,
     )
 

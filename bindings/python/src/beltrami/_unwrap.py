@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _hints, _polygons, _trimesh
+from . import _arrays, _hints, _polygons, _sharing, _trimesh
 from ._atlas import Atlas, SceneAtlases
 from ._errors import BeltramiError, NotInjectiveWarning
 from ._library import UNWRAP, Hook
@@ -27,6 +27,7 @@ from ._tables import (
     PackChoice,
     PackTurnsChoice,
     PresetChoice,
+    StackChoice,
     UnwrapOptions,
     WeldChoice,
 )
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 # call: unwrap
+
+_SHARE_OF_MESHES = 0.9  # of the progress of a scene; the rest packs them onto common pages
 
 
 @overload
@@ -66,6 +69,7 @@ def unwrap(
     vertex_paint: npt.ArrayLike | None = None,
     edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     materials: npt.ArrayLike | None = None,
+    share_page: bool = False,
     progress: Progress = None,
     **options: Unpack[UnwrapOptions],
 ) -> Any: ...
@@ -125,6 +129,7 @@ def unwrap(
     flat_seams: float | None = None,
     stack: StackChoice = "none",
     # end of options
+    share_page: bool = False,
     progress: Progress = None,
 ) -> Any:
     """Cut any surface into charts and flatten them: an injective atlas, with low distortion.
@@ -171,6 +176,9 @@ def unwrap(
     materials : (m,) array_like, optional
         With ``cut="auto"`` numbers or words: seams are drawn to where they differ, and cost
         `material_seams` of their length there.
+    share_page : bool, default False
+        Of a scene: True packs all of its meshes onto the same pages, at one scale, instead of a
+        page for each. Not with ``pack="none"``, `pack_splits`, `stack` or `share_copies`.
     progress : bool or callable, optional
         As for `parameterize`.
 
@@ -330,7 +338,8 @@ def unwrap(
         `uvs` are float32 where `vertices` are float32, or with the option `float32`, and rounded so
         that they stay injective; else float64. An atlas that is not injective is returned, too,
         with a `NotInjectiveWarning`; its `injective` is False, and its `charts` say which. Of a
-        ``trimesh.Scene`` a `SceneAtlases`.
+        ``trimesh.Scene``, and of a file that trimesh loads as one, such as glTF, a `SceneAtlases`.
+        Of files both have a `mesh`.
 
     Raises
     ------
@@ -343,6 +352,8 @@ def unwrap(
         `progress` returned False.
     KeyboardInterrupt
         On Ctrl-C, in the main thread.
+    FileNotFoundError, IsADirectoryError
+        For a path where there is no file.
     ImportError
         For a path, without trimesh.
     OutOfMemoryError, InternalError
@@ -401,7 +412,7 @@ def unwrap(
         of_faces = (*of_cuts, densities, pins)
         if any(values is not None for values in of_faces):
             raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
-        return _unwrap_scene(vertices, given, progress)
+        return _unwrap_scene(vertices, given, share_page, progress)
     mesh = None
     if faces is None:
         if not _trimesh.is_mesh(vertices):
@@ -495,14 +506,19 @@ def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -
     )
 
 
-def _unwrap_scene(scene: Any, given: dict[str, object], progress: Progress) -> SceneAtlases:
+def _unwrap_scene(
+    scene: Any, given: dict[str, object], share_page: bool, progress: Progress
+) -> SceneAtlases:
+    if share_page:
+        pack_options, given = _sharing.options(given)
     meshes = {name: thing for name, thing in scene.geometry.items() if _trimesh.is_mesh(thing)}
     total = max(1, sum(len(mesh.faces) for mesh in meshes.values()))
-    done = 0
+    before = 0.0
     atlases: dict[str, Atlas] = {}
     with hook_for(progress) as hook:
         for name, mesh in meshes.items():
-            of_scene = _part_of(hook, done / total, len(mesh.faces) / total)
+            share = len(mesh.faces) / total * (_SHARE_OF_MESHES if share_page else 1)
+            of_scene = _part_of(hook, before, share)
             uvs = _trimesh.corner_uvs(mesh) if given["cut"] == "islands" else None
             try:
                 surface = _surface(mesh.vertices, mesh.faces, uvs, None, None, None)
@@ -510,7 +526,10 @@ def _unwrap_scene(scene: Any, given: dict[str, object], progress: Progress) -> S
             except BeltramiError as error:
                 error.args = (f"{name}: {error}",)
                 raise
-            done += len(mesh.faces)
+            before += share
+        if share_page and atlases:
+            rest = _part_of(hook, before, 1 - before)
+            atlases = _sharing.onto_common_pages(atlases, meshes, pack_options, rest)
     for name, atlas in atlases.items():
         _warn(atlas, f"{name}: ", callers=3)
     textured = {name: atlas.mesh for name, atlas in atlases.items()}

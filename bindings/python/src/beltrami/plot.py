@@ -7,20 +7,20 @@ opens fast.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _raster, _view
+from . import _arrays, _layouts, _raster, _view
 from ._arrays import Array
+from ._atlas import Atlas
 from ._checks import Distortion, check_triangles
 from ._checks import distortion as _distortion
+from ._layouts import most, rounded_up
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ._atlas import Atlas
 
 __all__ = ["atlas", "checkered", "heat_map", "layout"]
 
@@ -98,6 +98,8 @@ def atlas(
 ) -> Axes:
     """Draw an atlas: its charts in colours of their own, their boundaries, in red what is flipped.
 
+    Pages lie as the tiles of UDIM do: side by side, ten in a row.
+
     Parameters
     ----------
     unwrapped : Atlas
@@ -119,7 +121,7 @@ def atlas(
     ImportError
         Without Matplotlib.
     """
-    points, triangles = unwrapped.uvs.astype(float), unwrapped.uv_triangles
+    points, triangles = unwrapped.udim_uvs.astype(float), unwrapped.uv_triangles
     chart = unwrapped.chart_of_face[unwrapped.face_of_triangle]
     return _draw_layout(points, triangles, _CHARTS[chart % len(_CHARTS)], ax, edges, resolution)
 
@@ -150,10 +152,34 @@ def _draw_layout(
     return ax
 
 
+@overload
 def heat_map(
     vertices: npt.ArrayLike,
     faces: npt.ArrayLike,
     uv: npt.ArrayLike,
+    ax: Axes | None = None,
+    *,
+    measure: Measure = "symmetric-dirichlet",
+    limit: float | None = None,
+    cmap: str | None = None,
+    resolution: int = 1200,
+) -> Axes: ...
+@overload
+def heat_map(
+    vertices: Atlas,
+    faces: None = None,
+    uv: None = None,
+    ax: Axes | None = None,
+    *,
+    measure: Measure = "symmetric-dirichlet",
+    limit: float | None = None,
+    cmap: str | None = None,
+    resolution: int = 1200,
+) -> Axes: ...
+def heat_map(
+    vertices: Any,
+    faces: Any = None,
+    uv: Any = None,
     ax: Axes | None = None,
     *,
     measure: Measure = "symmetric-dirichlet",
@@ -165,12 +191,13 @@ def heat_map(
 
     Parameters
     ----------
-    vertices : (n, 3) array_like of floats
-        Positions.
+    vertices : (n, 3) array_like of floats, or Atlas
+        Positions. An `Atlas` brings its faces and UVs: they are drawn at the scale at which their
+        mean energy is least, and its pages lie as the tiles of UDIM do.
     faces : (m, 3) array_like of integers
-        Vertex numbers from 0.
+        Vertex numbers from 0. Left out with an atlas.
     uv : (n, 2) array_like of floats
-        In the unit of length of the positions.
+        In the unit of length of the positions. Left out with an atlas.
     ax : matplotlib.axes.Axes, optional
         Left out, a new figure is made.
     measure : {"symmetric-dirichlet", "symmetric-arap", "area", "conformal"}
@@ -199,6 +226,13 @@ def heat_map(
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
 
+    if isinstance(vertices, Atlas):
+        if faces is not None or uv is not None:
+            raise TypeError("an atlas brings its faces and UVs: give ax by its name")
+        drawn = _layouts.layout(vertices)
+        vertices, faces, uv = drawn.space, drawn.triangles, vertices.udim_uvs * drawn.unit
+    elif faces is None or uv is None:
+        raise TypeError("faces and uv are missing: only an atlas brings its own")
     found = _distortion(vertices, faces, uv)
     points, triangles = _arrays.coordinates(uv).astype(float), _arrays.indices(faces)
     scale = _Scale(measure, found, _areas_in_space(vertices, triangles), limit)
@@ -491,13 +525,13 @@ class _Scale:
         self.norm: Any
         if measure == "area":
             self.cmap, self.extend = "RdBu_r", "both"
-            end = max(1.05, float(np.exp(_most(np.abs(_logarithm(self.values)), areas))))
-            end = limit or _rounded_up(end)
+            end = max(1.05, float(np.exp(most(np.abs(_logarithm(self.values)), areas))))
+            end = limit or rounded_up(end)
             self.norm = LogNorm(1 / end, end)
         elif measure == "symmetric-arap":
-            self.norm = Normalize(start, limit or _rounded_up(max(0.05, _most(self.values, areas))))
+            self.norm = Normalize(start, limit or rounded_up(max(0.05, most(self.values, areas))))
         else:
-            end = _rounded_up(max(1.1 * start, _most(self.values, areas)))
+            end = rounded_up(max(1.1 * start, most(self.values, areas)))
             self.norm = LogNorm(start, limit or end)
 
     def ticks(self) -> list[float]:
@@ -511,20 +545,3 @@ def _logarithm(values: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithm: Array = np.log(values)
     return logarithm
-
-
-def _rounded_up(value: float) -> float:
-    """Return a number of two digits that is no less."""
-    unit = 10.0 ** (np.floor(np.log10(value)) - 1)
-    return float(f"{np.ceil(value / unit - 1e-9) * unit:.2g}")
-
-
-def _most(values: Array, areas: Array) -> float:
-    """Return the number that 99% of the area do not exceed, among the finite ones."""
-    finite = np.isfinite(values) & np.isfinite(areas)
-    if not finite.any():
-        return 0.0
-    order = np.argsort(values[finite])
-    share = np.cumsum(areas[finite][order])
-    at = np.searchsorted(share, 0.99 * share[-1])
-    return float(values[finite][order][min(int(at), len(order) - 1)])
