@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -59,13 +58,9 @@ constexpr Index kFewFaces = 25000;
 constexpr Index kMostFactored = 150000;
 constexpr int kLeastSteps = 2;      // of conjugate gradients from an interpolated map
 constexpr int kManySteps = 6;       // while more than
-constexpr double kFewFlips = 2e-5;  // of the faces are flipped, and after a step more
-constexpr double kFairlyFew = 1e-4;
-constexpr int kMostSteps = 14;    // while with each
-constexpr double kFalling = 0.9;  // times as many flips are left, or less
-/// Times those of the step before, of more than kFewPatches: steps lead away, as a rule from a
-/// carried map that is better than all of them.
-constexpr double kRising = 1.25;
+constexpr double kFewFlips = 1e-4;  // of the faces are flipped
+constexpr int kMostSteps = 14;      // while with each
+constexpr double kFalling = 0.9;    // times as many flips are left, or less
 /// Shares of the faces of a level: more flipped ones, or more that are left to patches, and it is
 /// hard for the V-cycle. Where a factor is cheap, and on any level. For patches no more than 2%, up
 /// to which a repair has regions before them.
@@ -74,12 +69,6 @@ struct Bearable {
 };
 constexpr Bearable kWhereCheap{5e-2, 2e-2}, kOnAnyLevel{1e-2, 1e-2};
 constexpr std::size_t kFewPatches = 30;  // are mended all the same
-/// Times as many flips in another map, up to which that is as good.
-constexpr double kAsGood = 2;
-/// Of a patch, while there is such a map to mend: large ones take long, and mostly fail.
-constexpr int kRingsAtFirst = 4;
-/// Times the energy of the level below, beyond which a map that is not stationary is useless.
-constexpr double kHopelessly = 1.2;
 // Shares of the progress.
 constexpr double kSimplified = 0.25, kStarted = 0.4;
 
@@ -182,18 +171,11 @@ Level prepare_level(const DiskMesh& mesh, const CoarseDisk& coarse, const ChartO
   return level;
 }
 
-/// What the solve of a level left.
-struct Solved {
-  std::size_t flips = 0;
-  bool by_steps = true;                                  ///< else it is the carried map
-  std::optional<std::size_t> of_carried = std::nullopt;  ///< flips of that, where they were counted
-};
-
 /// The stage "flatten": a few steps from the carried map, whose anchored vertices stay; that map
-/// itself where it has fewer flips.
-Solved solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
-                   VCycle& cycle, ChartMap& map) {
-  Solved solved;
+/// itself where it has fewer flips. Returns these.
+std::size_t solve_level(const Level& level, const std::vector<bool>& anchored, const Work& work,
+                        VCycle& cycle, ChartMap& map) {
+  std::size_t flips = 0;
   const DiskMesh& mesh = *level.problem.mesh;
   run_stage("flatten", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
     if (!anchored.empty()) cycle.anchor(anchored);
@@ -205,36 +187,31 @@ Solved solve_level(const Level& level, const std::vector<bool>& anchored, const 
     };
     bool counted = false;
     const auto at_most = [&](double share) {
-      return static_cast<double>(solved.flips) <= share * mesh.face_count();
+      return static_cast<double>(flips) <= share * mesh.face_count();
     };
     cycle.improve(
         kMostSteps,
         [&](int step) {
           if (step < kLeastSteps) return false;
-          const std::size_t before = std::exchange(solved.flips, flips_of(map.uvs));
+          const auto before = static_cast<double>(std::exchange(flips, flips_of(map.uvs)));
           counted = true;
-          const bool first = step == kLeastSteps;
-          if (first) return at_most(kFewFlips);
-          if (at_most(kFairlyFew)) return true;
-          const auto are_over = [&](double times) { return solved.flips > times * before; };
-          return step < kManySteps ? solved.flips > kFewPatches && are_over(kRising)
-                                   : are_over(kFalling);
+          if (at_most(kFewFlips)) return true;
+          return step >= kManySteps && static_cast<double>(flips) > kFalling * before;
         },
         residual, map.uvs);
     if (!anchored.empty()) {
       put_in_place(anchored, carried_map(level, cycle.points(), inner), map.uvs);
       counted = false;
     }
-    if (!counted) solved.flips = flips_of(map.uvs);  // it may end before it asks
-    if (at_most(kFairlyFew)) return;
+    if (!counted) flips = flips_of(map.uvs);  // it may end before it asks
+    if (at_most(kFewFlips)) return;
     std::vector<Vec2> start = carried_map(level, cycle.points(), inner);
-    solved.of_carried = flips_of(start);
-    if (*solved.of_carried >= solved.flips) return;
-    solved.flips = *solved.of_carried;
-    solved.by_steps = false;
+    const std::size_t of_carried = flips_of(start);
+    if (of_carried >= flips) return;
+    flips = of_carried;
     map.uvs = std::move(start);
   });
-  return solved;
+  return flips;
 }
 
 /// The stage "repair". What was flipped is relaxed with what is around it: it is positive now, but
@@ -288,27 +265,14 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
   const bool pressed = climb.map.in_contact && simple;
   std::vector<bool> anchored;
   if (pressed) anchored = vertices_in_contact(coarse, level.from, mesh.vertex_count());
-  RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
-                    .global_fix = false};
+  const RepairOptions how{.most_patches = std::max(kFewPatches, share_of(mesh, bearable.patches)),
+                          .global_fix = false};
   bool positive = false, rough = false;
-  const auto is_bearable = [&](std::size_t flips) {
-    return flips <= share_of(mesh, bearable.flips);
-  };
-  const auto mend_flips = [&](std::size_t flips, bool last) {
-    how.most_rings = last ? RepairOptions().most_rings : kRingsAtFirst;
-    how.most_after_regions = last ? RepairOptions().most_after_regions : kFewPatches;
-    return is_bearable(flips) && mend_level(level, how, options, work.part(0.5, 0.6), climb.map);
-  };
   const auto solve = [&] {
-    const Solved found = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
-    rough = cycle.has_hessian_of_finer() && found.flips > share_of(mesh, kFairlyFew);
-    // What cannot be unfolded in the one map may be in the other.
-    const bool has_other = found.by_steps && found.of_carried && is_bearable(*found.of_carried);
-    const bool as_good = has_other && *found.of_carried <= kAsGood * found.flips;
-    positive = mend_flips(found.flips, !as_good);
-    if (positive || !has_other) return positive;
-    climb.map.uvs = carried_map(level, cycle.points(), work);
-    positive = mend_flips(*found.of_carried, true);
+    const std::size_t flips = solve_level(level, anchored, work.part(0.3, 0.5), cycle, climb.map);
+    rough = cycle.has_hessian_of_finer() && flips > share_of(mesh, kFewFlips);
+    positive = flips <= share_of(mesh, bearable.flips) &&
+               mend_level(level, how, options, work.part(0.5, 0.6), climb.map);
     return positive;
   };
   const auto reach_start = [&] {
@@ -334,16 +298,13 @@ bool climb_by_cycle(const DiskMesh& mesh, const CoarseDisk& coarse, const Bearab
     return false;
   }
   const bool converged = climb.map.converged;
-  const double below = climb.energy;
   if (!converged || !is_finest) {
     climb.energy = mean_energy(options.energy, mesh.faces, level.problem.rest, climb.map.uvs, work);
   }
   parallel_free(work, level.problem.rest);
   if (converged) return true;
   climb.hard = true;
-  if (work.out_of_time() || mesh.face_count() > climb.most_factored) return true;
-  return to_dirichlet(options.energy, climb.energy) <=
-         kHopelessly * to_dirichlet(options.energy, below);
+  return true;
 }
 
 /// The same by a factor of the finer level: the metric way (metric_mode), from the map reached.

@@ -72,7 +72,6 @@ constexpr double kManyOf = 1e-4, kMany = 10;
 constexpr Index kLeastFaces = 20'000;  // of such a mesh: on smaller ones a region is half of it
 constexpr double kMostRelaxed = 1e-2;  // of the faces
 constexpr double kWorthIt = 1e-3;      // predicted relative decrease without which it is not rough
-constexpr double kCannotBeLeft = 1.5e-3;  // the same, if few faces held a map up at once
 /// With more of a rough map near to being singular regions follow each step.
 constexpr double kNearOf = 3e-4;
 /// After so many of these, if the last one gained so much, the Hessian is worth its cost where it
@@ -218,9 +217,7 @@ void clear_way(const Setting& setting, State& state) {
     state.near = true;
     if (relax_worst(setting, state)) return;
   }
-  // In haste the polish ends with what is not worth it.
-  const bool in_regions = worth_it || !state.bounds.in_haste;
-  if (in_regions && mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
+  if (mesh.face_count() >= kLeastFaces && are_many(blocking, kManyOf, mesh)) {
     relax(setting, blocking, state);
   } else {
     clean(setting, faces_of(blocking), state);
@@ -303,12 +300,6 @@ bool is_kept(const Setting& setting, const State& state) {
          kNothingLost * distortion(setting.fine.statistics.coarse_energy);
 }
 
-/// Whether steps came to rest, or none was taken, where no distortion has come on, though a few
-/// faces promise more.
-bool has_settled(const Setting& setting, const State& state) {
-  return state.bounds.in_haste && is_kept(setting, state) && gained_little(setting, state);
-}
-
 void take_rounds(const Setting& setting, State& state) {
   double start = std::numeric_limits<double>::infinity();  // of the last round
   // Rounds of cleaning alone, without a step, are bounded too.
@@ -316,9 +307,7 @@ void take_rounds(const Setting& setting, State& state) {
     if (state.last.converged || state.iterations >= state.bounds.most_steps) return;
     if (setting.work.out_of_time()) return;
     if (state.bounds.in_haste && is_kept(setting, state) &&
-        (is_stationary(setting, state) ||
-         (state.iterations == 0 && !state.rough && !promises(kCannotBeLeft, setting, state)) ||
-         (round > 0 && gained_little(setting, state)))) {
+        (is_stationary(setting, state) || (round > 0 && gained_little(setting, state)))) {
       return;  // what a few faces held up at once has been cleaned
     }
     // Springs of the contact change with the gaps, whatever the energy.
@@ -368,7 +357,7 @@ void end_with_newton(const Setting& setting, State& state) {
   const double energy = setting.comparable(state.energy);
   state.converged = state.last.converged;
   if (state.converged || setting.work.out_of_time()) return;
-  state.converged = is_stationary(setting, state) || has_settled(setting, state);
+  state.converged = is_stationary(setting, state);
   if (!state.bounds.newton || !(state.last.predicted > kMuchLeft * energy)) return;
   if (!affords(*setting.fine.mesh, setting.options, Extra::kNewtonSteps, setting.work)) return;
   take_newton_steps(setting, state);

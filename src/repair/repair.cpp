@@ -108,7 +108,6 @@ class Repair {
         look_again(bad);
         if (bad.empty()) return;
       }
-      if (bad.size() > options_.most_after_regions) return;
     }
     for (std::size_t level = 0; level < kPatchRings.size() && !bad.empty(); ++level) {
       if (kPatchRings[level] > options_.most_rings) break;

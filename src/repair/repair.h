@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "base/vectors.h"
@@ -18,8 +17,6 @@ struct RepairOptions {
   bool simple_boundary = false;
   /// Of so many faces left by rung 1, more are left to rung 3: where that is done, it is cheaper.
   std::size_t most_patches = 1000;
-  /// Of so many faces left by the regions of rung 2, more are left to rung 3 too.
-  std::size_t most_after_regions = std::numeric_limits<std::size_t>::max();
   int most_rings = 8;      ///< of a patch in rung 2
   bool global_fix = true;  ///< rung 3; it takes more memory than the others
 };
