@@ -32,7 +32,7 @@ def commands(page: pathlib.Path) -> list[tuple[int, str]]:
         for offset, line in enumerate(block[2].splitlines()):
             if whole:
                 whole += "\n" + line
-            elif re.match(r"\$ beltrami\b" if block[1] == "text" else r"beltrami\b", line):
+            elif re.match(r"\$ beltrami\b" if block[1] == "text" else r"(beltrami|printf)\b", line):
                 whole = line.removeprefix("$ ")
                 start = number + offset
             if whole and not whole.endswith("\\"):
