@@ -445,6 +445,18 @@ void append_memory(const Report& report, std::string& text) {
          static_cast<double>(*report.estimated_memory_bytes) / kMebibyte);
 }
 
+Json textures_json(const Report& report) {
+  if (!report.textures) return nullptr;
+  const auto [textures, texels, without_source] = *report.textures;
+  return {{"baked", textures}, {"texels", texels}, {"without_source", without_source}};
+}
+
+void append_textures(const BakedCounts& counts, std::string& text) {
+  text += "textures   " + std::to_string(counts.textures) + " baked, " +
+          std::to_string(counts.texels) + " texels, " + std::to_string(counts.without_source) +
+          " of them without a source\n";
+}
+
 }  // namespace
 
 const char* element_name(std::int32_t kind) {
@@ -488,6 +500,7 @@ std::string to_json(const Report& report) {
       {"utilisation", utilisation_json(report)},
       {"packing", packing_json(report)},
       {"layout", layout_json(report)},
+      {"textures", textures_json(report)},
       {"injective", injective_json(report)},
       {"energy", energy_json(report)},
       {"coarse_faces", optional(report.coarse_faces)},
@@ -540,6 +553,7 @@ std::string to_summary(const Report& report, const std::string& written) {
     append_atlas(report, text);
   }
   if (report.packing) append_packing(report, text);
+  if (report.textures) append_textures(*report.textures, text);
   if (report.layout) append_layout(report, text);
   if (report.certificate) append_verdict(report, text);
   if (report.atlas_certificate) append_atlas_verdict(report, text);

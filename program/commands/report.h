@@ -46,6 +46,11 @@ struct Target {
   double seams = 0;  ///< length over the root of the area
 };
 
+/// What was baked for new UVs.
+struct BakedCounts {
+  std::uint64_t textures = 0, texels = 0, without_source = 0;
+};
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -70,6 +75,7 @@ struct Report {
   std::optional<Target> target;
   std::optional<beltrami_packing> packing;
   std::vector<double> page_utilisations;
+  std::optional<BakedCounts> textures;
   std::optional<PageLayout> layout;  ///< check
   std::vector<std::string> unmet;    ///< check: what was asked for and is not so, in words
   std::optional<beltrami_atlas_certificate> atlas_certificate;

@@ -23,6 +23,7 @@ enum class Meaning {
   kNumbers,      ///< roughness, heights: as they are
   kColours,      ///< of sRGB: in linear light; an alpha is a number
   kTransparent,  ///< the same, and a colour counts as much as its alpha
+  kRelief,       ///< heights, or else directions: the colours of the image say which
   kDirections    ///< two coordinates along the axes of the UVs, 0.5 being 0, and numbers
 };
 
@@ -39,6 +40,14 @@ struct TextureUse {
   std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};
   Reading reading;
   Meaning meaning = Meaning::kNumbers;
+};
+
+/// A texture for new UVs.
+struct BakedTexture {
+  TextureUse use;
+  std::string png;   ///< the bytes of the file
+  std::string path;  ///< of the file, or "" where the output holds it
+  std::string uri;   ///< by which the output names it, or ""
 };
 
 }  // namespace beltrami::cli

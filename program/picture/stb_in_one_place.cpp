@@ -61,8 +61,18 @@ std::string png_bytes(int width, int height, int components, const std::uint8_t*
   return bytes;
 }
 
+bool is_image(std::string_view bytes) {
+  // More texels than 16384 x 16384 would be gigabytes, which a small file may ask for.
+  constexpr double kMostTexels = 268435456;
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return false;
+  int width = 0, height = 0, components = 0;
+  return stbi_info_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                               static_cast<int>(bytes.size()), &width, &height, &components) != 0 &&
+         double(width) * height <= kMostTexels;
+}
+
 std::optional<Pixels> read_image(std::string_view bytes) {
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
+  if (!is_image(bytes)) return std::nullopt;
   Pixels image;
   std::uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                                                static_cast<int>(bytes.size()), &image.width,

@@ -25,6 +25,9 @@ std::string png_bytes(int width, int height, int components, const std::uint8_t*
 /// What a PNG or JPEG file shows, with 8 bits for each component; nothing where it is none.
 std::optional<Pixels> read_image(std::string_view bytes);
 
+/// Whether read_image may read this, by its first bytes.
+bool is_image(std::string_view bytes);
+
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {
   float x0, y0, x1, y1;
