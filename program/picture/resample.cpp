@@ -21,7 +21,9 @@ constexpr std::uint16_t kAllParts = 0xFFFF;
 /// Texels of the old page to the side of a new one up to which the centre alone is read: bilinear
 /// reading spans as many, and every mean beyond would blur.
 constexpr double kOnePlace = 1.25;
-/// Likewise up to which 2 x 2 places do, and 4 x 4 on the image itself.
+/// Likewise up to which 2 x 2 places do, and 4 x 4 on the image itself. Where 2 x 2 leave a
+/// triangle they are half a texel of the old page beyond it, no further than bilinear reading goes
+/// anyway.
 constexpr double kTwoPlaces = 2.0, kFourPlaces = 4.5;
 /// A hair outside counts as inside: rounding must not open a seam between neighbours.
 constexpr double kHair = -1e-9;
@@ -201,8 +203,9 @@ class Baker {
         u += slopes.of[k][axis] * source.uvs[k][0] * page.width();
         v += slopes.of[k][axis] * source.uvs[k][1] * page.height();
       }
-      most = std::max(most, std::hypot(u, v));
+      most = std::max(most, u * u + v * v);
     }
+    most = std::sqrt(most);
     const int parts = level_for(most / kParts);
     if (most <= kOnePlace) return {1, 0, parts};
     if (most <= kTwoPlaces) return {2, 0, parts};
@@ -269,7 +272,7 @@ class Baker {
       texel.settled = true;
       return read(placed, centre, 0, texel);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3 && density.places == kParts; ++k) {
       const auto& slope = placed.slopes.of[k];
       if (centre[k] < (std::abs(slope[0]) + std::abs(slope[1])) / 2) return;
     }
@@ -328,7 +331,7 @@ class Baker {
       cosine += weights[k] * turn.corners[k][0];
       sine += weights[k] * turn.corners[k][1];
     }
-    const double length = std::hypot(cosine, sine);
+    const double length = std::sqrt(cosine * cosine + sine * sine);
     if (!(length > 0)) return;
     const double x = sums[0] - Texture::kZero, y = turn.old_side * (sums[1] - Texture::kZero);
     sums[0] = static_cast<float>((cosine * x - sine * y) / length + Texture::kZero);
@@ -370,64 +373,66 @@ class Gutters {
       : image_(baked.image), filled_(baked.filled), side_(baked.image.width) {}
 
   void fill(int rings) {
-    std::vector<std::size_t> ring = first_ring();
+    std::vector<Place> ring;
+    for (int row = 0; row < side_; ++row) {
+      for (int column = 0; column < side_; ++column) {
+        if (filled_[index(row, column)] == 1) add_neighbours({row, column}, ring);
+      }
+    }
     for (int round = 0; round < rings && !ring.empty(); ++round) {
       throw_if_interrupted();
-      for (const std::size_t texel : ring) take_mean(texel);
-      for (const std::size_t texel : ring) filled_[texel] = 1;
-      std::vector<std::size_t> next;
-      for (const std::size_t texel : ring) {
-        visit_neighbours(texel, [&](std::size_t neighbour) {
-          if (filled_[neighbour] != 0) return;
-          filled_[neighbour] = kNext;
-          next.push_back(neighbour);
-        });
-      }
+      for (const Place& texel : ring) take_mean(texel);
+      for (const auto& [row, column] : ring) filled_[index(row, column)] = 1;
+      std::vector<Place> next;
+      for (const Place& texel : ring) add_neighbours(texel, next);
       ring = std::move(next);
     }
-    for (const std::size_t texel : ring) filled_[texel] = 0;
+    for (const auto& [row, column] : ring) filled_[index(row, column)] = 0;
   }
 
  private:
+  struct Place {
+    int row, column;
+  };
   /// In the next ring.
   static constexpr std::uint8_t kNext = 2;
 
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) +
+           static_cast<std::size_t>(column);
+  }
+
   template <class Visit>
-  void visit_neighbours(std::size_t texel, const Visit& visit) const {
-    const auto side = static_cast<std::size_t>(side_);
-    const std::size_t row = texel / side, column = texel % side;
-    for (std::size_t y = row - (row > 0); y <= std::min(row + 1, side - 1); ++y) {
-      for (std::size_t x = column - (column > 0); x <= std::min(column + 1, side - 1); ++x) {
-        visit(y * side + x);
+  void visit_neighbours(const Place& texel, const Visit& visit) const {
+    for (int y = std::max(texel.row - 1, 0); y <= std::min(texel.row + 1, side_ - 1); ++y) {
+      for (int x = std::max(texel.column - 1, 0); x <= std::min(texel.column + 1, side_ - 1); ++x) {
+        visit(y, x);
       }
     }
   }
 
-  std::vector<std::size_t> first_ring() {
-    std::vector<std::size_t> ring;
-    for (std::size_t texel = 0; texel < filled_.size(); ++texel) {
-      if (filled_[texel] != 0) continue;
-      bool beside = false;
-      visit_neighbours(texel, [&](std::size_t i) { beside = beside || filled_[i] == 1; });
-      if (!beside) continue;
-      filled_[texel] = kNext;
-      ring.push_back(texel);
-    }
-    return ring;
+  void add_neighbours(const Place& texel, std::vector<Place>& ring) {
+    visit_neighbours(texel, [&](int row, int column) {
+      std::uint8_t& state = filled_[index(row, column)];
+      if (state != 0) return;
+      state = kNext;
+      ring.push_back({row, column});
+    });
   }
 
-  void take_mean(std::size_t texel) {
+  void take_mean(const Place& texel) {
     const auto components = static_cast<std::size_t>(image_.components);
     int count = 0;
     std::array<int, 4> sums = {0, 0, 0, 0};
-    visit_neighbours(texel, [&](std::size_t i) {
+    visit_neighbours(texel, [&](int row, int column) {
+      const std::size_t i = index(row, column);
       if (filled_[i] != 1) return;
       ++count;
       for (std::size_t k = 0; k < components; ++k) sums[k] += image_.values[components * i + k];
     });
+    std::uint8_t* own = &image_.values[components * index(texel.row, texel.column)];
     for (std::size_t k = 0; k < components; ++k) {
-      image_.values[components * texel + k] =
-          static_cast<std::uint8_t>((sums[k] + count / 2) / count);
+      own[k] = static_cast<std::uint8_t>((sums[k] + count / 2) / count);
     }
   }
 

@@ -48,8 +48,16 @@ int before_alpha(int components) {
   return components == 2 || components == 4 ? components - 1 : components;
 }
 
+/// std::floor, which is a call where the processor's own rounding may not be assumed.
+inline double floor_of(double x) {
+  constexpr double kInInt = 1e9;
+  if (!(std::abs(x) < kInInt)) return std::floor(x);
+  const int towards_zero = static_cast<int>(x);
+  return towards_zero - (x < towards_zero ? 1 : 0);
+}
+
 /// The texel of a row of `count` at this place of it, which may be beyond its edges.
-int texel_at(double place, int count, Beyond beyond) {
+inline int texel_at(double place, int count, Beyond beyond) {
   const double size = count;
   if (place >= 0 && place < size) return static_cast<int>(place);
   if (beyond == Beyond::kClamp) return static_cast<int>(std::clamp(place, 0.0, size - 1));
@@ -159,7 +167,7 @@ template <int kComponents, bool kWeighted>
 void Texture::gather(const Level& level, double u, double v, const Reading& reading, Sums& sums) {
   const double shift = reading.nearest ? 0.0 : 0.5;
   const double x = u * level.width - shift, y = (1 - v) * level.height - shift;
-  const double left = std::floor(x), top = std::floor(y);
+  const double left = floor_of(x), top = floor_of(y);
   const std::array<int, 2> columns = {texel_at(left, level.width, reading.along_u),
                                       texel_at(left + 1, level.width, reading.along_u)};
   const std::array<int, 2> rows = {texel_at(top, level.height, reading.along_v),
