@@ -1,4 +1,4 @@
-// What we use of the stb headers: PNG, JPEG to read, and a small pixel font.
+// Pictures in files, and what we use of the stb headers: PNG and JPEG to read, a small pixel font.
 #pragma once
 
 #include <cstddef>

@@ -168,25 +168,39 @@ void Texture::gather(const Level& level, double u, double v, const Reading& read
   const double shift = reading.nearest ? 0.0 : 0.5;
   const double x = u * level.width - shift, y = (1 - v) * level.height - shift;
   const double left = floor_of(x), top = floor_of(y);
-  const std::array<int, 2> columns = {texel_at(left, level.width, reading.along_u),
-                                      texel_at(left + 1, level.width, reading.along_u)};
-  const std::array<int, 2> rows = {texel_at(top, level.height, reading.along_v),
-                                   texel_at(top + 1, level.height, reading.along_v)};
   const float s = reading.nearest ? 0.0f : static_cast<float>(x - left);
   const float t = reading.nearest ? 0.0f : static_cast<float>(y - top);
-  for (std::size_t j = 0; j < 2; ++j) {
-    const std::size_t row =
-        static_cast<std::size_t>(rows[j]) * static_cast<std::size_t>(level.width);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::uint16_t* texel =
-          &level.values[(row + static_cast<std::size_t>(columns[i])) * kComponents];
-      float weight = (i == 0 ? 1 - s : s) * (j == 0 ? 1 - t : t);
-      if constexpr (kWeighted) weight *= texel[kComponents - 1];
-      for (std::size_t k = 0; k < kComponents - (kWeighted ? 1 : 0); ++k) {
-        sums[k] += weight * texel[k];
-      }
-      if constexpr (kWeighted) sums[kComponents - 1] += weight;
+  std::array<std::size_t, 2> columns, rows;
+  const bool within = left >= 0 && left + 1 < level.width && top >= 0 && top + 1 < level.height;
+  if (within) {
+    columns = {static_cast<std::size_t>(static_cast<int>(left)),
+               static_cast<std::size_t>(static_cast<int>(left)) + 1};
+    rows = {static_cast<std::size_t>(static_cast<int>(top)),
+            static_cast<std::size_t>(static_cast<int>(top)) + 1};
+  } else {
+    for (std::size_t k = 0; k < 2; ++k) {
+      columns[k] =
+          static_cast<std::size_t>(texel_at(left + double(k), level.width, reading.along_u));
+      rows[k] = static_cast<std::size_t>(texel_at(top + double(k), level.height, reading.along_v));
     }
+  }
+  const auto width = static_cast<std::size_t>(level.width);
+  const std::uint16_t* values = level.values.data();
+  const std::array<const std::uint16_t*, 4> texels = {
+      values + (rows[0] * width + columns[0]) * kComponents,
+      values + (rows[0] * width + columns[1]) * kComponents,
+      values + (rows[1] * width + columns[0]) * kComponents,
+      values + (rows[1] * width + columns[1]) * kComponents};
+  std::array<float, 4> weights = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+  if constexpr (kWeighted) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      weights[i] *= texels[i][kComponents - 1];
+      sums[kComponents - 1] += weights[i];
+    }
+  }
+  for (std::size_t k = 0; k < kComponents - (kWeighted ? 1 : 0); ++k) {
+    sums[k] += weights[0] * texels[0][k] + weights[1] * texels[1][k] + weights[2] * texels[2][k] +
+               weights[3] * texels[3][k];
   }
 }
 

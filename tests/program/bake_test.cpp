@@ -216,16 +216,19 @@ TEST(Bake, NothingIsSeenAcrossASeam) {
 }
 
 TEST(Bake, MirroredHalvesKeepTheirNormals) {
-  // The second square shows the first half of the image mirrored. A tilt towards -x of the image is
-  // one along -u of the old UVs on either square, whatever the new ones are.
+  // The second square shows the first half of the image mirrored. What tilts to
+  // the left and up on the image does so along the old UVs of either square, one of which is
+  // mirrored, whatever the new ones are.
   GltfBuilder builder = bent_strip({0, 0, .5f, 0, .5f, 1, 0, 1, .5f, 0, 0, 0, 0, 1, .5f, 1});
-  const auto tilted = [](double, double) { return Texel{60, 127.5, 230}; };
+  const auto tilted = [](double, double) { return Texel{60, 172, 230}; };
   add_texture(builder, png_of(128, tilted), "normalTexture");
   const BakedModel model(builder);
   ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
   const Pixels now = model.image(model.parts->json["materials"][0]["normalTexture"]);
-  // Directions of -u in space: -x on the first square; +z's opposite turned over on the second.
-  const std::array<std::array<double, 3>, 2> along = {{{-1, 0, 0}, {0, 0, 1}}};
+  // On the image u is x of the first square and -z of the second, and up is -y of both.
+  const double left = 67.5, up = 44.5, size = std::hypot(left, up);
+  const std::array<std::array<double, 3>, 2> along = {
+      {{-left / size, -up / size, 0}, {0, -up / size, left / size}}};
   model.visit([&](std::size_t face, const Uv&, const Uv& new_uv) {
     const Texel texel = read_at(now, new_uv);
     // The gradient of the new u and v in space, from the corners.
@@ -260,7 +263,7 @@ TEST(Bake, MirroredHalvesKeepTheirNormals) {
           (x * along_u[d] / std::sqrt(length_u) + y * along_v[d] / std::sqrt(length_v)) / flat;
       EXPECT_NEAR(shown[d], along[face / 2][d], 0.03) << "face " << face;
     }
-    EXPECT_NEAR(flat, 67.5, 1.5);
+    EXPECT_NEAR(flat, size, 1.5);
     EXPECT_NEAR(texel[2], 230, 1);
   });
 }
