@@ -35,7 +35,7 @@ class Bits {
 };
 
 /// Lengths of a prefix code for counted symbols, none longer than `longest`. Huffman's lengths are
-/// cut there, and the code is then made whole again as far as that takes (Kraft's sum).
+/// cut there, and others are changed until all words have a meaning again (Kraft's sum is 1).
 std::vector<int> code_lengths(const std::vector<std::uint32_t>& counts, int longest) {
   std::vector<std::pair<std::uint64_t, std::size_t>> heap;  // count, node
   std::vector<std::size_t> parent(counts.size(), 0);
@@ -76,11 +76,20 @@ std::vector<int> code_lengths(const std::vector<std::uint32_t>& counts, int long
   }
   std::stable_sort(symbols.begin(), symbols.end(),
                    [&](std::size_t a, std::size_t b) { return counts[a] < counts[b]; });
+  const auto step_of = [&](std::size_t symbol) {  // what a bit more or less of a length weighs
+    return std::int64_t{1} << (longest - lengths[symbol]);
+  };
   for (std::size_t k = 0; excess > 0; k = k + 1 < symbols.size() ? k + 1 : 0) {
-    int& length = lengths[symbols[k]];
-    if (length >= longest) continue;
-    ++length;
-    excess -= std::int64_t{1} << (longest - length);
+    if (lengths[symbols[k]] >= longest) continue;
+    excess -= step_of(symbols[k]) / 2;
+    ++lengths[symbols[k]];
+  }
+  // Readers refuse a code that leaves words without a meaning: frequent symbols become shorter.
+  for (std::size_t k = symbols.size(); excess<0; k = k> 1 ? k - 1 : symbols.size()) {
+    const std::size_t symbol = symbols[k - 1];
+    if (lengths[symbol] == 1 || step_of(symbol) > -excess) continue;
+    excess += step_of(symbol);
+    --lengths[symbol];
   }
   return lengths;
 }

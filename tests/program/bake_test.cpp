@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -330,6 +331,27 @@ TEST(Bake, WhatIsTransparentLendsNoColour) {
   std::array<std::uint8_t, 4> texel{};
   texture.finish(sums, 1, texel.data());
   EXPECT_EQ(texel, (std::array<std::uint8_t, 4>{255, 0, 0, 128}));
+}
+
+TEST(Bake, PicturesComeBackFromTheirFiles) {
+  // Powers of two are how often values occur, so that codes would be longer than they may be.
+  std::uint32_t state = 1;
+  for (const int components : {1, 2, 3, 4}) {
+    for (const int width : {1, 7, 300}) {
+      Pixels image{width, 211, components, {}};
+      while (image.values.size() < image.row_size() * 211) {
+        state = state * 1664525 + 1013904223;
+        const auto zeros = static_cast<std::uint8_t>(std::countl_zero(state | 1));
+        image.values.insert(image.values.end(), 1 + state / 8 % 4 * (zeros > 2 ? 99 : 0),
+                            static_cast<std::uint8_t>(zeros * 8 + state / 64 % (1 + zeros)));
+      }
+      image.values.resize(image.row_size() * 211);
+      const std::optional<Pixels> back =
+          read_image(png_bytes(width, 211, components, image.values.data()));
+      ASSERT_TRUE(back) << components << " " << width;
+      EXPECT_TRUE(back->values == image.values) << components << " " << width;
+    }
+  }
 }
 
 TEST(Bake, AnyNumberOfThreadsGivesTheSameBits) {
