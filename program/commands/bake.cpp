@@ -317,7 +317,9 @@ void TextureBake::bake_one(BakedTexture& baked, int side, int threads,
   }
   std::array<Texture, 1> texture = {Texture(*image, baked.use.meaning)};
   image.reset();
+  const std::vector<std::uint8_t> seams = inner_seams(places.triangles, places.sources);
   BakeJob job;
+  job.seams = seams;
   job.triangles = places.triangles;
   job.sources = places.sources;
   job.turns = turns;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <exception>
 #include <thread>
+#include <tuple>
+#include <utility>
 
+#include "files/point_numbers.h"
 #include "process/interrupt.h"
 
 namespace beltrami::cli {
@@ -268,13 +271,15 @@ class Baker {
     const Weights centre = placed.slopes.weights(x, y);
     if (!is_inside(centre)) return;
     const Density& density = placed.density;
+    const std::uint8_t seams = job_.seams.empty() ? 0 : job_.seams[placed.number];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (density.places < kParts && (seams >> k & 1) == 0) continue;
+      const auto& slope = placed.slopes.of[k];
+      if (centre[k] < (std::abs(slope[0]) + std::abs(slope[1])) / 2) return;
+    }
     if (density.places == 1) {
       texel.settled = true;
       return read(placed, centre, 0, texel);
-    }
-    for (std::size_t k = 0; k < 3 && density.places == kParts; ++k) {
-      const auto& slope = placed.slopes.of[k];
-      if (centre[k] < (std::abs(slope[0]) + std::abs(slope[1])) / 2) return;
     }
     texel.settled = true;
     for (int j = 0; j < density.places; ++j) {
@@ -445,6 +450,42 @@ class Gutters {
 
 Baked bake(const BakeJob& job) {
   return Baker(job).run();
+}
+
+std::vector<std::uint8_t> inner_seams(std::span<const BakedTriangle> triangles,
+                                      std::span<const SourceTriangle> sources) {
+  struct Side {
+    std::pair<std::uint32_t, std::uint32_t> ends;   // on the new page, the lesser first
+    std::pair<std::uint32_t, std::uint32_t> shown;  // the same on the old one
+    std::size_t triangle, corner;
+  };
+  PointNumbers<2> places, old_places;
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    std::array<std::uint32_t, 3> ends{}, shown{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      ends[k] = places.number(triangles[t][k]);
+      shown[k] = old_places.number(sources[t].uvs[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+      if (ends[a] > ends[b]) std::swap(a, b);
+      sides.push_back({{ends[a], ends[b]}, {shown[a], shown[b]}, t, k});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.ends, a.triangle, a.corner) < std::tie(b.ends, b.triangle, b.corner);
+  });
+  std::vector<std::uint8_t> seams(triangles.size(), 0);
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side &a = sides[i - 1], &b = sides[i];
+    if (a.ends != b.ends || a.shown == b.shown) continue;
+    for (const Side* side : {&a, &b}) {
+      seams[side->triangle] = static_cast<std::uint8_t>(seams[side->triangle] | 1u << side->corner);
+    }
+  }
+  return seams;
 }
 
 void fill_gutters(Baked& baked, int rings) {

@@ -50,13 +50,19 @@ struct BakeJob {
   std::span<const BakedTriangle> triangles;
   std::span<const SourceTriangle> sources;  ///< of the triangles; or `source_of` is asked
   SourceOf source_of;                       ///< by one thread at a time, a point for each texel
-  std::span<const AxesTurn> turns;  ///< of the triangles, for textures of directions; or none
-  std::span<Texture> pages;         ///< that have as many components
+  std::span<const AxesTurn> turns;      ///< of the triangles, for textures of directions; or none
+  std::span<const std::uint8_t> seams;  ///< see inner_seams(), of the triangles; or none
+  std::span<Texture> pages;             ///< that have as many components
   Reading reading;
   int side = 0;
   int threads = 1;
   std::function<void(double)> progress;  ///< is told the share that is done; or empty
 };
+
+/// Per triangle, bits 1, 2 and 4 for the sides across from its corners where a triangle joins it on
+/// the new page, but not on the old one: what is shown may change there at once.
+std::vector<std::uint8_t> inner_seams(std::span<const BakedTriangle> triangles,
+                                      std::span<const SourceTriangle> sources);
 
 /// A page, rows from the top; 0 where nothing was baked.
 struct Baked {
@@ -68,8 +74,9 @@ struct Baked {
 /// Bakes a page. A texel whose centre is in a triangle that shows no more texels of the old page
 /// than it has itself is read there, bilinearly: once, which leaves it as sharp as it can be. Where
 /// a texel shows more of them it is the mean of 2 x 2 or 4 x 4 places in it, each on the triangle
-/// that it lies in, of a smaller image where even these are too few. So are texels that only a part
-/// of a triangle is in, of the places that are. The bits do not depend on the number of threads.
+/// that it lies in, of a smaller image where even these are too few. So are texels that a seam of
+/// the old page goes through, and those that only a part of a triangle is in, of the places that
+/// are. The bits do not depend on the number of threads.
 Baked bake(const BakeJob& job);
 
 /// Fills gutters: in each of `rings` rounds, or until all is full, texels beside filled ones get
