@@ -21,13 +21,12 @@ constexpr int kBandRows = 16;
 /// Places along a side of a texel, where it is parted.
 constexpr int kParts = 4;
 constexpr std::uint16_t kAllParts = 0xFFFF;
-/// Texels of the old page to the side of a new one up to which the centre alone is read: bilinear
-/// reading spans as many, and every mean beyond would blur.
-constexpr double kOnePlace = 1.25;
-/// Likewise up to which 2 x 2 places do, and 4 x 4 on the image itself. Where 2 x 2 leave a
-/// triangle they are half a texel of the old page beyond it, no further than bilinear reading goes
-/// anyway.
-constexpr double kTwoPlaces = 2.0, kFourPlaces = 4.5;
+/// Texels of the old page from one place of a new texel to the next: bilinear reading spans as
+/// many, and every mean of more places would blur.
+constexpr double kStep = 1.25;
+/// Places up to which a texel need not be parted between triangles: the outermost of two is .6
+/// texels of the old page beyond the triangle, no further than bilinear reading goes anyway.
+constexpr int kFewPlaces = 2;
 /// A hair outside counts as inside: rounding must not open a seam between neighbours.
 constexpr double kHair = -1e-9;
 
@@ -55,9 +54,10 @@ bool is_inside(const Weights& w) {
 
 /// How densely a triangle is read.
 struct Density {
-  int places = 1;  ///< along a side of a texel within it
-  int level = 0;   ///< of the texture for these
+  int columns = 1, rows = 1;  ///< of places in a texel within it
+  int level = 0;              ///< of the texture for these
   int level_of_parts = 0;
+  bool few() const { return std::max(columns, rows) <= kFewPlaces; }
 };
 
 /// A triangle that is ready to be drawn.
@@ -69,7 +69,7 @@ struct Placed {
 };
 
 int level_for(double texels) {
-  return texels > 1.125 ? static_cast<int>(std::ceil(std::log2(std::min(texels, 1e9)))) : 0;
+  return texels > kStep ? static_cast<int>(std::ceil(std::log2(std::min(texels, 1e9)))) : 0;
 }
 
 class Baker {
@@ -197,22 +197,24 @@ class Baker {
   Density density(std::size_t number, const Slopes& slopes) const {
     const SourceTriangle& source = job_.sources[number];
     if (source.page == kNoPage) return {};
-    if (job_.reading.nearest) return {kParts, 0, 0};
+    if (job_.reading.nearest) return {kParts, kParts, 0, 0};
     const Texture& page = job_.pages[source.page];
-    double most = 0;
+    std::array<double, 2> texels{};  // of the old page along the axes of a new texel
     for (std::size_t axis = 0; axis < 2; ++axis) {
       double u = 0, v = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         u += slopes.of[k][axis] * source.uvs[k][0] * page.width();
         v += slopes.of[k][axis] * source.uvs[k][1] * page.height();
       }
-      most = std::max(most, u * u + v * v);
+      texels[axis] = std::sqrt(u * u + v * v);
     }
-    most = std::sqrt(most);
-    const int parts = level_for(most / kParts);
-    if (most <= kOnePlace) return {1, 0, parts};
-    if (most <= kTwoPlaces) return {2, 0, parts};
-    return {kParts, most <= kFourPlaces ? 0 : parts, parts};
+    const auto places = [](double along) {
+      return along <= kStep ? 1
+                            : static_cast<int>(std::min<double>(std::ceil(along / kStep), kParts));
+    };
+    const double most = std::max(texels[0], texels[1]);
+    const int level = level_for(most / kParts);
+    return {places(texels[0]), places(texels[1]), most <= kStep * kParts ? 0 : level, level};
   }
 
   /// Columns of a row that a triangle may have a point in.
@@ -273,19 +275,20 @@ class Baker {
     const Density& density = placed.density;
     const std::uint8_t seams = job_.seams.empty() ? 0 : job_.seams[placed.number];
     for (std::size_t k = 0; k < 3; ++k) {
-      if (density.places < kParts && (seams >> k & 1) == 0) continue;
+      if (density.few() && (seams >> k & 1) == 0) continue;
       const auto& slope = placed.slopes.of[k];
       if (centre[k] < (std::abs(slope[0]) + std::abs(slope[1])) / 2) return;
     }
-    if (density.places == 1) {
+    if (density.columns * density.rows == 1) {
       texel.settled = true;
       return read(placed, centre, 0, texel);
     }
     texel.settled = true;
-    for (int j = 0; j < density.places; ++j) {
-      for (int i = 0; i < density.places; ++i) {
-        const double step = 1.0 / density.places;
-        read(placed, placed.slopes.weights(column + (i + 0.5) * step, row + (j + 0.5) * step),
+    for (int j = 0; j < density.rows; ++j) {
+      for (int i = 0; i < density.columns; ++i) {
+        read(placed,
+             placed.slopes.weights(column + (i + 0.5) / density.columns,
+                                   row + (j + 0.5) / density.rows),
              density.level, texel);
       }
     }

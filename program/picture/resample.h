@@ -73,10 +73,10 @@ struct Baked {
 
 /// Bakes a page. A texel whose centre is in a triangle that shows no more texels of the old page
 /// than it has itself is read there, bilinearly: once, which leaves it as sharp as it can be. Where
-/// a texel shows more of them it is the mean of 2 x 2 or 4 x 4 places in it, each on the triangle
-/// that it lies in, of a smaller image where even these are too few. So are texels that a seam of
-/// the old page goes through, and those that only a part of a triangle is in, of the places that
-/// are. The bits do not depend on the number of threads.
+/// a texel shows more of them it is the mean of up to 4 x 4 places in it, each on the triangle that
+/// it lies in, of a smaller image where even these are too few. So are texels that a seam of the
+/// old page goes through, and those that only a part of a triangle is in, of the places that are.
+/// The bits do not depend on the number of threads.
 Baked bake(const BakeJob& job);
 
 /// Fills gutters: in each of `rings` rounds, or until all is full, texels beside filled ones get
