@@ -102,8 +102,8 @@ class Baker {
       for (std::size_t i = 1; i < texels.size(); ++i) {
         others.emplace_back([this, &mine = texels[i]] { work(mine, false); });
       }
-    } catch (const std::system_error&) {
-      // The system has no more of them: those that there are do all.
+    } catch (const std::exception&) {
+      // The system has no more of them, or no memory for more: those that there are do all.
     }
     work(texels[0], true);
     for (std::thread& other : others) other.join();
@@ -384,7 +384,10 @@ class Gutters {
     std::vector<Place> ring;
     for (int row = 0; row < side_; ++row) {
       for (int column = 0; column < side_; ++column) {
-        if (filled_[index(row, column)] == 1) add_neighbours({row, column}, ring);
+        if (filled_[index(row, column)] == 0 && is_beside_filled(row, column)) {
+          filled_[index(row, column)] = kNext;
+          ring.push_back({row, column});
+        }
       }
     }
     for (int round = 0; round < rings && !ring.empty(); ++round) {
@@ -419,6 +422,13 @@ class Gutters {
     }
   }
 
+  bool is_beside_filled(int row, int column) const {
+    bool beside = false;
+    visit_neighbours({row, column},
+                     [&](int y, int x) { beside = beside || filled_[index(y, x)] == 1; });
+    return beside;
+  }
+
   void add_neighbours(const Place& texel, std::vector<Place>& ring) {
     visit_neighbours(texel, [&](int row, int column) {
       std::uint8_t& state = filled_[index(row, column)];
@@ -429,17 +439,31 @@ class Gutters {
   }
 
   void take_mean(const Place& texel) {
-    const auto components = static_cast<std::size_t>(image_.components);
+    switch (image_.components) {
+      case 1:
+        return take_mean_of<1>(texel);
+      case 2:
+        return take_mean_of<2>(texel);
+      case 3:
+        return take_mean_of<3>(texel);
+      default:
+        return take_mean_of<4>(texel);
+    }
+  }
+
+  template <std::size_t kComponents>
+  void take_mean_of(const Place& texel) {
     int count = 0;
-    std::array<int, 4> sums = {0, 0, 0, 0};
+    std::array<int, kComponents> sums{};
     visit_neighbours(texel, [&](int row, int column) {
       const std::size_t i = index(row, column);
       if (filled_[i] != 1) return;
       ++count;
-      for (std::size_t k = 0; k < components; ++k) sums[k] += image_.values[components * i + k];
+      const std::uint8_t* values = &image_.values[kComponents * i];
+      for (std::size_t k = 0; k < kComponents; ++k) sums[k] += values[k];
     });
-    std::uint8_t* own = &image_.values[components * index(texel.row, texel.column)];
-    for (std::size_t k = 0; k < components; ++k) {
+    std::uint8_t* own = &image_.values[kComponents * index(texel.row, texel.column)];
+    for (std::size_t k = 0; k < kComponents; ++k) {
       own[k] = static_cast<std::uint8_t>((sums[k] + count / 2) / count);
     }
   }
