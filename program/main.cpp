@@ -230,6 +230,13 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
                    "after another count from 0, UVs are in the unit of IN")
       ->group("Charts")
       ->type_name("FILE");
+  command
+      ->add_flag(
+          "--bake", arguments.bake,
+          "Bake the textures of the materials of IN (OBJ or glTF) for the new UVs, on a page\n"
+          "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
+          ".obj")
+      ->group("Pages");
   add_masks(*command, arguments.masks);
   options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,

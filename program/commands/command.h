@@ -34,6 +34,7 @@ struct UnwrapArguments {
   std::string report, picture;  ///< paths, or "" for none
   std::string masks;            ///< folder and name of the masks of pages, or ""
   std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
+  bool bake = false;            ///< the textures of materials, for the new UVs
   Reach reach = Reach::kItsFolder;
   bool triangulate = false;  ///< write the triangles that were computed on
   bool quiet = false;

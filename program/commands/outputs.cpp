@@ -101,7 +101,7 @@ void note_held(const beltrami_atlas_certificate& held, Report& report) {
 }
 
 void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,
-                   std::deque<AtomicFile>& outputs, Report& report) {
+                   std::deque<AtomicFile>& outputs, Report& report, const GltfTextures& textures) {
   const auto append = [](std::vector<std::string> lines, std::vector<std::string>& all) {
     std::move(lines.begin(), lines.end(), std::back_inserter(all));
   };
@@ -115,7 +115,7 @@ void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t 
     append(not_kept(file, path), report.not_kept);
     return;
   }
-  GltfOutput gltf = write_gltf(file, uv_set, path);
+  GltfOutput gltf = write_gltf(file, uv_set, path, textures);
   for (const GltfOutput::File& part : gltf.files) {
     AtomicFile& output = outputs.emplace_back(part.path);
     for (const std::string& piece : part.pieces) {

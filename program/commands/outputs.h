@@ -11,6 +11,7 @@
 
 #include "commands/report.h"
 #include "files/atomic_file.h"
+#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 
 namespace beltrami::cli {
@@ -26,9 +27,9 @@ void require_uv_set_of_gltf(std::uint32_t uv_set, const std::string& output);
 void set_corner_uvs(MeshFile& file, const std::vector<double>& uvs, bool single);
 
 /// The verdict on the numbers that a file at `path` holds of the corner UVs of `file`; nothing
-/// where it holds them exactly. `share`: faces that have the UVs of another one are copies or stacked, and
-/// overlap it on purpose. `mirrored`: charts that are mirrored as a whole are no fault. Throws
-/// Failure with the path of the input.
+/// where it holds them exactly. `share`: faces that have the UVs of another one are copies or
+/// stacked, and overlap it on purpose. `mirrored`: charts that are mirrored as a whole are no
+/// fault. Throws Failure with the path of the input.
 std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
                                                          const std::string& path, bool share,
                                                          bool mirrored);
@@ -37,9 +38,11 @@ std::optional<beltrami_atlas_certificate> judge_held_uvs(const MeshFile& file,
 /// verdict on it.
 void note_held(const beltrami_atlas_certificate& held, Report& report);
 
-/// Writes a mesh with its UVs, complete on the disk but not in place. Notes in the report what of
+/// Writes a mesh with its UVs, and textures that were baked for them or what is said of those that
+/// were not, where it is glTF, complete on the disk but not in place. Notes in the report what of
 /// it is not kept, and what else is to be known of it.
 void write_outputs(const MeshFile& file, const std::string& path, std::uint32_t uv_set,
-                   std::deque<AtomicFile>& outputs, Report& report);
+                   std::deque<AtomicFile>& outputs, Report& report,
+                   const GltfTextures& textures = {});
 
 }  // namespace beltrami::cli

@@ -46,6 +46,11 @@ struct Target {
   double seams = 0;  ///< length over the root of the area
 };
 
+/// What was baked for new UVs.
+struct BakedCounts {
+  std::uint64_t textures = 0, texels = 0, without_source = 0;
+};
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -70,6 +75,7 @@ struct Report {
   std::optional<Target> target;
   std::optional<beltrami_packing> packing;
   std::vector<double> page_utilisations;
+  std::optional<BakedCounts> textures;
   std::optional<PageLayout> layout;  ///< check
   std::vector<std::string> unmet;    ///< check: what was asked for and is not so, in words
   std::optional<beltrami_atlas_certificate> atlas_certificate;
@@ -91,6 +97,12 @@ struct Report {
   }
   void set_failure(const Failure& failure);
 };
+
+/// Length of the seams of an atlas, over the root of its area.
+double seam_over_root_area(const beltrami_atlas& atlas);
+
+/// Of the whole process so far; 0 where the system does not say.
+std::uint64_t peak_memory_bytes();
 
 /// The JSON text, with a final line end.
 std::string to_json(const Report& report);

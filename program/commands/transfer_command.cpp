@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -19,10 +18,12 @@
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
+#include "files/texture_use.h"
 #include "files/triangulate.h"
 #include "picture/nearest_face.h"
 #include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/texture.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -71,8 +72,6 @@ Pixels read_texture(const std::string& path) {
   if (!image) throw Failure(path + ": is no PNG or JPEG file that can be read");
   return *std::move(image);
 }
-
-constexpr std::uint64_t kNoPage = std::numeric_limits<std::uint64_t>::max();
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
 struct Textured {
@@ -196,26 +195,23 @@ class Transfer {
     surface_.emplace(from_.places);
   }
 
-  /// Where the texture has what a point of a new triangle shows.
+  /// Where the texture has what a point of a new triangle shows, by the nearest place of OLD.
+  /// Precondition: surface_.
   std::optional<Source> source(std::size_t triangle, const std::array<double, 3>& weights) {
-    OnFace at{triangle, weights};
-    if (surface_) {
-      const PlacedTriangle& place = to_.places[triangle];
-      Place point{0, 0, 0};
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t d = 0; d < 3; ++d) point[d] += weights[k] * place[k][d];
-      }
-      const std::optional<OnFace> found =
-          surface_->find(point, normal_of(place), kReach * surface_->size(), last_found_);
-      if (!found) return std::nullopt;
-      at = *found;
-      last_found_ = at.face;
-    }
-    if (from_.pages[at.face] == kNoPage) return std::nullopt;
-    Source source{from_.pages[at.face], 0, 0};
+    const PlacedTriangle& place = to_.places[triangle];
+    Place point{0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      source.u += at.weights[k] * from_.uvs[at.face][k][0];
-      source.v += at.weights[k] * from_.uvs[at.face][k][1];
+      for (std::size_t d = 0; d < 3; ++d) point[d] += weights[k] * place[k][d];
+    }
+    const std::optional<OnFace> at =
+        surface_->find(point, normal_of(place), kReach * surface_->size(), last_found_);
+    if (!at) return std::nullopt;
+    last_found_ = at->face;
+    if (from_.pages[at->face] == kNoPage) return std::nullopt;
+    Source source{from_.pages[at->face], 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      source.u += at->weights[k] * from_.uvs[at->face][k][0];
+      source.v += at->weights[k] * from_.uvs[at->face][k][1];
     }
     return source;
   }
@@ -233,10 +229,11 @@ class Transfer {
     return false;
   }
 
-  Beyond beyond() const {
-    if (arguments_.wrap == "mirror") return Beyond::kMirror;
+  Reading reading() const {
+    if (arguments_.wrap == "mirror") return {Beyond::kMirror, Beyond::kMirror};
     const bool repeats = arguments_.wrap == "repeat" || (arguments_.wrap == "auto" && repeats_);
-    return repeats ? Beyond::kRepeat : Beyond::kClamp;
+    const Beyond beyond = repeats ? Beyond::kRepeat : Beyond::kClamp;
+    return {beyond, beyond};
   }
 
   /// The texture of each page that is read.
@@ -255,8 +252,8 @@ class Transfer {
         throw Failure(path + ": is not there, and faces of " + arguments_.old_mesh +
                       " are on that tile: a texture that repeats is read with --wrap repeat");
       }
-      Pixels& texture = textures_[page];
-      texture = read_texture(unnumbered ? arguments_.texture : path);
+      const Pixels texture = read_texture(unnumbered ? arguments_.texture : path);
+      textures_[page] = Texture(texture, Meaning::kNumbers);
       if (components_ == 0) components_ = texture.components;
       if (texture.components != components_) {
         throw Failure(path + ": has other components than the pages before it");
@@ -264,8 +261,8 @@ class Transfer {
       side_ = std::max({side_, texture.width, texture.height});
     }
     if (arguments_.resolution > 0) side_ = arguments_.resolution;
-    // An unused page has no texels, and none are read; but it is asked how many components it has.
-    for (Pixels& texture : textures_) texture.components = components_;
+    // The first page is asked how many components there are; of an unused one none is read.
+    if (textures_.front().components() == 0) textures_.front() = textures_[pages.front()];
   }
 
   /// What is on a page of NEW.
@@ -280,10 +277,23 @@ class Transfer {
       }
       number.push_back(t);
     }
-    const auto source_of = [&](std::size_t t, const std::array<double, 3>& weights) {
-      return source(number[t], weights);
-    };
-    return bake(triangles, source_of, textures_, beyond(), side_, arguments_.margin);
+    BakeJob job;
+    job.triangles = triangles;
+    job.pages = textures_;
+    job.reading = reading();
+    job.side = side_;
+    std::vector<SourceTriangle> sources;
+    if (surface_) {
+      job.source_of = [&](std::size_t t, const std::array<double, 3>& weights) {
+        return source(number[t], weights);
+      };
+    } else {
+      for (const std::size_t t : number) sources.push_back({from_.pages[t], from_.uvs[t]});
+      job.sources = sources;
+    }
+    Baked baked = bake(job);
+    fill_gutters(baked, arguments_.margin);
+    return baked;
   }
 
   int write_pages() {
@@ -335,7 +345,7 @@ class Transfer {
   Textured from_, to_;
   std::optional<NearestFace> surface_;  ///< of OLD, where NEW has other faces
   std::size_t last_found_ = 0;          ///< neighbours are near one another
-  std::vector<Pixels> textures_;
+  std::vector<Texture> textures_;
   bool repeats_ = false;  ///< UVs of OLD go beyond the one texture
   int side_ = 0, components_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "commands/bake.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "commands/outputs.h"
@@ -41,6 +42,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options.emplace_back("pins", arguments.pins);
   report.options.emplace_back("triangulate", arguments.triangulate);
   report.options.emplace_back("masks", arguments.masks);
+  report.options.emplace_back("bake", arguments.bake);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
 
@@ -66,6 +68,9 @@ class Unwrapping {
     }
     fetch_report();
     fetch_uvs();
+    bake_textures();
+    if (arguments_.triangulate) triangulate();
+    judge_held();
     return write_files();
   }
 
@@ -92,10 +97,14 @@ class Unwrapping {
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
     }
-    if (arguments_.masks.empty()) return;
-    require_writable(path_of_page(arguments_.masks, 0));
-    if (!on_pages()) {
+    if (!arguments_.masks.empty()) require_writable(path_of_page(arguments_.masks, 0));
+    if (on_pages()) return;
+    if (!arguments_.masks.empty()) {
       throw Failure("--masks: there are masks of pages alone: do without --pack none and --pins");
+    }
+    if (arguments_.bake) {
+      throw Failure(
+          "--bake: textures are baked for pages alone: do without --pack none and --pins");
     }
   }
 
@@ -114,6 +123,13 @@ class Unwrapping {
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
       for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {
+        require_writable(path);
+      }
+    }
+    if (arguments_.bake) {
+      bake_.emplace(file_, arguments_.output);
+      for (const std::string& path : bake_->paths()) {
+        require_distinct({path, arguments_.report, arguments_.picture, arguments_.written_seams});
         require_writable(path);
       }
     }
@@ -226,13 +242,30 @@ class Unwrapping {
     set_corner_uvs(file_, uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
     triangles_.resize(3 * report_.atlas->triangles);
     require(beltrami_get_triangles(context_.get(), triangles_.data(), BELTRAMI_U32, 0));
-    if (arguments_.triangulate) {
-      cut_faces(file_, triangles_);
-      for (std::size_t c = 0; c < triangles_.size(); ++c) {
-        triangles_[c] = static_cast<std::uint32_t>(c);
-      }
+  }
+
+  void triangulate() {
+    cut_faces(file_, triangles_);
+    for (std::size_t c = 0; c < triangles_.size(); ++c) {
+      triangles_[c] = static_cast<std::uint32_t>(c);
     }
-    judge_held();
+  }
+
+  void bake_textures() {
+    if (!bake_) return;
+    const auto& packing = report_.packing;
+    if (packing && packing->pages > 1) {
+      throw Failure("--bake: the charts take " + std::to_string(packing->pages) +
+                    " pages, and a material has a texture of one: leave out --texels-per-unit, or "
+                    "lower it");
+    }
+    StageClock clock(report_, "bake");
+    bake_->place(triangles_);
+    bake_->run(
+        static_cast<int>(options_.integer(BELTRAMI_OPTION_RESOLUTION)),
+        static_cast<int>(options_.integer(BELTRAMI_OPTION_THREADS)),
+        [this](double share) { bar_.show(share, "bake"); }, report_);
+    clock.finish();
   }
 
   /// The last verdict is on the numbers that the file gets.
@@ -253,7 +286,18 @@ class Unwrapping {
     bar_.show(1, "write");
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
-    write_outputs(file_, arguments_.output, arguments_.uv_set, outputs, report_);
+    GltfTextures textures;
+    textures.advice = "--bake makes them anew";
+    if (bake_) {
+      bake_->write_obj_parts(file_, outputs);
+      textures.baked = bake_->take_textures();
+    } else if (!file_.gltf) {
+      const std::string misfit = textures_that_misfit(file_);
+      if (!misfit.empty()) {
+        report_.notes.push_back(misfit + ", which are replaced: " + textures.advice);
+      }
+    }
+    write_outputs(file_, arguments_.output, arguments_.uv_set, outputs, report_, textures);
     if (!arguments_.written_seams.empty()) write_seams(outputs);
     if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     clock.finish();
@@ -323,6 +367,7 @@ class Unwrapping {
   Paint paint_;
   std::vector<std::uint32_t> seams_;
   Pins pins_;
+  std::optional<TextureBake> bake_;
   std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
 };
 

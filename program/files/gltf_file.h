@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "files/mesh_file.h"
+#include "files/texture_use.h"
 
 namespace beltrami::cli {
 
@@ -36,9 +37,30 @@ struct GltfOutput {
   std::vector<std::string> notes;     ///< what else is to be known of the output, in sentences
 };
 
+/// What becomes of the textures that were drawn through other UVs.
+struct GltfTextures {
+  std::vector<BakedTexture> baked;
+  const char* advice = "beltrami transfer makes them anew";  ///< where none is baked
+};
+
 /// u v per vertex of TEXCOORD_`uv_set`, NaN in primitives without; empty where none has it. glTF's
 /// V axis points down, that of beltrami up: v here is 1 - v there. Precondition: file.gltf.
 std::vector<double> gltf_uvs(const MeshFile& file, std::uint32_t uv_set);
+
+/// x y and so on, `width` numbers per vertex, of an attribute as the primitives have it, without
+/// the transforms of nodes; NaN in primitives without, empty where none has it. Precondition:
+/// file.gltf.
+std::vector<double> gltf_attribute(const MeshFile& file, const char* name, std::size_t width);
+
+/// The textures of the materials that triangles have. Precondition: file.gltf.
+std::vector<TextureUse> gltf_textures(const MeshFile& file);
+/// Per face, whether it has this material, as its own or as a variant. Precondition: file.gltf.
+std::vector<bool> gltf_faces_of(const MeshFile& file, std::uint64_t material);
+/// The files that it was read from, and those of its images. Precondition: file.gltf.
+std::vector<std::string> gltf_sources(const MeshFile& file);
+/// The bytes of the image of one of these textures, from within the reach of the file. Throws
+/// Failure where there is none.
+std::string gltf_image(const MeshFile& file, const TextureUse& use);
 
 /// Throws Failure where `uv_set` is beyond 1 and leaves out a set that no primitive has; it names
 /// the greatest that does not. Precondition: file.gltf.
@@ -58,9 +80,14 @@ std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::stri
 /// of KHR_texture_transform of textures that use them. Primitives without the sets before `uv_set`
 /// get the same UVs in these.
 ///
+/// Textures that were baked take the places of those that they were made of, and draw through
+/// `uv_set`; tangents go where a normal map is among them. Without such, a note names the textures
+/// that no longer fit, and says what to do.
+///
 /// Preconditions: file.gltf, and its faces are where they were, though their corners may have
 /// turned; `path` is of glTF. Throws Failure as require_uv_set does, and for what is too large
 /// for GLB; std::bad_alloc.
-GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path);
+GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path,
+                      const GltfTextures& textures = {});
 
 }  // namespace beltrami::cli

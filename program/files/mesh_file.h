@@ -48,6 +48,7 @@ struct CornerUvs {
 struct Statement {
   std::uint64_t polygon = 0;  ///< it stands before this one
   std::string text;           ///< as in the file, without the line end
+  bool leads_on = false;      ///< names in it are those of files beside the output
 };
 
 /// A mesh as its file has it. What is computed on is its Surface (surface.h).

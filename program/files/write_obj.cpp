@@ -145,7 +145,9 @@ void write_obj(const MeshFile& mesh, const std::string& path, Writer& out) {
                       : "# UVs by beltrami\n");
   auto next = mesh.statements.begin();
   const auto write_statement = [&] {
-    out.text(per_vertex || !is_line(*next) ? names.line(next->text) : without_uvs(next->text));
+    out.text(next->leads_on                  ? next->text
+             : per_vertex || !is_line(*next) ? names.line(next->text)
+                                             : without_uvs(next->text));
     out.text("\n");
     ++next;
   };
@@ -167,7 +169,9 @@ std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& pat
   std::vector<const Column*> kept = extra_columns(mesh);
   for (const Column* column : normal_columns(mesh)) kept.push_back(column);
   MovedNames names(mesh, path);
-  for (const Statement& statement : mesh.statements) names.line(statement.text);
+  for (const Statement& statement : mesh.statements) {
+    if (!statement.leads_on) names.line(statement.text);
+  }
   std::vector<std::string> found = names.notes();
   for (const Column& column : mesh.vertex_columns) {
     if (std::find(kept.begin(), kept.end(), &column) != kept.end()) continue;

@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <new>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -34,35 +38,106 @@ void* reallocate(void* old, std::size_t size) {
 #define STBI_MALLOC(size) allocate(size)
 #define STBI_REALLOC(old, size) reallocate(old, size)
 #define STBI_FREE(old) std::free(old)
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#define STBIW_MALLOC(size) allocate(size)
-#define STBIW_REALLOC(old, size) reallocate(old, size)
-#define STBIW_FREE(old) std::free(old)
 #include <stb_easy_font.h>
 #include <stb_image.h>
-#include <stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
 
+#include "picture/deflate.h"
 #include "picture/stb_in_one_place.h"
 
 namespace beltrami::cli {
 
-std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
+namespace {
+
+/// A filter of PNG: what is left of a row where a byte is expected to be that on its left (1), that
+/// above (2), or that of both and the one between that is nearest to their plane (4). Rows begin
+/// with a texel of zeros. Returns the sum of what is left.
+template <int kFilter>
+std::uint64_t filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t size,
+                         std::size_t step, char* left_over) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const int left = row[i], up = above[i + step], corner = above[i];
+    int expected = kFilter == 1 ? left : up;
+    if constexpr (kFilter == 4) {
+      const int a = std::abs(up - corner), b = std::abs(left - corner);
+      const int c = std::abs(left + up - 2 * corner);
+      expected = a <= b && a <= c ? left : b <= c ? up : corner;
+    }
+    const auto rest = static_cast<std::int8_t>(row[i + step] - expected);
+    left_over[i] = static_cast<char>(rest);
+    sum += static_cast<std::uint64_t>(std::abs(int{rest}));
+  }
+  return sum;
+}
+
+/// All rows, each by the filter that leaves the least, as the specification of PNG advises.
+std::string filtered_rows(std::size_t size, std::size_t rows, std::size_t step,
+                          const std::uint8_t* pixels) {
+  std::vector<std::uint8_t> row(size + step, 0), above(size + step, 0);
+  std::array<std::string, 3> tried = {std::string(size, 0), std::string(size, 0),
+                                      std::string(size, 0)};
+  constexpr std::array<char, 3> kFilters = {1, 2, 4};
   std::string bytes;
-  const auto append = [](void* target, void* data, int size) {
-    static_cast<std::string*>(target)->append(static_cast<const char*>(data),
-                                              static_cast<std::size_t>(size));
-  };
-  stbi_write_png_to_func(append, &bytes, width, height, components, pixels, components * width);
+  bytes.reserve((size + 1) * rows);
+  for (std::size_t y = 0; y < rows; ++y) {
+    std::copy_n(pixels + y * size, size, row.data() + step);
+    const std::array<std::uint64_t, 3> sums = {
+        filter_row<1>(row.data(), above.data(), size, step, tried[0].data()),
+        filter_row<2>(row.data(), above.data(), size, step, tried[1].data()),
+        filter_row<4>(row.data(), above.data(), size, step, tried[2].data())};
+    const auto best =
+        static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
+    bytes += kFilters[best];
+    bytes += tried[best];
+    row.swap(above);
+  }
   return bytes;
 }
 
+void append_big(std::uint32_t number, std::string& bytes) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xFF);
+}
+
+void append_chunk(const char* type, const std::string& data, std::string& bytes) {
+  append_big(static_cast<std::uint32_t>(data.size()), bytes);
+  const std::string checked = type + data;
+  bytes += checked;
+  append_big(crc32(checked), bytes);
+}
+
+}  // namespace
+
+std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
+  constexpr std::array<char, 5> kColourTypes = {0, 0, 4, 2, 6};
+  const auto step = static_cast<std::size_t>(components);
+  const std::size_t size = static_cast<std::size_t>(width) * step;
+  const std::string filtered = filtered_rows(size, static_cast<std::size_t>(height), step, pixels);
+  std::string head;
+  append_big(static_cast<std::uint32_t>(width), head);
+  append_big(static_cast<std::uint32_t>(height), head);
+  head += {8, kColourTypes[step], 0, 0, 0};
+  std::string bytes = "\x89PNG\r\n\x1A\n";
+  append_chunk("IHDR", head, bytes);
+  append_chunk("IDAT", zlib_bytes(filtered), bytes);
+  append_chunk("IEND", "", bytes);
+  return bytes;
+}
+
+bool is_image(std::string_view bytes) {
+  // More texels than 16384 x 16384 would be gigabytes, which a small file may ask for.
+  constexpr double kMostTexels = 268435456;
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return false;
+  int width = 0, height = 0, components = 0;
+  return stbi_info_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                               static_cast<int>(bytes.size()), &width, &height, &components) != 0 &&
+         double(width) * height <= kMostTexels;
+}
+
 std::optional<Pixels> read_image(std::string_view bytes) {
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
+  if (!is_image(bytes)) return std::nullopt;
   Pixels image;
   std::uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                                                static_cast<int>(bytes.size()), &image.width,

@@ -1,4 +1,4 @@
-// What we use of the stb headers: PNG, JPEG to read, and a small pixel font.
+// Pictures in files, and what we use of the stb headers: PNG and JPEG to read, a small pixel font.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,9 @@ std::string png_bytes(int width, int height, int components, const std::uint8_t*
 
 /// What a PNG or JPEG file shows, with 8 bits for each component; nothing where it is none.
 std::optional<Pixels> read_image(std::string_view bytes);
+
+/// Whether read_image may read this, by its first bytes.
+bool is_image(std::string_view bytes);
 
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {

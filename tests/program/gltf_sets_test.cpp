@@ -72,10 +72,10 @@ TEST(GltfSets, TexturesOfUvsThatAreNewAreNoted) {
   };
   const std::vector<std::string> none;
   const auto note = [](const std::string& set, const std::string& free) {
-    return std::vector<std::string>{"1 material draws textures through " + set +
-                                    ", which is new now: beltrami transfer makes textures for "
-                                    "it, --uv-set " +
-                                    free + " leaves it as it is"};
+    return std::vector<std::string>{"1 texture (baseColorTexture of materials[0]) was for " + set +
+                                    ", which is new now: beltrami transfer makes them anew, "
+                                    "--uv-set " +
+                                    free + " leaves them the old UVs"};
   };
   EXPECT_EQ(notes({{"index", 0}}, 0), note("TEXCOORD_0", "1"));
   EXPECT_EQ(notes({{"index", 0}}, 1), none);
@@ -99,7 +99,7 @@ TEST(GltfSets, TexturesOfExtensionsOfMaterialsCountAsTheirs) {
       {"mappings", {{{"material", 1}, {"variants", {0}}}}}};
   const std::vector<std::string> notes = write(read(builder.glb()), kWhole).notes;
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(notes[0].find("2 materials draw"), 0u) << "the third is of nothing: " << notes[0];
+  EXPECT_EQ(notes[0].find("2 textures ("), 0u) << "the third is of nothing: " << notes[0];
 }
 
 TEST(GltfSets, TransformsOfTexturesGoWithTheUvsThatTheyMoved) {

@@ -121,13 +121,16 @@ std::vector<GltfOutput::File> files_of(const Document& document, Json json, Buff
   return files;
 }
 
-std::vector<std::string> images_left_behind(const Document& document, const std::string& path) {
+std::vector<std::string> images_left_behind(const Document& document, const Json& json,
+                                            const std::string& path) {
   std::vector<std::string> found;
   if (folder_of(document.path) == folder_of(path)) return found;
   for (std::uint64_t i = 0; i < document.count("images"); ++i) {
     const Item image = document.entry("images", i);
     const Json* uri = image.find("uri");
-    if (!uri || !uri->is_string() || is_data(uri->get_ref<const std::string&>())) continue;
+    const bool replaced = json["images"][i] != image.json;
+    if (replaced || !uri || !uri->is_string() || is_data(uri->get_ref<const std::string&>()))
+      continue;
     const std::optional<std::string> file = decode_path(uri->get_ref<const std::string&>());
     if (file) found.push_back(*file);
   }

@@ -24,7 +24,9 @@ std::vector<std::string> buffers_replaced(const Document& document, const std::s
 std::vector<GltfOutput::File> files_of(const Document& document, Json json, Buffer buffer,
                                        const std::string& path);
 
-/// Files that images are in, if the paths in `document` do not lead to them from `path`.
-std::vector<std::string> images_left_behind(const Document& document, const std::string& path);
+/// Files that images of the document are in, as far as `json`, edited from its own, still has them,
+/// if the paths do not lead to them from `path`.
+std::vector<std::string> images_left_behind(const Document& document, const Json& json,
+                                            const std::string& path);
 
 }  // namespace beltrami::cli::gltf

@@ -1,50 +1,14 @@
 #include "files/gltf/materials.h"
 
 #include <algorithm>
-#include <optional>
-#include <string_view>
 
 #include "process/failure.h"
 
 namespace beltrami::cli::gltf {
 namespace {
 
-std::optional<Item> extension(const Item& item, const char* name) {
-  const std::optional<Item> all = item.object("extensions");
-  return all ? all->object(name) : std::nullopt;
-}
-
 constexpr const char* kTransform = "KHR_texture_transform";
 constexpr const char* kVariants = "KHR_materials_variants";
-
-/// The set of UVs that a texture is drawn through.
-std::uint64_t set_of(const Item& texture) {
-  const std::uint64_t set = texture.whole("texCoord", 0);
-  const std::optional<Item> transform = extension(texture, kTransform);
-  return transform ? transform->whole("texCoord", set) : set;
-}
-
-/// The numbers of a primitive's material, and of those that KHR_materials_variants has for it.
-std::vector<std::uint64_t> materials_of(const Item& primitive) {
-  std::vector<std::uint64_t> numbers;
-  const auto add = [&](const Item& user) {
-    if (const std::optional<std::uint64_t> number = user.whole("material")) {
-      numbers.push_back(*number);
-    }
-  };
-  add(primitive);
-  const std::optional<Item> variants = extension(primitive, kVariants);
-  const std::optional<Item> mappings = variants ? variants->array("mappings") : std::nullopt;
-  for (std::uint64_t i = 0; mappings && i < mappings->size(); ++i) add((*mappings)[i]);
-  return numbers;
-}
-
-/// Whether the member `key` of something says how a texture is drawn: by its name, or by the set or
-/// the channels that it names.
-bool is_texture(const Json& json, std::string_view key) {
-  if (!json.is_object() || !json.contains("index")) return false;
-  return key.ends_with("exture") || json.contains("texCoord") || json.contains("channels");
-}
 
 /// Calls visit(json) for all such in `json`, the member `key` of something.
 template <class Visit>
@@ -63,7 +27,7 @@ void visit_textures(Json& json, std::string_view key, const Visit& visit) {
 bool uses_set(const Json& texture, std::uint64_t uv_set) {
   static const std::string nobody;
   try {
-    return set_of({texture, "", nobody}) == uv_set;
+    return set_of_texture({texture, "", nobody}) == uv_set;
   } catch (const Failure&) {
     return false;
   }
@@ -105,27 +69,56 @@ bool has_key(const Json& json, const char* key) {
                      [&](const Json& item) { return has_key(item, key); });
 }
 
-/// Takes an extension that is used no more off the lists.
-void forget_transform(Json& json) {
-  if (has_key(json, kTransform)) return;
+}  // namespace
+
+std::optional<Item> extension(const Item& item, const char* name) {
+  const std::optional<Item> all = item.object("extensions");
+  return all ? all->object(name) : std::nullopt;
+}
+
+std::uint64_t set_of_texture(const Item& texture) {
+  const std::uint64_t set = texture.whole("texCoord", 0);
+  const std::optional<Item> transform = extension(texture, kTransform);
+  return transform ? transform->whole("texCoord", set) : set;
+}
+
+std::vector<std::uint64_t> materials_of(const Item& primitive) {
+  std::vector<std::uint64_t> numbers;
+  const auto add = [&](const Item& user) {
+    if (const std::optional<std::uint64_t> number = user.whole("material")) {
+      numbers.push_back(*number);
+    }
+  };
+  add(primitive);
+  const std::optional<Item> variants = extension(primitive, kVariants);
+  const std::optional<Item> mappings = variants ? variants->array("mappings") : std::nullopt;
+  for (std::uint64_t i = 0; mappings && i < mappings->size(); ++i) add((*mappings)[i]);
+  return numbers;
+}
+
+bool is_texture(const Json& json, std::string_view key) {
+  if (!json.is_object() || !json.contains("index")) return false;
+  return key.ends_with("exture") || json.contains("texCoord") || json.contains("channels");
+}
+
+void forget_extension(Json& json, const char* extension_name) {
+  if (has_key(json, extension_name)) return;
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
     if (!json.contains(key) || !json[key].is_array()) continue;
     Json left = Json::array();
     for (Json& name : json[key]) {
-      if (name != kTransform) left.push_back(std::move(name));
+      if (name != extension_name) left.push_back(std::move(name));
     }
     json[key] = std::move(left);
     if (json[key].empty()) json.erase(key);
   }
 }
 
-}  // namespace
-
 std::vector<std::uint64_t> sets_of_normal_maps(const Document& document, const Item& primitive) {
   std::vector<std::uint64_t> sets;
   for (const std::uint64_t number : materials_of(primitive)) {
     const std::optional<Item> texture = document.entry("materials", number).object("normalTexture");
-    if (texture) sets.push_back(set_of(*texture));
+    if (texture) sets.push_back(set_of_texture(*texture));
   }
   return sets;
 }
@@ -151,7 +144,7 @@ SetUsers free_set_of_textures(const Document& document, const std::vector<Item>&
     });
     users.materials += uses ? 1 : 0;
   }
-  if (users.transforms > 0) forget_transform(json);
+  if (users.transforms > 0) forget_extension(json, kTransform);
   return users;
 }
 

@@ -2,14 +2,32 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/gltf/document.h"
 #include "files/gltf/item.h"
 
 namespace beltrami::cli::gltf {
+
+/// The numbers of a primitive's material, and of those that KHR_materials_variants has for it.
+std::vector<std::uint64_t> materials_of(const Item& primitive);
+
+/// Whether the member `key` of something says how a texture is drawn: by its name, or by the set or
+/// the channels that it names.
+bool is_texture(const Json& json, std::string_view key);
+
+/// The set of UVs that a texture is drawn through.
+std::uint64_t set_of_texture(const Item& texture);
+
+/// The extension of something, if it has it.
+std::optional<Item> extension(const Item& item, const char* name);
+
+/// Takes an extension that is used no more off the lists of `json`.
+void forget_extension(Json& json, const char* extension_name);
 
 /// The sets of UVs that the normal maps of a primitive's material use, and of the materials that
 /// KHR_materials_variants has for it. Throws Failure for a material that is not there.

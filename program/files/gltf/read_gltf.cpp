@@ -273,27 +273,48 @@ MeshFile read_gltf(std::string_view bytes, const std::string& path, Content cont
   return file;
 }
 
-std::vector<double> gltf_uvs(const MeshFile& file, std::uint32_t uv_set) {
+std::vector<double> gltf_attribute(const MeshFile& file, const char* name, std::size_t width) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const std::string name = "TEXCOORD_" + std::to_string(uv_set);
   const gltf::Model& model = gltf::model_of(file);
-  std::vector<double> uvs(2 * file.vertex_count(), kNone);
+  std::vector<double> values(width * file.vertex_count(), kNone);
   bool any = false;
   for (const gltf::Primitive& primitive : model.primitives) {
     const gltf::Item item = model.primitive(primitive.mesh, primitive.primitive);
-    const std::optional<std::uint64_t> number = item.object("attributes")->whole(name.c_str());
+    const std::optional<std::uint64_t> number = item.object("attributes")->whole(name);
     if (!number) continue;
-    any = true;
     const gltf::Accessor accessor(model.document, *number, model.sets[primitive.set].count);
+    if (accessor.type() != "VEC" + std::to_string(width)) continue;
+    any = true;
     const std::uint64_t first = 3 * primitive.first_face;
     for (std::uint64_t c = first; c < first + 3 * primitive.face_count; ++c) {
       const std::uint32_t vertex = file.polygons.corners()[c];
-      uvs[2 * std::size_t{vertex}] = accessor.value(model.local[vertex], 0);
-      uvs[2 * std::size_t{vertex} + 1] = 1 - accessor.value(model.local[vertex], 1);
+      for (std::size_t k = 0; k < width; ++k) {
+        values[width * vertex + k] = accessor.value(model.local[vertex], k);
+      }
     }
   }
-  if (!any) uvs.clear();
+  if (!any) values.clear();
+  return values;
+}
+
+std::vector<double> gltf_uvs(const MeshFile& file, std::uint32_t uv_set) {
+  const std::string name = "TEXCOORD_" + std::to_string(uv_set);
+  std::vector<double> uvs = gltf_attribute(file, name.c_str(), 2);
+  for (std::size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1 - uvs[i];
   return uvs;
+}
+
+std::vector<bool> gltf_faces_of(const MeshFile& file, std::uint64_t material) {
+  const gltf::Model& model = gltf::model_of(file);
+  std::vector<bool> found(file.polygons.size(), false);
+  for (const gltf::Primitive& place : model.primitives) {
+    const std::vector<std::uint64_t> own =
+        gltf::materials_of(model.primitive(place.mesh, place.primitive));
+    if (std::find(own.begin(), own.end(), material) == own.end()) continue;
+    std::fill_n(found.begin() + static_cast<std::ptrdiff_t>(place.first_face), place.face_count,
+                true);
+  }
+  return found;
 }
 
 }  // namespace beltrami::cli

@@ -133,7 +133,8 @@ void copy_views(const Document& document, const std::vector<bool>& used, Json& v
 
 }  // namespace
 
-Buffer rebuild(const Document& document, Json& json, std::vector<NewAccessor> added) {
+Buffer rebuild(const Document& document, Json& json, std::vector<NewAccessor> added,
+               const std::vector<NewImage>& images) {
   const std::vector<std::uint64_t> place_of = place_accessors(json, added);
   Json& views = json["bufferViews"];
   const std::vector<bool> used = references_in(json).views;
@@ -150,6 +151,14 @@ Buffer rebuild(const Document& document, Json& json, std::vector<NewAccessor> ad
     const std::uint64_t place = places.take();
     put(views, place, std::move(view));
     json["accessors"][place_of[k]]["bufferView"] = place;
+  }
+  for (const NewImage& image : images) {
+    const std::uint64_t place = places.take();
+    put(views, place,
+        {{"buffer", 0},
+         {"byteLength", image.bytes->size()},
+         {"byteOffset", layout.append(*image.bytes, 0)}});
+    for (const std::uint64_t entry : image.places) json["images"][entry]["bufferView"] = place;
   }
   for (const std::uint64_t place : places.left()) {
     views[place] = {{"buffer", 0}, {"byteLength", 1}};  // a view must be of something

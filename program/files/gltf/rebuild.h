@@ -20,6 +20,12 @@ struct NewAccessor {
   Target target;
 };
 
+/// An image in the buffer.
+struct NewImage {
+  std::vector<std::uint64_t> places;  ///< the entries of `images` that are it
+  const std::string* bytes = nullptr;
+};
+
 /// The one buffer of an edited document.
 struct Buffer {
   std::vector<std::string> pieces;  ///< one after another
@@ -30,6 +36,7 @@ struct Buffer {
 /// added[k] by the old count of accessors plus k. Numbers of accessors and buffer views that stay
 /// do not change, since extensions may have them; the places of those that nothing refers to any
 /// more are taken. All that is still used is in one buffer, bytes of views that overlap once.
-Buffer rebuild(const Document& document, Json& json, std::vector<NewAccessor> added);
+Buffer rebuild(const Document& document, Json& json, std::vector<NewAccessor> added,
+               const std::vector<NewImage>& images);
 
 }  // namespace beltrami::cli::gltf

@@ -15,6 +15,7 @@
 #include "files/gltf/model.h"
 #include "files/gltf/rebuild.h"
 #include "files/gltf/split.h"
+#include "files/gltf/textures.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
@@ -55,8 +56,10 @@ Component index_type(std::uint64_t count, Component least) {
 
 class Writer {
  public:
-  Writer(const MeshFile& file, std::uint32_t uv_set)
+  Writer(const MeshFile& file, std::uint32_t uv_set, const GltfTextures& textures)
       : file_(file),
+        baked_(textures.baked),
+        advice_(textures.advice),
         model_(model_of(file)),
         document_(model_.document),
         uv_set_(uv_set),
@@ -83,7 +86,8 @@ class Writer {
       edit_primitive(primitive);
     }
     edit_textures();
-    return rebuild(document_, json_, std::move(added_));
+    const std::vector<NewImage> images = put_textures(json_, baked_, uv_set_);
+    return rebuild(document_, json_, std::move(added_), images);
   }
 
   Json take_json() { return std::move(json_); }
@@ -102,7 +106,8 @@ class Writer {
     Json& primitive = mesh["primitives"][place.primitive];
     const std::uint32_t set = place.set;
     const std::vector<std::uint64_t>& mapped = place.normal_maps;
-    const bool tangents = std::find(mapped.begin(), mapped.end(), uv_set_) == mapped.end();
+    const bool tangents = std::find(mapped.begin(), mapped.end(), uv_set_) == mapped.end() &&
+                          !turns_directions(before);
 
     edit_attributes(primitive["attributes"], false, set, tangents);
     add_uvs(primitive["attributes"], uvs_of_set_[set]);
@@ -142,16 +147,15 @@ class Writer {
     }
     const SetUsers users = free_set_of_textures(document_, replaced, uv_set_, json_);
     const std::string elsewhere = "--uv-set " + std::to_string(free) + " leaves it as it is";
-    if (users.materials > 0) {
-      notes_.push_back(counted(users.materials, "material draws", "materials draw") +
-                       " textures through " + uv_name_ + ", which is new now: " +
-                       "beltrami transfer makes textures for it, " + elsewhere);
+    if (baked_.empty() && users.materials > 0) {
+      notes_.push_back(textures_that_misfit() + ", which is new now: " + advice_ + ", --uv-set " +
+                       std::to_string(free) + " leaves them the old UVs");
     }
     for (const std::string& extension : users.extensions) {
       notes_.push_back(extension + " has textures for " + uv_name_ +
                        ", which is new now: " + elsewhere);
     }
-    if (users.transforms > 0) {
+    if (baked_.empty() && users.transforms > 0) {
       not_kept_.insert("KHR_texture_transform of " +
                        counted(users.transforms, "texture", "textures"));
     }
@@ -160,6 +164,36 @@ class Writer {
                        " had no UVs in the sets before " + uv_name_ +
                        ", which glTF asks for: the new ones are there, too");
     }
+  }
+
+  /// Whether a material of a primitive has directions that are said along the new UVs now.
+  bool turns_directions(const Item& primitive) const {
+    const std::vector<std::uint64_t> own = materials_of(primitive);
+    return std::any_of(baked_.begin(), baked_.end(), [&](const BakedTexture& texture) {
+      return texture.use.meaning == Meaning::kDirections &&
+             std::find(own.begin(), own.end(), texture.use.material) != own.end();
+    });
+  }
+
+  /// "2 textures (normalTexture of materials[0] 'wood', ...) were for TEXCOORD_0".
+  std::string textures_that_misfit() const {
+    constexpr std::uint64_t kMostNames = 6;  // more would bury the rest of the line
+    std::uint64_t count = 0;
+    std::string names;
+    std::vector<TextureUse> uses;
+    try {
+      uses = textures_of(model_);
+    } catch (const Failure&) {
+      return "textures were for " + uv_name_;  // one is not as it should be, which is no hindrance
+    }
+    for (const TextureUse& use : uses) {
+      if (use.uv_set != uv_set_) continue;
+      if (count < kMostNames) names += (count > 0 ? ", " : "") + use.name;
+      ++count;
+    }
+    if (count > kMostNames) names += ", ...";
+    return counted(count, "texture", "textures") + " (" + names + ") " +
+           (count == 1 ? "was" : "were") + " for " + uv_name_;
   }
 
   /// Attributes of a primitive, or of a morph target of it.
@@ -264,6 +298,8 @@ class Writer {
   }
 
   const MeshFile& file_;
+  const std::vector<BakedTexture>& baked_;
+  std::string advice_;
   const Model& model_;
   const Document& document_;
   std::uint32_t uv_set_;
@@ -299,18 +335,27 @@ std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::stri
   return {beside, path};
 }
 
-GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path) {
+GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::string& path,
+                      const GltfTextures& textures) {
   require_uv_set(file, uv_set);
   const gltf::Document& document = gltf::model_of(file).document;
-  gltf::Writer writer(file, uv_set);
+  gltf::Writer writer(file, uv_set, textures);
   gltf::Buffer buffer = writer.write();
+  gltf::Json json = writer.take_json();
+  const std::vector<std::string> left = gltf::images_left_behind(document, json, path);
   GltfOutput output;
-  output.files = gltf::files_of(document, writer.take_json(), std::move(buffer), path);
+  for (const BakedTexture& texture : textures.baked) {
+    if (!texture.path.empty()) output.files.push_back({texture.path, {texture.png}});
+  }
+  for (GltfOutput::File& part :
+       gltf::files_of(document, std::move(json), std::move(buffer), path)) {
+    output.files.push_back(std::move(part));
+  }
   output.replaced = gltf::buffers_replaced(document, path);
   output.not_kept = file.not_kept;
   output.not_kept.insert(output.not_kept.end(), writer.not_kept().begin(), writer.not_kept().end());
   output.notes = writer.notes();
-  for (const std::string& image : gltf::images_left_behind(document, path)) {
+  for (const std::string& image : left) {
     output.not_kept.push_back("image beside the input: " + one_line(image));
   }
   return output;

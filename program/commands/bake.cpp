@@ -1,0 +1,393 @@
+#include "commands/bake.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "commands/command.h"
+#include "files/column.h"
+#include "files/gltf/uri.h"
+#include "files/gltf_file.h"
+#include "files/polygons.h"
+#include "picture/axes_turn.h"
+#include "picture/resample.h"
+#include "picture/stb_in_one_place.h"
+#include "picture/texture.h"
+#include "process/failure.h"
+#include "process/interrupt.h"
+
+namespace beltrami::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Texels of the old side for one of the new one from which a note says so: less is not seen.
+constexpr double kMuchCoarser = 1.5;
+/// A name of a file is no longer, whatever materials are called.
+constexpr std::size_t kLongestStem = 100;
+
+/// Letters, digits and a few signs, so that a name of a material cannot lead anywhere.
+std::string file_name_of(const std::string& stem) {
+  std::string name;
+  for (const char c : stem.substr(0, kLongestStem)) {
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '-' || c == '_';
+    name += good ? c : '_';
+  }
+  return name;
+}
+
+/// The format of an image that cannot be read, by its first bytes.
+std::string format_of_image(const std::string& bytes) {
+  const std::string_view head = std::string_view(bytes).substr(0, 32);
+  if (head.starts_with("\xABKTX 20")) return "KTX2";
+  if (head.starts_with("\xABKTX 11")) return "KTX";
+  if (head.starts_with("RIFF") && head.substr(8).starts_with("WEBP")) return "WebP";
+  if (head.starts_with("\x76\x2F\x31\x01")) return "OpenEXR";
+  if (head.starts_with("DDS ")) return "DDS";
+  if (head.starts_with("#?RADIANCE") || head.starts_with("#?RGBE")) return "Radiance HDR";
+  if (head.starts_with("GIF8")) return "GIF";
+  if (head.starts_with("BM")) return "BMP";
+  if (head.starts_with("II*") || head.starts_with("MM")) return "TIFF";
+  if (head.substr(std::min<std::size_t>(4, head.size())).starts_with("ftypavif")) return "AVIF";
+  if (head.starts_with("\x89PNG") || head.starts_with("\xFF\xD8")) return "a damaged image";
+  return "of a format that is not known";
+}
+
+[[noreturn]] void refuse_image(const std::string& path, const TextureUse& use,
+                               const std::string& bytes) {
+  throw Failure(path + ": " + use.image + " (" + use.name + ") is " + format_of_image(bytes) +
+                ", and --bake reads PNG and JPEG: save it as one of these");
+}
+
+std::string one_digit(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+/// Whether an image has the colours of a normal map: mostly blue, and not grey.
+bool shows_directions(const Pixels& image) {
+  if (image.components < 3) return false;
+  double red = 0, green = 0, blue = 0;
+  const auto step = static_cast<std::size_t>(image.components);
+  for (std::size_t i = 0; i < image.values.size(); i += step) {
+    red += image.values[i];
+    green += image.values[i + 1];
+    blue += image.values[i + 2];
+  }
+  return blue > 1.2 * red && blue > 1.2 * green;
+}
+
+std::vector<double> vertex_normals(const MeshFile& file) {
+  std::vector<const Column*> columns;
+  for (const char* name : {"nx", "ny", "nz"}) {
+    const Column* column = find_column(file.vertex_columns, name);
+    if (!column) return {};
+    columns.push_back(column);
+  }
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < file.vertex_count(); ++i) {
+    for (const Column* column : columns) values.push_back((*column)[i]);
+  }
+  return values;
+}
+
+}  // namespace
+
+struct TextureBake::Places {
+  std::vector<std::uint32_t> corners;  ///< three for each triangle, of the file's faces
+  std::vector<BakedTriangle> triangles;
+  std::vector<SourceTriangle> sources;
+  std::vector<double> old_uvs, new_uvs;  ///< per corner
+};
+
+TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file_(file) {
+  const MeshFormat format = format_of(file.path);
+  if (format == MeshFormat::kObj && format_of(output) == MeshFormat::kObj) {
+    libraries_ = std::make_unique<MaterialLibraries>(file, true);
+  } else if (format != MeshFormat::kGltf || format_of(output) != MeshFormat::kGltf) {
+    throw Failure(
+        "--bake: textures are those of materials of OBJ and glTF, and OUT has the format "
+        "of IN: write .obj for .obj, and .gltf or .glb for glTF");
+  }
+  for (TextureUse& use : libraries_ ? libraries_->textures() : gltf_textures(file)) {
+    const std::string bytes = image_of(use);
+    if (!is_image(bytes)) refuse_image(file.path, use, bytes);
+    baked_.push_back({std::move(use), {}, {}, {}});
+  }
+  name_files(output);
+  if (!libraries_ || baked_.empty()) return;
+  const MeshFile old = read_mesh(file.path, Content::kUvs, file.reach);
+  const auto& [values, of_corner] = old.corner_uvs;
+  const std::vector<double>& uvs = of_corner.empty() ? old.uvs : values;
+  for (const std::size_t uv : of_corner.empty() ? old.polygons.corners() : of_corner) {
+    obj_uvs_.insert(obj_uvs_.end(), {uvs[2 * uv], uvs[2 * uv + 1]});
+  }
+}
+
+std::string TextureBake::image_of(const TextureUse& use) const {
+  return libraries_ ? libraries_->image(use) : gltf_image(file_, use);
+}
+
+void TextureBake::name_files(const std::string& output) {
+  const fs::path base(output);
+  if (base.extension().string().size() == 4 && !libraries_) return;  // .glb holds its images
+  std::vector<std::string> taken = {file_.path, output};
+  const std::vector<std::string> sources = libraries_ ? libraries_->sources() : gltf_sources(file_);
+  taken.insert(taken.end(), sources.begin(), sources.end());
+  // What the textures are read from must stay until they are written.
+  const auto free_path = [&](const std::string& end, const char* extension) {
+    for (int number = 0;; ++number) {
+      fs::path path = base;
+      path.replace_extension();
+      std::string name = end;
+      if (number > 0) name.append(1, '-').append(std::to_string(number));
+      path += name.append(extension);
+      const auto same = [&](const std::string& other) { return same_file(other, path.string()); };
+      if (std::any_of(taken.begin(), taken.end(), same)) continue;
+      taken.push_back(path.string());
+      return path.string();
+    }
+  };
+  for (BakedTexture& baked : baked_) {
+    baked.path = free_path(std::string("_").append(file_name_of(baked.use.stem)), ".png");
+    const std::string name = fs::path(baked.path).filename().string();
+    baked.uri = libraries_ ? name : gltf::encode_path(name);
+  }
+  if (libraries_ && !baked_.empty()) library_path_ = free_path("", ".mtl");
+}
+
+std::vector<std::string> TextureBake::paths() const {
+  std::vector<std::string> found;
+  for (const BakedTexture& baked : baked_) {
+    if (!baked.path.empty()) found.push_back(baked.path);
+  }
+  if (!library_path_.empty()) found.push_back(library_path_);
+  return found;
+}
+
+void TextureBake::place(const std::vector<std::uint32_t>& triangles) {
+  corners_ = triangles;
+  // A polygon is cut along its own order: so its triangles have the winding of the file again.
+  for (auto first = corners_.begin(); first != corners_.end(); first += 3) {
+    std::sort(first, first + 3);
+  }
+  new_uvs_.clear();
+  const auto& [values, of_corner] = file_.corner_uvs;
+  for (const std::uint32_t corner : corners_) {
+    const std::size_t uv = of_corner[corner];
+    new_uvs_.insert(new_uvs_.end(), {values[2 * uv], values[2 * uv + 1]});
+  }
+}
+
+std::vector<double> TextureBake::old_uvs(std::uint64_t uv_set) const {
+  std::vector<double> found;
+  found.reserve(2 * corners_.size());
+  if (libraries_) {
+    for (const std::size_t corner : corners_) {
+      found.insert(found.end(), {obj_uvs_[2 * corner], obj_uvs_[2 * corner + 1]});
+    }
+    return found;
+  }
+  const std::vector<double> uvs = gltf_uvs(file_, static_cast<std::uint32_t>(uv_set));
+  for (const std::uint32_t corner : corners_) {
+    const std::size_t vertex = file_.polygons.corners()[corner];
+    for (std::size_t k = 0; k < 2; ++k) {
+      found.push_back(uvs.empty() ? kNone : uvs[2 * vertex + k]);
+    }
+  }
+  return found;
+}
+
+TextureBake::Places TextureBake::places_of(const TextureUse& use, int side) const {
+  const std::vector<bool> has =
+      libraries_ ? libraries_->faces_of(use.material) : gltf_faces_of(file_, use.material);
+  const std::vector<double> uvs = old_uvs(use.uv_set);
+  const auto [a, b, c, d, e, f] = use.transform;
+  Places places;
+  for (std::size_t first = 0; first < corners_.size(); first += 3) {
+    if (!has[file_.polygons.of_corner(corners_[first])]) continue;
+    BakedTriangle& triangle = places.triangles.emplace_back();
+    SourceTriangle& source = places.sources.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = 2 * (first + k);
+      const double u = uvs[at], v = uvs[at + 1];
+      source.uvs[k] = {a * u + b * v + c, d * u + e * v + f};
+      if (!std::isfinite(source.uvs[k][0]) || !std::isfinite(source.uvs[k][1])) {
+        source.page = kNoPage;
+      }
+      triangle[k] = {side * new_uvs_[at], side * new_uvs_[at + 1]};
+      places.corners.push_back(corners_[first + k]);
+      places.old_uvs.insert(places.old_uvs.end(), source.uvs[k].begin(), source.uvs[k].end());
+      places.new_uvs.insert(places.new_uvs.end(), {new_uvs_[at], new_uvs_[at + 1]});
+    }
+  }
+  return places;
+}
+
+namespace {
+
+/// Picks `width` numbers for each corner's vertex; empty for none.
+std::vector<double> of_corners(const MeshFile& file, const std::vector<double>& of_vertices,
+                               const std::vector<std::uint32_t>& corners, std::size_t width) {
+  std::vector<double> found;
+  if (of_vertices.empty()) return found;
+  found.reserve(width * corners.size());
+  for (const std::uint32_t corner : corners) {
+    const std::size_t vertex = file.polygons.corners()[corner];
+    for (std::size_t k = 0; k < width; ++k) found.push_back(of_vertices[width * vertex + k]);
+  }
+  return found;
+}
+
+std::vector<double> normals_of_corners(const MeshFile& file,
+                                       const std::vector<std::uint32_t>& corners) {
+  const auto& [values, of_corner] = file.normals;
+  if (of_corner.empty()) return of_corners(file, vertex_normals(file), corners, 3);
+  std::vector<double> found;
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t normal = of_corner[corner];
+    for (std::size_t k = 0; k < 3; ++k) {
+      found.push_back(normal == kNoNormal ? kNone : values[3 * std::size_t{normal} + k]);
+    }
+  }
+  return found;
+}
+
+std::vector<AxesTurn> turns_of(const MeshFile& file, const TextureUse& use,
+                               const std::vector<std::uint32_t>& corners,
+                               const std::vector<double>& old_uvs,
+                               const std::vector<double>& new_uvs) {
+  std::vector<double> positions, normals, tangents;
+  if (file.gltf) {
+    // Viewers find tangents in the coordinates of the mesh itself.
+    positions = of_corners(file, gltf_attribute(file, "POSITION", 3), corners, 3);
+    normals = of_corners(file, gltf_attribute(file, "NORMAL", 3), corners, 3);
+    // Those of a file are for the UVs of its normal map as they are, without a transform.
+    tangents = of_corners(file, gltf_attribute(file, "TANGENT", 4), corners, 4);
+  } else {
+    positions = of_corners(file, file.positions, corners, 3);
+    normals = normals_of_corners(file, corners);
+  }
+  if (use.transform != TextureUse{}.transform) tangents.clear();
+  return axes_turns({positions, normals, tangents, old_uvs, new_uvs});
+}
+
+}  // namespace
+
+void TextureBake::note_density(const Places& places, int width, int height, int side) {
+  double before = 0, after = 0;
+  const auto area = [](const std::array<std::array<double, 2>, 3>& t) {
+    return std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) -
+                    (t[2][0] - t[0][0]) * (t[1][1] - t[0][1])) /
+           2;
+  };
+  for (std::size_t t = 0; t < places.triangles.size(); ++t) {
+    if (places.sources[t].page == kNoPage) continue;
+    before += area(places.sources[t].uvs) * width * height;
+    after += area(places.triangles[t]);
+  }
+  if (after > 0 && side > 0) coarser_ = std::max(coarser_, std::sqrt(before / after));
+}
+
+void TextureBake::bake_one(BakedTexture& baked, int side, int threads,
+                           const std::function<void(double)>& progress, Report& report) {
+  const std::string bytes = image_of(baked.use);
+  std::optional<Pixels> image = read_image(bytes);
+  if (!image) refuse_image(file_.path, baked.use, bytes);
+  if (baked.use.meaning == Meaning::kRelief) {
+    baked.use.meaning = shows_directions(*image) ? Meaning::kDirections : Meaning::kNumbers;
+  }
+  if (image->components < 3 && baked.use.meaning == Meaning::kDirections) {
+    baked.use.meaning = Meaning::kNumbers;  // a grey image has no directions
+  }
+  const Places places = places_of(baked.use, side);
+  note_density(places, image->width, image->height, side);
+  std::vector<AxesTurn> turns;
+  if (baked.use.meaning == Meaning::kDirections) {
+    turns = turns_of(file_, baked.use, places.corners, places.old_uvs, places.new_uvs);
+  }
+  std::array<Texture, 1> texture = {Texture(*image, baked.use.meaning)};
+  image.reset();
+  const std::vector<std::uint8_t> seams = inner_seams(places.triangles, places.sources);
+  BakeJob job;
+  job.seams = seams;
+  job.triangles = places.triangles;
+  job.sources = places.sources;
+  job.turns = turns;
+  job.pages = texture;
+  job.reading = baked.use.reading;
+  job.side = side;
+  job.threads = threads;
+  job.progress = progress;
+  Baked page = bake(job);
+  if (2 * page.without_source > page.covered) {
+    throw Failure(file_.path + ": " + baked.use.name +
+                  ": most of its texels have no source, since " +
+                  "their faces have no UVs in set " + std::to_string(baked.use.uv_set) +
+                  ": do without --bake");
+  }
+  if (page.covered == 0) {
+    report.notes.push_back(baked.use.name + " covers no texel: raise --resolution");
+  }
+  texels_ += page.covered;
+  without_source_ += page.without_source;
+  fill_gutters(page, side);
+  baked.png = png_bytes(side, side, page.image.components, page.image.values.data());
+}
+
+void TextureBake::run(int side, int threads, const std::function<void(double)>& progress,
+                      Report& report) {
+  for (std::size_t i = 0; i < baked_.size(); ++i) {
+    throw_if_interrupted();
+    const auto part = [&](double share) { progress((double(i) + share) / double(baked_.size())); };
+    part(0);
+    bake_one(baked_[i], side, threads, part, report);
+  }
+  report.textures = {baked_.size(), texels_, without_source_};
+  if (baked_.empty()) {
+    report.notes.emplace_back("no material has a texture, so that --bake has nothing to do");
+  } else if (coarser_ > kMuchCoarser) {
+    const double wanted = std::exp2(std::ceil(std::log2(side * coarser_ / kMuchCoarser)));
+    report.notes.push_back("the textures have fewer texels where the old ones had more, one for " +
+                           one_digit(coarser_) + " along a side at most: --resolution " +
+                           std::to_string(static_cast<int>(std::min(wanted, 32768.0))) +
+                           " keeps them");
+  }
+}
+
+void TextureBake::write_obj_parts(MeshFile& written, std::deque<AtomicFile>& outputs) const {
+  if (!libraries_ || baked_.empty()) return;
+  const auto write = [&](const std::string& path, const std::string& bytes) {
+    throw_if_interrupted();
+    AtomicFile& output = outputs.emplace_back(path);
+    output.write(bytes);
+    output.close();
+  };
+  for (const BakedTexture& baked : baked_) write(baked.path, baked.png);
+  write(library_path_, libraries_->text(baked_));
+  MaterialLibraries::name_library(written, fs::path(library_path_).filename().string());
+}
+
+std::string textures_that_misfit(const MeshFile& file) {
+  constexpr std::size_t kMostNames = 6;  // more would bury the rest of the line
+  const std::vector<TextureUse> uses = MaterialLibraries(file, false).textures();
+  if (uses.empty()) return {};
+  std::string names;
+  for (std::size_t i = 0; i < std::min(uses.size(), kMostNames); ++i) {
+    names += (i > 0 ? ", " : "") + uses[i].name;
+  }
+  if (uses.size() > kMostNames) names += ", ...";
+  return std::to_string(uses.size()) + (uses.size() == 1 ? " texture (" : " textures (") + names +
+         (uses.size() == 1 ? ") was" : ") were") + " for the UVs of the input";
+}
+
+}  // namespace beltrami::cli

@@ -1,0 +1,69 @@
+// The textures of a mesh's materials, baked for its new UVs.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands/report.h"
+#include "files/atomic_file.h"
+#include "files/mesh_file.h"
+#include "files/mtl.h"
+#include "files/texture_use.h"
+
+namespace beltrami::cli {
+
+/// The textures of OBJ and glTF, from before there are new UVs to the files that they go to.
+class TextureBake {
+ public:
+  /// Lists the textures of `file`, looks into each image, and finds names beside `output` for the
+  /// new ones. Throws Failure for images that cannot be read, and for formats without materials.
+  /// `file` must outlive the object, with its vertices as they are. `output` is of its format.
+  TextureBake(const MeshFile& file, const std::string& output);
+
+  /// The files that will be written beside the output.
+  std::vector<std::string> paths() const;
+  bool empty() const { return baked_.empty(); }
+
+  /// Takes over where corners have their new UVs, and where they had the old ones; `triangles`:
+  /// three corners of the file's faces each.
+  void place(const std::vector<std::uint32_t>& triangles);
+  /// Bakes all, each on a page of `side` texels. Throws Failure where most of a texture would be
+  /// made up.
+  void run(int side, int threads, const std::function<void(double)>& progress, Report& report);
+
+  /// For write_outputs, of glTF.
+  std::vector<BakedTexture> take_textures() { return std::move(baked_); }
+  /// Writes the images and the library of an OBJ file, and has the mesh that is written name that.
+  void write_obj_parts(MeshFile& written, std::deque<AtomicFile>& outputs) const;
+
+ private:
+  struct Places;  ///< of the triangles of one texture
+
+  std::string image_of(const TextureUse& use) const;
+  void name_files(const std::string& output);
+  std::vector<double> old_uvs(std::uint64_t uv_set) const;
+  Places places_of(const TextureUse& use, int side) const;
+  void bake_one(BakedTexture& baked, int side, int threads,
+                const std::function<void(double)>& progress, Report& report);
+  void note_density(const Places& places, int width, int height, int side);
+
+  const MeshFile& file_;
+  std::unique_ptr<MaterialLibraries> libraries_;  ///< of OBJ
+  std::string library_path_;                      ///< of the new one
+  std::vector<double> obj_uvs_;                   ///< u v of each corner of the faces, of OBJ
+  std::vector<BakedTexture> baked_;
+  std::vector<std::uint32_t> corners_;  ///< three for each triangle, in the winding of the file
+  std::vector<double> new_uvs_;         ///< u v for each of these
+  double coarser_ = 1;  ///< at most so many texels of an old side are one of a new one
+  std::uint64_t texels_ = 0, without_source_ = 0;
+};
+
+/// The textures of an OBJ file that new UVs do not fit, in a sentence; "" where there are none.
+std::string textures_that_misfit(const MeshFile& file);
+
+}  // namespace beltrami::cli

@@ -1,0 +1,55 @@
+// The material libraries (.mtl) that an OBJ file names, and their textures.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files/mesh_file.h"
+#include "files/texture_use.h"
+
+namespace beltrami::cli {
+
+class MaterialLibraries {
+ public:
+  /// Reads those that the statements of `file` name within its reach. `strict`: throws Failure
+  /// where one cannot be read; else it is passed over. `file` must outlive the object.
+  MaterialLibraries(const MeshFile& file, bool strict);
+
+  /// Every texture that follows UVs, of the materials that faces have.
+  std::vector<TextureUse> textures() const;
+  /// Per face, whether it has this material.
+  std::vector<bool> faces_of(std::uint64_t material) const;
+  /// The bytes of the image of a texture. Throws Failure where there is none within reach.
+  std::string image(const TextureUse& use) const;
+  /// The files that were read, and those of images.
+  std::vector<std::string> sources() const;
+  /// One library of all of them, that names the files of `baked` where a texture was.
+  std::string text(const std::vector<BakedTexture>& baked) const;
+  /// Gives statements of a copy of the file this library instead of its own.
+  static void name_library(MeshFile& file, const std::string& name);
+
+ private:
+  struct Line {
+    std::string text;     ///< as it is
+    std::string keyword;  ///< of a texture that follows UVs, or ""
+    std::string options;  ///< of it, that say nothing of UVs
+    std::string name;     ///< of its image
+    std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};
+    bool clamps = false;
+  };
+  struct Material {
+    std::string name, library;  ///< path of the latter
+    std::vector<Line> lines;
+  };
+  void read_library(const std::string& path);
+  std::string slot(const Material& material, const Line& line) const;
+  std::vector<bool> materials_in_use() const;
+
+  const MeshFile& file_;
+  std::vector<std::string> libraries_;
+  std::vector<Material> materials_;
+};
+
+}  // namespace beltrami::cli

@@ -1,0 +1,446 @@
+// beltrami unwrap --bake, end to end, and the engine that it shares with transfer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/gltf_file.h"
+#include "files/mesh_file.h"
+#include "gltf_builder.h"
+#include "gltf_parts.h"
+#include "picture/axes_turn.h"
+#include "picture/resample.h"
+#include "picture/stb_in_one_place.h"
+#include "process/failure.h"
+#include "run_program.h"
+#include "temporary_directory.h"
+
+namespace beltrami::cli {
+namespace {
+
+using Texel = std::array<double, 3>;
+using Uv = std::array<double, 2>;
+/// What is shown at a place of [0, 1]^2, from 0 to 255, rows from the top.
+using Shown = std::function<Texel(double x, double y)>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::string png_of(int side, const Shown& shown) {
+  std::vector<std::uint8_t> values;
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      for (const double value : shown((column + 0.5) / side, (row + 0.5) / side)) {
+        values.push_back(static_cast<std::uint8_t>(value + 0.5));
+      }
+    }
+  }
+  return png_bytes(side, side, 3, values.data());
+}
+
+Texel smooth(double x, double y) {
+  const double a = 2 * kPi * x, b = 2 * kPi * y;
+  return {128 + 100 * std::sin(a), 128 + 100 * std::cos(b), 128 + 60 * std::sin(a + b)};
+}
+
+/// An image between its texels, repeated; `uv` with its V axis down, as in glTF.
+Texel read_at(const Pixels& image, const Uv& uv) {
+  const double x = uv[0] * image.width - 0.5, y = uv[1] * image.height - 0.5;
+  const double left = std::floor(x), top = std::floor(y);
+  Texel found{};
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      const auto wrapped = [](double at, int count) {
+        return static_cast<std::size_t>(at - count * std::floor(at / count));
+      };
+      const std::size_t texel = wrapped(top + j, image.height) * std::size_t(image.width) +
+                                wrapped(left + i, image.width);
+      const double weight = (i ? x - left : 1 - x + left) * (j ? y - top : 1 - y + top);
+      for (std::size_t k = 0; k < 3; ++k) found[k] += weight * image.values[3 * texel + k];
+    }
+  }
+  return found;
+}
+
+/// A strip of two squares in space, bent by a right angle, each with UVs of its own.
+GltfBuilder bent_strip(std::initializer_list<float> uvs) {
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0,
+                                               1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0})},
+                {"TEXCOORD_0", builder.vectors2(uvs)}},
+               builder.indices<std::uint8_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}));
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  return builder;
+}
+
+/// Adds an image, and has the material show it in a slot.
+void add_texture(GltfBuilder& builder, const std::string& png, const std::string& slot,
+                 const Json& sampler = Json::object(), const Json& extension = Json()) {
+  auto& json = builder.json;
+  const int view = builder.view(png);
+  json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+  json["samplers"].push_back(sampler);
+  const std::size_t number = json["images"].size() - 1;
+  json["textures"].push_back({{"source", number}, {"sampler", number}});
+  Json info = {{"index", number}};
+  if (!extension.is_null()) info["extensions"] = {{"KHR_texture_transform", extension}};
+  Json& material = json["materials"][0];
+  (slot == "baseColorTexture" ? material["pbrMetallicRoughness"] : material)[slot] = info;
+}
+
+/// A GLB file before and after.
+class BakedModel {
+ public:
+  explicit BakedModel(const GltfBuilder& builder, std::vector<std::string> options = {})
+      : before(read_gltf(builder.glb(), "a.glb", Content::kUvs)) {
+    const std::string in = directory.file("in.glb", builder.glb()), out = directory.path("out.glb");
+    std::vector<std::string> words = {"unwrap", in, out, "--bake", "--resolution", "256"};
+    words.insert(words.end(), options.begin(), options.end());
+    outcome = run(words);
+    if (outcome.exit_code != 0) return;
+    parts.emplace(directory.read("out.glb"));
+    after = read_gltf(directory.read("out.glb"), "out.glb", Content::kUvs);
+  }
+
+  Pixels image(const Json& info) const {
+    const Json& texture = parts->json["textures"][info["index"].get<std::size_t>()];
+    const Json& found = parts->json["images"][texture["source"].get<std::size_t>()];
+    return *read_image(parts->view(found["bufferView"]));
+  }
+  Pixels base_colour() const {
+    return image(parts->json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]);
+  }
+  /// Calls visit(old UV, new UV) at places on faces, both with the V axis down.
+  void visit(const std::function<void(std::size_t face, const Uv&, const Uv&)>& visit) const {
+    for (std::size_t face = 0; face < before.polygons.size(); ++face) {
+      for (double a = 0.02; a < 1; a += 0.06) {
+        for (double b = 0.02; a + b < 0.99; b += 0.06) {
+          visit(face, at(before, face, a, b), at(after, face, a, b));
+        }
+      }
+    }
+  }
+  static Uv at(const MeshFile& file, std::size_t face, double a, double b) {
+    const std::array<double, 3> weights = {1 - a - b, a, b};
+    Uv uv{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t vertex = file.polygons.corners()[3 * face + k];
+      uv[0] += weights[k] * file.uvs[2 * vertex];
+      uv[1] += weights[k] * (1 - file.uvs[2 * vertex + 1]);
+    }
+    return uv;
+  }
+  /// In decibels, of what the model shows now against `shown` at the old UVs.
+  double psnr(const Pixels& now, const std::function<Texel(const Uv&)>& shown) const {
+    double sum = 0;
+    int count = 0;
+    visit([&](std::size_t, const Uv& old_uv, const Uv& new_uv) {
+      const Texel is = read_at(now, new_uv), was = shown(old_uv);
+      for (std::size_t k = 0; k < 3; ++k) sum += (is[k] - was[k]) * (is[k] - was[k]);
+      count += 3;
+    });
+    return 10 * std::log10(255 * 255 / (sum / count + 1e-12));
+  }
+
+  TemporaryDirectory directory;
+  MeshFile before, after;
+  Outcome outcome;
+  std::optional<Parts> parts;
+};
+
+const std::initializer_list<float> kTwoHalves = {0,   0, .5f, 0, .5f, 1, 0,   1,
+                                                 .5f, 0, 1,   0, 1,   1, .5f, 1};
+
+TEST(Bake, ASmoothTextureShowsTheSameAtTheNewUvs) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, png_of(256, smooth), "baseColorTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  const Pixels before = *read_image(png_of(256, smooth)), now = model.base_colour();
+  EXPECT_EQ(now.width, 256);
+  EXPECT_GE(model.psnr(now, [&](const Uv& uv) { return read_at(before, uv); }), 40);
+  EXPECT_EQ(model.parts->json["images"].size(), 1u) << "the old one is gone";
+  EXPECT_EQ(model.outcome.err, "");
+}
+
+TEST(Bake, AFloorThatRepeatsReadsTheTextureEveryTime) {
+  GltfBuilder builder = bent_strip({0, 0, 2, 0, 2, 2, 0, 2, 0, 0, 2, 0, 2, 2, 0, 2});
+  add_texture(builder, png_of(64, smooth), "baseColorTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  const Pixels before = *read_image(png_of(64, smooth));
+  EXPECT_GE(model.psnr(model.base_colour(), [&](const Uv& uv) { return read_at(before, uv); }), 36);
+}
+
+TEST(Bake, SamplersAndTransformsSayWhereATextureIsRead) {
+  GltfBuilder builder = bent_strip({0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1});
+  const double angle = 0.5;
+  add_texture(builder, png_of(128, smooth), "baseColorTexture",
+              {{"wrapS", 33648}, {"wrapT", 33648}},
+              {{"offset", {0.25, -0.5}}, {"rotation", angle}, {"scale", {1.5, 0.75}}});
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  const auto mirrored = [](double x) {
+    const double period = x - 2 * std::floor(x / 2);
+    return period > 1 ? 2 - period : period;
+  };
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double found = model.psnr(model.base_colour(), [&](const Uv& uv) {
+    const double u = 1.5 * uv[0], v = 0.75 * uv[1];
+    return smooth(mirrored(c * u + s * v + 0.25), mirrored(-s * u + c * v - 0.5));
+  });
+  EXPECT_GE(found, 36);
+  const Json& info = model.parts->json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_FALSE(info.contains("extensions")) << info;
+}
+
+TEST(Bake, NothingIsSeenAcrossASeam) {
+  // One square, cut by the seam that two separate vertices make: both sides show the same.
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, png_of(256, smooth), "baseColorTexture");
+  const BakedModel model(builder, {"--hard-angle", "60"});
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  const Pixels now = model.base_colour();
+  for (double t = 0.02; t < 1; t += 0.02) {
+    // The edge from vertex 1 to 2 of the first square is that from 4 to 7 of the second.
+    const Texel left = read_at(now, BakedModel::at(model.after, 0, 1 - t, t));
+    const Texel right = read_at(now, BakedModel::at(model.after, 3, 0, t));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(left[k], right[k], 4) << t;
+  }
+}
+
+TEST(Bake, MirroredHalvesKeepTheirNormals) {
+  // The second square shows the first half of the image mirrored. What tilts to
+  // the left and up on the image does so along the old UVs of either square, one of which is
+  // mirrored, whatever the new ones are.
+  GltfBuilder builder = bent_strip({0, 0, .5f, 0, .5f, 1, 0, 1, .5f, 0, 0, 0, 0, 1, .5f, 1});
+  const auto tilted = [](double, double) { return Texel{60, 172, 230}; };
+  add_texture(builder, png_of(128, tilted), "normalTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  const Pixels now = model.image(model.parts->json["materials"][0]["normalTexture"]);
+  // On the image u is x of the first square and -z of the second, and up is -y of both.
+  const double left = 67.5, up = 44.5, size = std::hypot(left, up);
+  const std::array<std::array<double, 3>, 2> along = {
+      {{-left / size, -up / size, 0}, {0, -up / size, left / size}}};
+  model.visit([&](std::size_t face, const Uv&, const Uv& new_uv) {
+    const Texel texel = read_at(now, new_uv);
+    // The gradient of the new u and v in space, from the corners.
+    std::array<std::array<double, 3>, 2> p{};
+    std::array<Uv, 3> uv = {BakedModel::at(model.after, face, 0, 0),
+                            BakedModel::at(model.after, face, 1, 0),
+                            BakedModel::at(model.after, face, 0, 1)};
+    for (std::size_t k = 0; k < 2; ++k) {
+      for (std::size_t d = 0; d < 3; ++d) {
+        const auto position = [&](std::size_t corner) {
+          const std::size_t vertex = model.after.polygons.corners()[3 * face + corner];
+          return model.after.positions[3 * vertex + d];
+        };
+        p[k][d] = position(k + 1) - position(0);
+      }
+    }
+    const double u1 = uv[1][0] - uv[0][0], v1 = uv[0][1] - uv[1][1], u2 = uv[2][0] - uv[0][0],
+                 v2 = uv[0][1] - uv[2][1], area = u1 * v2 - u2 * v1;
+    EXPECT_GT(area, 0) << "new charts are never mirrored";
+    std::array<double, 3> shown{};
+    double length_u = 0, length_v = 0;
+    std::array<double, 3> along_u{}, along_v{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      along_u[d] = (p[0][d] * v2 - p[1][d] * v1) / area;
+      along_v[d] = (p[1][d] * u1 - p[0][d] * u2) / area;
+      length_u += along_u[d] * along_u[d];
+      length_v += along_v[d] * along_v[d];
+    }
+    const double x = texel[0] - 127.5, y = texel[1] - 127.5, flat = std::hypot(x, y);
+    for (std::size_t d = 0; d < 3; ++d) {
+      shown[d] =
+          (x * along_u[d] / std::sqrt(length_u) + y * along_v[d] / std::sqrt(length_v)) / flat;
+      EXPECT_NEAR(shown[d], along[face / 2][d], 0.03) << "face " << face;
+    }
+    EXPECT_NEAR(flat, size, 1.5);
+    EXPECT_NEAR(texel[2], 230, 1);
+  });
+}
+
+TEST(Bake, ANormalMapTurnsWithItsChart) {
+  // The new axis of u is the old one of v: what tilted along the old u tilts along -v now.
+  const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::vector<double> old_uvs = {0, 0, 1, 0, 0, 1}, new_uvs = {0, 1, 0, 0, 1, 1};
+  const std::vector<AxesTurn> turns = axes_turns({positions, {}, {}, old_uvs, new_uvs});
+  ASSERT_EQ(turns.size(), 1u);
+  for (const auto& [cosine, sine] : turns[0].corners) {
+    EXPECT_NEAR(cosine, 0, 1e-12);
+    EXPECT_NEAR(sine, -1, 1e-12);
+  }
+  const std::vector<BakedTriangle> triangles = {{{{0, 16}, {0, 0}, {16, 16}}}};
+  const std::vector<SourceTriangle> sources = {{0, {{{0, 0}, {1, 0}, {0, 1}}}}};
+  Pixels image{1, 1, 3, {200, 128, 220}};
+  std::array<Texture, 1> pages = {Texture(image, Meaning::kDirections)};
+  BakeJob job;
+  job.triangles = triangles;
+  job.sources = sources;
+  job.turns = turns;
+  job.pages = pages;
+  job.side = 16;
+  const Baked baked = bake(job);
+  const std::uint8_t* texel = &baked.image.values[3 * (16 * 4 + 2)];
+  EXPECT_NEAR(texel[0], 128, 1);
+  EXPECT_NEAR(texel[1], 55, 1);
+  EXPECT_EQ(texel[2], 220);
+}
+
+/// A page of side 4 from a page of side 16 of stripes, one of 0 and one of 255 in turn.
+std::uint8_t mean_of_stripes(Meaning meaning) {
+  Pixels stripes{16, 16, 1, {}};
+  for (int i = 0; i < 256; ++i) stripes.values.push_back(i % 2 == 0 ? 0 : 255);
+  std::array<Texture, 1> pages = {Texture(stripes, meaning)};
+  const std::vector<BakedTriangle> triangles = {{{{0, 0}, {4, 0}, {4, 4}}},
+                                                {{{0, 0}, {4, 4}, {0, 4}}}};
+  const std::vector<SourceTriangle> sources = {{0, {{{0, 0}, {1, 0}, {1, 1}}}},
+                                               {0, {{{0, 0}, {1, 1}, {0, 1}}}}};
+  BakeJob job;
+  job.triangles = triangles;
+  job.sources = sources;
+  job.pages = pages;
+  job.side = 4;
+  const Baked baked = bake(job);
+  EXPECT_EQ(baked.covered, 16u);
+  EXPECT_EQ(std::count(baked.image.values.begin(), baked.image.values.end(), baked.image.values[5]),
+            16);
+  return baked.image.values[5];
+}
+
+TEST(Bake, ManyTexelsInOneAreTheirMeanInLightOrInNumbers) {
+  EXPECT_NEAR(mean_of_stripes(Meaning::kNumbers), 128, 1);
+  EXPECT_NEAR(mean_of_stripes(Meaning::kColours), 188, 1) << "half the light";
+}
+
+TEST(Bake, WhatIsTransparentLendsNoColour) {
+  // Texels of red that is seen, and of green that is not.
+  Pixels image{2, 1, 4, {255, 0, 0, 255, 0, 255, 0, 0}};
+  const Texture texture(image, Meaning::kTransparent);
+  Sums sums{};
+  texture.add(0.5, 0.5, {Beyond::kClamp, Beyond::kClamp}, 0, sums);
+  std::array<std::uint8_t, 4> texel{};
+  texture.finish(sums, 1, texel.data());
+  EXPECT_EQ(texel, (std::array<std::uint8_t, 4>{255, 0, 0, 128}));
+}
+
+TEST(Bake, PicturesComeBackFromTheirFiles) {
+  // Powers of two are how often values occur, so that codes would be longer than they may be.
+  std::uint32_t state = 1;
+  for (const int components : {1, 2, 3, 4}) {
+    for (const int width : {1, 7, 300}) {
+      Pixels image{width, 211, components, {}};
+      while (image.values.size() < image.row_size() * 211) {
+        state = state * 1664525 + 1013904223;
+        const auto zeros = static_cast<std::uint8_t>(std::countl_zero(state | 1));
+        image.values.insert(image.values.end(), 1 + state / 8 % 4 * (zeros > 2 ? 99 : 0),
+                            static_cast<std::uint8_t>(zeros * 8 + state / 64 % (1 + zeros)));
+      }
+      image.values.resize(image.row_size() * 211);
+      const std::optional<Pixels> back =
+          read_image(png_bytes(width, 211, components, image.values.data()));
+      ASSERT_TRUE(back) << components << " " << width;
+      EXPECT_TRUE(back->values == image.values) << components << " " << width;
+    }
+  }
+}
+
+TEST(Bake, AnyNumberOfThreadsGivesTheSameBits) {
+  GltfBuilder builder = bent_strip({0, 0, 3, 0, 3, 2, 0, 2, 0, 0, 9, 0, 7, 5, 0, 2});
+  add_texture(builder, png_of(64, smooth), "baseColorTexture");
+  const BakedModel one(builder, {"--threads", "1"}), three(builder, {"--threads", "3"});
+  ASSERT_EQ(one.outcome.exit_code, 0) << one.outcome.err;
+  EXPECT_EQ(one.directory.read("out.glb"), three.directory.read("out.glb"));
+}
+
+TEST(Bake, TangentsOfTheOldUvsGo) {
+  GltfBuilder builder = rich_square();
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  builder.json["meshes"][0]["primitives"][0].erase("targets");
+  add_texture(builder, png_of(16, smooth), "normalTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  EXPECT_FALSE(model.parts->primitive(0)["attributes"].contains("TANGENT"));
+  EXPECT_NE(model.outcome.err.find("does not keep tangents"), std::string::npos)
+      << model.outcome.err;
+}
+
+TEST(Bake, FormatsThatCannotBeReadAreNamed) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, "RIFF\1\1\1\1WEBPVP8 ", "baseColorTexture");
+  const BakedModel model(builder);
+  EXPECT_EQ(model.outcome.exit_code, kExitUnusable);
+  EXPECT_NE(model.outcome.err.find("images[0] (baseColorTexture of materials[0]) is WebP"),
+            std::string::npos)
+      << model.outcome.err;
+}
+
+TEST(Bake, SeveralPagesAreRefused) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, png_of(16, smooth), "baseColorTexture");
+  const BakedModel model(builder, {"--texels-per-unit", "200", "--hard-angle", "60"});
+  EXPECT_EQ(model.outcome.exit_code, kExitUnusable);
+  EXPECT_NE(model.outcome.err.find("a material has a texture of one"), std::string::npos)
+      << model.outcome.err;
+  const BakedModel rows(builder, {"--pack", "none"});
+  EXPECT_EQ(rows.outcome.exit_code, kExitUnusable);
+}
+
+TEST(Bake, TheFilesOfAGltfLieBesideIt) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, png_of(16, smooth), "baseColorTexture");
+  builder.json["materials"][0]["name"] = "../a b";
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.gltf", builder.text()), out = directory.path("o.gltf");
+  const Outcome outcome = run({"unwrap", in, out, "--bake", "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(read_image(directory.read("o____a_b_baseColor.png")));
+  const Json json = Json::parse(directory.read("o.gltf"));
+  EXPECT_EQ(json["images"][0]["uri"], "o____a_b_baseColor.png");
+  const std::string again = directory.path("again.gltf");
+  EXPECT_EQ(run({"unwrap", out, again, "--bake", "--resolution", "64"}).exit_code, 0);
+}
+
+TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {
+  const TemporaryDirectory directory;
+  const std::string text =
+      "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "usemtl wood\nf 1/1 2/2 3/3 4/4\n";
+  const std::string library =
+      "newmtl wood\nKd 1 1 1\nmap_Kd -s 2 2 1 paint.png\nmap_Bump -bm 0.5 bump.png\n";
+  const std::string in = directory.file("in.obj", text), out = directory.path("out.obj");
+  directory.file("in.mtl", library);
+  directory.file("paint.png", png_of(64, smooth));
+  directory.file("bump.png", png_of(64, [](double, double) { return Texel{128, 128, 255}; }));
+  const Outcome plain = run({"unwrap", in, out});
+  EXPECT_NE(plain.err.find("2 textures (map_Kd of material 'wood', map_Bump of material 'wood')"),
+            std::string::npos)
+      << plain.err;
+  EXPECT_NE(plain.err.find("--bake"), std::string::npos);
+  const Outcome outcome = run({"unwrap", in, out, "--bake", "--resolution", "128"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("map_Kd"), std::string::npos) << outcome.err;
+  EXPECT_NE(directory.read("out.obj").find("mtllib out.mtl\n"), std::string::npos);
+  const std::string made = directory.read("out.mtl");
+  EXPECT_NE(made.find("map_Kd -clamp on out_wood_map_kd.png\n"), std::string::npos) << made;
+  EXPECT_NE(made.find("map_Bump -bm 0.5 -clamp on out_wood_map_bump.png\n"), std::string::npos);
+  EXPECT_NE(made.find("Kd 1 1 1\n"), std::string::npos);
+  EXPECT_EQ(read_image(directory.read("out_wood_map_kd.png"))->width, 128);
+  EXPECT_EQ(directory.read("in.mtl"), library);
+  // In place the library is another file than the one that was read.
+  ASSERT_EQ(run({"unwrap", in, in, "--bake", "--resolution", "64"}).exit_code, 0);
+  EXPECT_EQ(directory.read("in.mtl"), library);
+  EXPECT_NE(directory.read("in.obj").find("mtllib in-1.mtl\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace beltrami::cli
