@@ -1,4 +1,4 @@
-// Compression of pictures, fast.
+// Compression of pictures by zlib.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace beltrami::cli {
 
-/// `bytes` in the format of zlib (RFC 1950): Huffman codes for each block, and repetitions of the
-/// byte before alone, which the gutters and flats of filtered pictures are. A general search for
-/// repetitions took ten times as long and made pictures with detail no smaller.
+/// `bytes` in the format of zlib (RFC 1950), with repetitions of the byte before alone: the gutters
+/// and flats of filtered pictures are such. A general search for repetitions took ten times as long
+/// and made pictures with detail no smaller. Throws std::bad_alloc.
 std::string zlib_bytes(std::string_view bytes);
 
 /// Of a chunk of PNG.
