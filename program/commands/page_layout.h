@@ -31,8 +31,8 @@ struct PageLayout {
   double edge_distance = 0;  ///< the least from a UV to the edges of its page; negative outside
   double margin = 0;         ///< the least of chart_distance and twice edge_distance, not below 0
   std::optional<double> density, least_density,
-      greatest_density;    ///< per unit: mean, and of charts
-  double utilisation = 0;  ///< area of UVs over that of the tiles
+      greatest_density;                       ///< per unit: mean, and of charts
+  double utilisation = 0;                     ///< area of UVs over that of the tiles
   std::vector<Density> of_charts, of_labels;  ///< by their first faces
 };
 

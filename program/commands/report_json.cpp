@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands/page_layout.h"
 #include "commands/report.h"
 
 namespace beltrami::cli {

@@ -53,8 +53,8 @@ std::uint32_t crc32(std::string_view bytes) {
   uLong sum = ::crc32(0, nullptr, 0);
   for (std::size_t begin = 0; begin < bytes.size(); begin += kMostAtOnce) {
     const std::size_t size = std::min(bytes.size() - begin, kMostAtOnce);
-    sum = ::crc32(sum, reinterpret_cast<const Bytef*>(bytes.data() + begin),
-                  static_cast<uInt>(size));
+    sum =
+        ::crc32(sum, reinterpret_cast<const Bytef*>(bytes.data() + begin), static_cast<uInt>(size));
   }
   return static_cast<std::uint32_t>(sum);
 }

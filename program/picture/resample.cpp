@@ -299,7 +299,8 @@ class Baker {
       const auto bit = static_cast<std::uint16_t>(1u << part);
       if ((texel.taken & bit) != 0) continue;
       const double x = column + (part % kParts + 0.5) / kParts;
-      const double y = row + (static_cast<double>(part / kParts) + 0.5) / kParts;
+      const auto part_row = part / kParts;
+      const double y = row + (static_cast<double>(part_row) + 0.5) / kParts;
       const Weights weights = placed.slopes.weights(x, y);
       if (!is_inside(weights)) continue;
       texel.taken = static_cast<std::uint16_t>(texel.taken | bit);

@@ -18,6 +18,7 @@
 #include "base/resources.h"
 #include "base/types.h"
 #include "cut/search.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

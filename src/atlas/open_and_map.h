@@ -17,8 +17,8 @@ namespace beltrami {
 /// A face of the input that lies on another one, which is in a chart.
 struct StackedFace {
   Index face = 0, on = 0;
-  Triangle corner;         ///< per corner of the face that of the other with the same UV
-  bool reversed = false;   ///< positive in the plane the other way round
+  Triangle corner;        ///< per corner of the face that of the other with the same UV
+  bool reversed = false;  ///< positive in the plane the other way round
 };
 
 /// Charts and their maps, by their least face of the input.
@@ -38,7 +38,8 @@ struct MappedSurface {
 /// symmetry is asked of the whole. No component ends worse than a short cut graph leaves it. The
 /// limit of time ends the search for seams; the maps along them are finished. Charts that cannot be
 /// mapped within reason are split until they can, unless there are pins or a number of charts is
-/// asked for. Components that are to be stacked on others have no charts. Throws Error PINS where pins cannot be met together.
+/// asked for. Components that are to be stacked on others have no charts. Throws Error PINS where
+/// pins cannot be met together.
 MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                            const AtlasOptions& options, const Work& work,
                            std::vector<StageStatistics>& stages);

@@ -14,6 +14,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "chart/flattening.h"
 #include "cut/search.h"
 #include "mesh/surface.h"
 #include "pack/pack.h"

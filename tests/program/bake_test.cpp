@@ -12,13 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "files/gltf_file.h"
 #include "files/mesh_file.h"
+#include "files/texture_use.h"
 #include "gltf_builder.h"
 #include "gltf_parts.h"
 #include "picture/axes_turn.h"
 #include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/texture.h"
 #include "process/failure.h"
 #include "run_program.h"
 #include "temporary_directory.h"

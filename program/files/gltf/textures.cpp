@@ -9,9 +9,12 @@
 #include <set>
 #include <string_view>
 
+#include "files/gltf/document.h"
 #include "files/gltf/materials.h"
 #include "files/gltf/uri.h"
 #include "files/inside_folder.h"
+#include "files/mesh_file.h"
+#include "files/texture_use.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 

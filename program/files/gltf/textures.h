@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "files/gltf/document.h"
 #include "files/gltf/item.h"
 #include "files/gltf/model.h"
 #include "files/gltf/rebuild.h"
-#include "files/gltf_file.h"
+#include "files/texture_use.h"
 
 namespace beltrami::cli::gltf {
 

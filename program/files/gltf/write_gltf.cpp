@@ -19,6 +19,7 @@
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
+#include "files/texture_use.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
