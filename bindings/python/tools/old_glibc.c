@@ -21,6 +21,14 @@ OLD(double, log, double);
 double __wrap_log(double x) {
   return old_log(x);
 }
+OLD(double, log2, double);
+double __wrap_log2(double x) {
+  return old_log2(x);
+}
+OLD(double, exp2, double);
+double __wrap_exp2(double x) {
+  return old_exp2(x);
+}
 OLD(double, pow, double, double);
 double __wrap_pow(double x, double y) {
   return old_pow(x, y);
