@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 BELTRAMI_CPP_BEGIN
 
@@ -82,8 +83,8 @@ class Surface {
     return *this;
   }
   /// Keeps what the views show for as long as this surface and its copies live.
-  Surface& keep(std::shared_ptr<const void> arrays) noexcept {
-    kept_ = std::move(arrays);
+  Surface& keep(std::shared_ptr<const void> arrays) {
+    kept_.push_back(std::move(arrays));
     return *this;
   }
   /// Says what is wrong with it, a sentence that is static; calls then end with INVALID_ARGUMENT.
@@ -141,7 +142,7 @@ class Surface {
   beltrami_surface surface_ = detail::sized<beltrami_surface>();
   std::size_t corners_ = 0;
   const char* defect_ = nullptr;
-  std::shared_ptr<const void> kept_;
+  std::vector<std::shared_ptr<const void>> kept_;
 };
 
 /// Triangles in the plane, in the caller's memory, which must outlive the call of pack.
