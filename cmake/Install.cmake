@@ -22,8 +22,9 @@ if(TARGET beltrami_static)
   install(TARGETS beltrami_static EXPORT beltrami-targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 endif()
-install(FILES include/beltrami/beltrami.h
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beltrami COMPONENT development)
+install(DIRECTORY include/beltrami
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
+  FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(EXPORT beltrami-targets NAMESPACE beltrami:: DESTINATION ${package_dir}
   COMPONENT development)
 
@@ -136,6 +137,6 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libbeltrami${BELTRAMI_ABI} (= ${PROJEC
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "The shared library.")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-  "Header, static library, CMake package and pkg-config file.")
+  "Headers, static library, CMake package and pkg-config file.")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The command-line program.")
 include(CPack)

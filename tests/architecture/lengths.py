@@ -19,8 +19,8 @@ FILE_LINES = 600
 LONGER = {"include/beltrami/beltrami.h": 1100}
 FUNCTION_LINES = 70
 TREES = ["src", "program", "include", "tests", "benchmarks", "bindings"]
-FUNCTION_TREES = ["src", "program"]
-SUFFIXES = {".h", ".c", ".cpp", ".py", ".rs"}
+FUNCTION_TREES = ["src", "program", "include"]
+SUFFIXES = {".h", ".hpp", ".c", ".cpp", ".py", ".rs"}
 # Written by programs.
 GENERATED = {
     "bindings/rust/beltrami-sys/src/bindings.rs",
