@@ -148,7 +148,11 @@ using TraitsOf = ItemTraits<std::remove_cv_t<T>>;
 /// The type of the numbers that a Span shows.
 template <class View>
 constexpr std::int32_t type_in() {
-  return scalar_type<typename TraitsOf<typename View::Item>::Scalar>();
+  if constexpr (std::is_void_v<View>) {
+    return -1;  // of an overload that is deleted
+  } else {
+    return scalar_type<typename TraitsOf<typename View::Item>::Scalar>();
+  }
 }
 
 }  // namespace detail
