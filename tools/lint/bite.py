@@ -16,6 +16,8 @@ FILES = {
     "src/base/place.h": "#pragma once\n#define ORIGIN 0\nstruct Place { int x; };\n",
     "src/base/chain.h": '#pragma once\n#include "base/place.h"\n#include "base/types.h"\n'
     "Index next(Index i, Place p);\n",
+    "include/beltrami/beltrami.hpp": "#pragma once\n#include <beltrami/cpp/part.hpp>\n",
+    "include/beltrami/cpp/part.hpp": "#pragma once\nstruct Part { int x; };\n",
 }
 # The source, and what is said of it: the line, and the header.
 CASES = {
@@ -32,6 +34,8 @@ CASES = {
     "idle.cpp": ('#include "base/place.h"\n#include "base/types.h"\nPlace b;\n', ["2: types.h"]),
     "macro.cpp": ('#include "base/place.h"\nint a = ORIGIN;\n', []),
     "member.cpp": ('#include "base/chain.h"\nauto f() { return &next; }\n', []),
+    "part.cpp": ("#include <beltrami/beltrami.hpp>\nPart p;\n", []),
+    "part_idle.cpp": ("#include <beltrami/beltrami.hpp>\nint p;\n", ["1: beltrami.hpp"]),
     "template.cpp": (
         '#include "base/chain.h"\ntemplate <class T> T g(T t) { next(1, {}); return twice(t); }\n',
         ["2: types.h"],
@@ -74,14 +78,14 @@ def main() -> int:
     status = 0
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder).resolve()
-        (root / "src" / "base").mkdir(parents=True)
         for name, text in FILES.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text)
         for name, (text, expected) in CASES.items():
             source = root / "src" / "base" / name
             source.write_text(text)
             project = Project(root)
-            found = check(str(source), ["-std=c++20", f"-I{root}/src"], "", project)
+            found = check(str(source), ["-std=c++20", f"-I{root}/src", f"-I{root}/include"], "", project)
             short = []
             for line in found:
                 header = next(h for h in FILES if h in line)

@@ -22,6 +22,8 @@ from clang.cindex import (
 
 # Where the names in #include directives are looked up, besides the folder of the file.
 FOLDERS = ("include", "src", "program", "tests", "")
+# A header, and the folder of its parts, which are had by including it.
+PARTS = {Path("include/beltrami/beltrami.hpp"): Path("include/beltrami/cpp")}
 # Not extern "C": what leads to the C ABI may be included instead.
 SCOPES = {CursorKind.NAMESPACE, CursorKind.TRANSLATION_UNIT}
 
@@ -133,15 +135,17 @@ def judge(path: Path, here: Uses, project: Project) -> Iterator[str]:
         own = next((h for h in includes if h.stem == path.stem.removesuffix("_test")), None)
     if own:
         given |= project.includes(own).keys()
+    parts = {folder: header for header, folder in PARTS.items() if header in includes}
+    touched = here.touched | {parts[file.parent] for file in here.touched if file.parent in parts}
     for line, name, declared in here.named.values():
-        if not declared & given:
+        if not declared & given and not any(file.parent in parts for file in declared):
             yield f"{path}:{line}: {name} is declared in {min(declared)}, which is not included"
     text = (project.root / path).read_text()
     for header, line in includes.items():
         macros = (
             re.search(rf"^(?!\s*#\s*include).*\b{m}\b", text, re.M) for m in project.macros(header)
         )
-        if header != own and header not in here.touched and not any(macros):
+        if header != own and header not in touched and not any(macros):
             yield f"{path}:{line}: nothing of {header} is used"
 
 
