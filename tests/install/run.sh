@@ -72,6 +72,10 @@ case $STEP in
     compile $(flags "$PREFIX") -Wl,-rpath,"$PREFIX/lib"
     ./consumer
     links_the_shared_library consumer || fail "it is not the shared library"
+    # shellcheck disable=SC2046
+    c++ -std=c++17 -Wall -Wextra -Wconversion -Wshadow -Werror "$HERE/consumer.cpp" -o consumer_cpp \
+      $(flags "$PREFIX") -Wl,-rpath,"$PREFIX/lib"
+    ./consumer_cpp
     ;;
   pkg-config-static)
     # By its file: with -static all else would have to be there as static libraries, too.
@@ -92,8 +96,9 @@ case $STEP in
     if ! grep -q -e '-O3 -DNDEBUG' <<<"$(ninja -C build -t commands beltrami_inner)"; then
       fail "the library of a project without a build type is not optimised"
     fi
-    BELTRAMI_BUILT=$BUILD cmake --build build --target consumer >/dev/null
+    BELTRAMI_BUILT=$BUILD cmake --build build --target consumer consumer_cpp >/dev/null
     ./build/consumer
+    ./build/consumer_cpp
     found=OFF
     if links_the_shared_library build/consumer; then found=ON; fi
     if [[ $found != "$shared" ]]; then fail "it is not the $STEP library"; fi

@@ -194,16 +194,16 @@ class Context {
   }
 
   Atlas unwrap(const Surface& surface, Progress progress = {}) {
-    return try_unwrap(surface, progress).value();
+    return try_unwrap(surface, std::move(progress)).value();
   }
   Flattening flatten(const Surface& disk, Progress progress = {}) {
-    return try_flatten(disk, progress).value();
+    return try_flatten(disk, std::move(progress)).value();
   }
   Packing pack(const std::vector<UvMesh>& meshes, Progress progress = {}) {
-    return try_pack(meshes, progress).value();
+    return try_pack(meshes, std::move(progress)).value();
   }
   Packing pack(const UvMesh& mesh, Progress progress = {}) {
-    return try_pack(mesh, progress).value();
+    return try_pack(mesh, std::move(progress)).value();
   }
   std::uint64_t estimate_memory(const Surface& disk) {
     return try_estimate_memory(disk).value();

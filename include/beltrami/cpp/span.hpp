@@ -109,11 +109,11 @@ constexpr Span<T> span_of(std::span<T, N> items) {
 #endif
 // What the view of a temporary would show is gone at the end of the line.
 template <class T, class Allocator>
-void span_of(const std::vector<T, Allocator>&&) = delete;
+Span<const T> span_of(const std::vector<T, Allocator>&&) = delete;
 template <class T, std::size_t N>
-void span_of(const std::array<T, N>&&) = delete;
+Span<const T> span_of(const std::array<T, N>&&) = delete;
 template <class T, std::size_t N>
-void span_of(const T (&&)[N]) = delete;
+Span<const T> span_of(const T (&&)[N]) = delete;
 
 /// One member of every struct of a container: `span_of(vertices, &Vertex::position)`.
 template <class Container, class Struct, class Member>
