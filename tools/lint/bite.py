@@ -85,7 +85,9 @@ def main() -> int:
             source = root / "src" / "base" / name
             source.write_text(text)
             project = Project(root)
-            found = check(str(source), ["-std=c++20", f"-I{root}/src", f"-I{root}/include"], "", project)
+            found = check(
+                str(source), ["-std=c++20", f"-I{root}/src", f"-I{root}/include"], "", project
+            )
             short = []
             for line in found:
                 header = next(h for h in FILES if h in line)
