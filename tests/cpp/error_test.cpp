@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,7 @@ TEST(CppError, WithoutAnElementThereIsNone) {
 }
 
 TEST(CppError, ResultsHaveTheirValue) {
+  static_assert(std::is_nothrow_copy_constructible_v<Failure>);  // for functions named try_
   Result<int> number = 3;
   EXPECT_TRUE(number.has_value());
   EXPECT_EQ(*number, 3);

@@ -111,6 +111,23 @@ TEST(CppAtlas, HasItsPagesUntilSomethingElseIsPacked) {
   EXPECT_EQ(atlas.corner_uvs().size(), 36u);
 }
 
+TEST(CppAtlas, WithoutPagesHasNone) {
+  const Triangles mesh = triangulated_cube(), quad = bent_quad();
+  const std::vector<Uv> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  Context context;
+  context.set(option::kPack, Pack::kNone);
+  const Packing packed = context.pack(UvMesh(square, quad.faces));
+  const Atlas loose = context.unwrap(view(mesh));
+  EXPECT_EQ(loose.try_packing().status(), Status::kInvalidState);
+  EXPECT_EQ(packed.chart_pages().size(), 1u) << "what was packed before is still there";
+
+  context.set(option::kPack, Pack::kPages);
+  const Packing pages = context.unwrap(view(mesh)).packing();
+  EXPECT_EQ(pages.chart_pages().size(), pages.info().charts);
+  context.set(option::kPack, Pack::kNone).unwrap(view(mesh));
+  EXPECT_EQ(pages.try_chart_pages().status(), Status::kInvalidState);
+}
+
 TEST(CppSurface, WhatComesWithItReachesTheLibrary) {
   const Triangles mesh = triangulated_cube();
   Context context;

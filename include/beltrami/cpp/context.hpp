@@ -106,13 +106,17 @@ class Context {
     progress.rethrow();
     if (status < 0) return handle->failure(status);
     ++handle->numbers[detail::kUnwrap];
-    ++handle->numbers[detail::kPack];
     Atlas atlas;
     atlas.source_ = detail::Source(handle, detail::kUnwrap);
-    atlas.packed_ = detail::Source(handle, detail::kPack);
     Result<AtlasInfo> info = atlas.source_.get<AtlasInfo>(&beltrami_get_atlas);
     if (!info) return info.error();
     atlas.info_ = *info;
+    if (info->pages != 0) {
+      handle->has_packed(true);
+    } else {
+      handle->has_not_packed();
+    }
+    atlas.packed_ = detail::Source(handle, detail::kPack);
     return atlas;
   }
 
@@ -167,8 +171,8 @@ class Context {
     return canceller;
   }
 
-  /// For calls of the header of C; nullptr after a move. What they compute replaces results here
-  /// without telling them.
+  /// For calls of the header of C; nullptr after a move. Results here do not hear of what such
+  /// calls compute: nothing is to be asked of those of the same kind from then on.
   beltrami_context* c() const noexcept { return handle_ ? handle_->context : nullptr; }
 
 #if BELTRAMI_CPP_EXCEPTIONS
@@ -239,7 +243,7 @@ class Context {
         beltrami_pack(handle->context, views.data(), count, progress.function(), progress.user());
     progress.rethrow();
     if (status < 0) return handle->failure(status);
-    ++handle->numbers[detail::kPack];
+    handle->has_packed(false);
     packing.source_ = detail::Source(handle, detail::kPack);
     Result<PackingInfo> info = packing.source_.get<PackingInfo>(&beltrami_get_packing);
     if (!info) return info.error();

@@ -24,8 +24,9 @@ using Uv32 = std::array<float, 2>;
 using Stage = beltrami_stage;
 
 /// A callable that hears how far a call is: of (double fraction, const char* stage), or of the
-/// fraction alone. It ends the call by returning false, or by throwing: what it throws comes out of
-/// the call, round the code of C. A call that is cancelled otherwise fails with kCancelled.
+/// fraction alone, that returns nothing, or whether to go on. What it throws ends the call, too,
+/// and comes out of it, round the code of C. A call that is cancelled otherwise fails with
+/// kCancelled.
 class Progress {
  public:
   Progress() noexcept = default;
@@ -68,16 +69,23 @@ class Progress {
   /// Whether to go on. A callable that returns nothing never ends a call.
   template <class Target>
   static bool answer(Target& target, double fraction, const char* stage) {
-    if constexpr (std::is_invocable_r_v<bool, Target&, double, const char*>) {
-      return std::invoke(target, fraction, stage);
-    } else if constexpr (std::is_invocable_r_v<bool, Target&, double>) {
-      return std::invoke(target, fraction);
-    } else if constexpr (std::is_invocable_v<Target&, double, const char*>) {
-      std::invoke(target, fraction, stage);
+    if constexpr (std::is_invocable_v<Target&, double, const char*>) {
+      return told([&] { return std::invoke(target, fraction, stage); });
+    } else {
+      return told([&] { return std::invoke(target, fraction); });
+    }
+  }
+  template <class Call>
+  static bool told(Call invoke) {
+    using Answer = decltype(invoke());
+    // A number would be taken for C's, where 0 goes on.
+    static_assert(std::is_void_v<Answer> || std::is_same_v<Answer, bool>,
+                  "progress returns nothing, or a bool: whether to go on");
+    if constexpr (std::is_void_v<Answer>) {
+      invoke();
       return true;
     } else {
-      std::invoke(target, fraction);
-      return true;
+      return invoke();
     }
   }
 
@@ -123,8 +131,19 @@ struct Handle {
                    beltrami_error_element(context));
   }
 
+  /// The pages of what was packed last are those of an atlas, or of `atlas` false of a pack.
+  void has_packed(bool atlas) noexcept {
+    ++numbers[kPack];
+    pages_of_atlas = atlas;
+  }
+  /// After an atlas without pages those of the one before are gone, but not those of a pack.
+  void has_not_packed() noexcept {
+    if (pages_of_atlas) has_packed(false);
+  }
+
   beltrami_context* context = nullptr;
   std::uint64_t numbers[3] = {0, 0, 0};
+  bool pages_of_atlas = false;
 };
 
 /// One result of a context: it keeps the context alive, and knows whether it is still the newest.

@@ -6,7 +6,8 @@
 #include <beltrami/cpp/config.hpp>
 
 #include <cstdint>
-#include <new>
+#include <exception>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,33 @@
 #include <variant>
 
 BELTRAMI_CPP_BEGIN
+
+namespace detail {
+
+/// A struct of C with its size set.
+template <class Struct>
+Struct sized() noexcept {
+  Struct value{};
+  value.struct_size = sizeof value;
+  return value;
+}
+
+/// Runs `allocate`, which may throw std::bad_alloc, and says whether it went well.
+template <class Allocate>
+bool has_room_for(Allocate&& allocate) noexcept {
+#if BELTRAMI_CPP_EXCEPTIONS
+  try {
+    allocate();
+  } catch (const std::exception&) {  // std::length_error as well
+    return false;
+  }
+#else
+  allocate();
+#endif
+  return true;
+}
+
+}  // namespace detail
 
 /// The BELTRAMI_ statuses. Above 0 there is a result with a reservation, below 0 there is none.
 enum class Status : std::int32_t {
@@ -62,45 +90,35 @@ enum class ElementKind : std::int32_t {
   kCorner = BELTRAMI_ELEMENT_CORNER
 };
 
-/// Why there is no result. Copies may throw std::bad_alloc, nothing else here does.
+/// Why there is no result. Nothing here throws, copies do not either.
 class Failure {
  public:
   explicit Failure(Status status, const char* sentence = "", ElementKind kind = ElementKind::kNone,
                    std::uint64_t element = BELTRAMI_NO_ELEMENT) noexcept
       : status_(status), kind_(kind), element_(element) {
-#if BELTRAMI_CPP_EXCEPTIONS
-    try {
-      sentence_ = sentence;
-    } catch (const std::bad_alloc&) {  // The advice on the status is said instead.
+    // Where there is no room for the sentence, the advice on the status is said instead.
+    if (*sentence != '\0') {
+      detail::has_room_for([&] { sentence_ = std::make_shared<const std::string>(sentence); });
     }
-#else
-    sentence_ = sentence;
-#endif
   }
   explicit Failure(beltrami_status status, const char* sentence = "") noexcept
       : Failure(static_cast<Status>(status), sentence) {}
 
-  Status status() const noexcept {
-    return status_;
-  }
+  Status status() const noexcept { return status_; }
   /// What is wrong, and what to do about it; never empty.
-  const char* what() const noexcept {
-    return sentence_.empty() ? advice_on(status_) : sentence_.c_str();
-  }
+  const char* what() const noexcept { return sentence_ ? sentence_->c_str() : advice_on(status_); }
   /// The face, vertex or corner concerned, counted from 0, where there is one.
   std::optional<std::uint64_t> element() const noexcept {
     if (kind_ == ElementKind::kNone || element_ == BELTRAMI_NO_ELEMENT) return std::nullopt;
     return element_;
   }
-  ElementKind element_kind() const noexcept {
-    return kind_;
-  }
+  ElementKind element_kind() const noexcept { return kind_; }
 
  private:
   Status status_;
   ElementKind kind_;
   std::uint64_t element_;
-  std::string sentence_;
+  std::shared_ptr<const std::string> sentence_;
 };
 
 #if BELTRAMI_CPP_EXCEPTIONS
@@ -188,33 +206,6 @@ class [[nodiscard]] Result<void> {
  private:
   std::optional<Failure> failure_;
 };
-
-namespace detail {
-
-/// A struct of C with its size set.
-template <class Struct>
-Struct sized() noexcept {
-  Struct value{};
-  value.struct_size = sizeof value;
-  return value;
-}
-
-/// Runs `allocate`, which may throw std::bad_alloc, and says whether it went well.
-template <class Allocate>
-bool has_room_for(Allocate&& allocate) noexcept {
-#if BELTRAMI_CPP_EXCEPTIONS
-  try {
-    allocate();
-  } catch (const std::exception&) {  // std::length_error as well
-    return false;
-  }
-#else
-  allocate();
-#endif
-  return true;
-}
-
-}  // namespace detail
 
 BELTRAMI_CPP_END
 

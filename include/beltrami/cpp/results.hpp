@@ -296,6 +296,7 @@ class Atlas {
   /// Its pages. Failure INVALID_STATE where it is not packed, or something else was packed since.
   Result<Packing> try_packing() const {
     if (Result<void> is = source_.ready(); !is) return is.error();
+    if (info_.pages == 0) return Failure(Status::kInvalidState, "this atlas is not packed");
     if (Result<void> is = packed_.ready(); !is) return is.error();
     Packing packing;
     packing.source_ = packed_;

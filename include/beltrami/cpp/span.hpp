@@ -61,7 +61,8 @@ class Span {
   constexpr std::size_t stride() const { return stride_; }
   constexpr bool empty() const { return size_ == 0; }
   constexpr bool packed() const { return stride_ == sizeof(T); }
-  /// Item `i`, less than size().
+  /// Item `i`, less than size(), which must lie where a T may; the library itself reads any
+  /// address.
   T& operator[](std::size_t i) const {
     // Bytes are stepped over, since a stride need not be a multiple of the item's size.
     return *reinterpret_cast<T*>(reinterpret_cast<Byte*>(data_) + i * stride_);
