@@ -65,13 +65,13 @@ inline std::string joined(const GltfOutput::File& file) {
   return std::accumulate(file.pieces.begin(), file.pieces.end(), std::string());
 }
 
-inline MeshFile read(const std::string& bytes, const std::string& path = "a.glb") {
+inline MeshFile read_bytes(const std::string& bytes, const std::string& path = "a.glb") {
   return read_gltf(bytes, path, Content::kSurface);
 }
 
 /// UVs that tell corners apart: (number, 1/4) for UV vertex `number`.
-inline GltfOutput write(MeshFile file, const Corners& uv_vertices, std::uint32_t uv_set = 0,
-                        const std::string& path = "b.glb") {
+inline GltfOutput write_with_uvs(MeshFile file, const Corners& uv_vertices,
+                                 std::uint32_t uv_set = 0, const std::string& path = "b.glb") {
   const std::uint32_t last = *std::max_element(uv_vertices.begin(), uv_vertices.end());
   for (std::uint32_t i = 0; i <= last; ++i) {
     file.corner_uvs.values.insert(file.corner_uvs.values.end(), {double(i), 0.25});
@@ -92,7 +92,7 @@ inline std::vector<double> corner_uvs(const MeshFile& file, std::uint32_t uv_set
 
 inline Parts written(const GltfBuilder& builder, const Corners& uv_vertices,
                      std::uint32_t uv_set = 0) {
-  const GltfOutput output = write(read(builder.text()), uv_vertices, uv_set);
+  const GltfOutput output = write_with_uvs(read_bytes(builder.text()), uv_vertices, uv_set);
   return Parts(joined(output.files.back()));
 }
 

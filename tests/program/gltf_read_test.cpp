@@ -24,7 +24,7 @@ int square(GltfBuilder& builder) {
   return builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 2, 0});
 }
 
-MeshFile read(const GltfBuilder& builder) {
+MeshFile read_bytes(const GltfBuilder& builder) {
   return read_gltf(builder.text(), "a.gltf", Content::kSurface);
 }
 
@@ -46,7 +46,7 @@ TEST(GltfRead, TakesIndicesOfEveryTypeAndNone) {
   builder.mesh({{"POSITION", positions}}, builder.indices<std::uint16_t>({0, 1, 2}));
   builder.mesh({{"POSITION", positions}}, builder.indices<std::uint32_t>({2, 3, 4}));
   builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 5, 6, 7})}});
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(file.polygons.corners(), (Corners{0, 1, 2, 0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
   const std::vector<double> meshes = {0, 0, 1, 2, 3}, none(5, -1);
   EXPECT_EQ(values(find_column(file.face_columns, "mesh")), meshes);
@@ -63,7 +63,7 @@ TEST(GltfRead, StripsAndFansAreTrianglesInTheirOrientation) {
                builder.indices<std::uint8_t>({0, 1, 3, 2, 2, 2}))["mode"] = 5;
   builder.mesh({{"POSITION", positions}}, builder.indices<std::uint8_t>({0, 1, 2, 3}))["mode"] = 6;
   builder.mesh({{"POSITION", positions}}, builder.indices<std::uint8_t>({0, 1}))["mode"] = 1;
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(file.polygons.corners(), (Corners{0, 1, 3, 1, 2, 3, 5, 6, 4, 6, 7, 4}));
   EXPECT_EQ(file.vertex_count(), 8u) << "lines are no triangles";
 }
@@ -76,7 +76,7 @@ TEST(GltfRead, PrimitivesOfAMeshShareTheVerticesThatTheyShareInTheFile) {
                  {"indices", builder.indices<std::uint8_t>({0, 2, 3})}};
   builder.json["meshes"][0]["primitives"].push_back(second);
   builder.json["meshes"].push_back({{"primitives", {second}}});
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(file.polygons.corners(), (Corners{0, 1, 2, 0, 2, 3, 4, 5, 6}))
       << "another mesh, other vertices";
   EXPECT_EQ(values(find_column(file.face_columns, "primitive")), (std::vector<double>{0, 1, 0}));
@@ -92,7 +92,7 @@ TEST(GltfRead, SparseValuesStandInPlaceOfOthers) {
       {"indices", {{"bufferView", places}, {"componentType", 5121}}},
       {"values", {{"bufferView", values}}}};
   builder.mesh({{"POSITION", positions}}, builder.indices<std::uint8_t>({0, 1, 3}));
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(file.positions, (std::vector<double>{0, 0, 0, 7, 8, 9, -1, -2, -3}));
 }
 
@@ -106,7 +106,7 @@ TEST(GltfRead, QuantizedPositionsAndUvsHaveTheirValues) {
   const int uvs = builder.accessor<std::uint8_t>("VEC2", 2, {255, 0, 0, 51, 0, 0});
   builder.json["accessors"][uvs]["normalized"] = true;
   builder.mesh({{"POSITION", positions}, {"TEXCOORD_0", uvs}});
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(file.positions, (std::vector<double>{1, -1, 0, -1, 0, 0, 0, 16384. / 32767, 0}));
   EXPECT_EQ(gltf_uvs(file, 0), (std::vector<double>{1, 1, 0, 0.8, 0, 1})) << "V points up here";
   EXPECT_TRUE(gltf_uvs(file, 1).empty());
@@ -124,7 +124,7 @@ TEST(GltfRead, AMeshIsWhereTheFirstNodeHasItThatDoesNotFlattenIt) {
        {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
        {"translation", {10, 0, 0}}},
       {{"children", {3}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}}};
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   const std::vector<double> expected = {10, 0, 5, 10, 2, 5, 7, 0, 13};
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(file.positions[i], expected[i], 1e-12) << i;
 }
@@ -133,7 +133,7 @@ TEST(GltfRead, AMeshThatASkinMovesStaysInItsOwnCoordinates) {
   GltfBuilder builder;
   builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 2})}});
   builder.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"scale", {9, 9, 9}}}};
-  EXPECT_EQ(read(builder).positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 2}));
+  EXPECT_EQ(read_bytes(builder).positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 2}));
 }
 
 TEST(GltfRead, BuffersAreInChunksFilesOrUris) {
@@ -153,7 +153,7 @@ TEST(GltfRead, BuffersAreInChunksFilesOrUris) {
 TEST(GltfRead, OtherFormatsKeepTheTrianglesAndSaySo) {
   GltfBuilder builder;
   builder.mesh({{"POSITION", square(builder)}}, builder.indices<std::uint8_t>({0, 1, 2}));
-  const MeshFile file = read(builder);
+  const MeshFile file = read_bytes(builder);
   EXPECT_EQ(not_kept(file, "a.ply"), std::vector<std::string>{"all of glTF but its triangles"});
   EXPECT_TRUE(not_kept(file, "a.glb").empty());
 }

@@ -29,18 +29,18 @@ GltfBuilder mixed() {
 const Corners kMixed = {0, 1, 2, 0, 2, 3, 4, 5, 6};
 
 TEST(GltfSets, NoneIsLeftOutThatNoPrimitiveHas) {
-  const MeshFile file = read(rich_square().glb());
+  const MeshFile file = read_bytes(rich_square().glb());
   require_uv_set(file, 0);
   require_uv_set(file, 1);
   try {
-    write(file, kWhole, 2);
+    write_with_uvs(file, kWhole, 2);
     FAIL() << "TEXCOORD_1 is missing";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.what(), std::string("a.glb: no primitive has TEXCOORD_1, and glTF leaves "
                                           "none out before TEXCOORD_2: use set 1"));
   }
-  const GltfOutput output = write(file, kCut, 1);
-  const MeshFile back = read(joined(output.files.back()));
+  const GltfOutput output = write_with_uvs(file, kCut, 1);
+  const MeshFile back = read_bytes(joined(output.files.back()));
   EXPECT_EQ(corner_uvs(back, 1),
             (std::vector<double>{0, .25, 1, .25, 2, .25, 4, .25, 5, .25, 3, .25}));
   EXPECT_EQ(corner_uvs(back, 0), corner_uvs(file, 0)) << "to the bit";
@@ -48,10 +48,10 @@ TEST(GltfSets, NoneIsLeftOutThatNoPrimitiveHas) {
 }
 
 TEST(GltfSets, PrimitivesWithoutThoseBeforeGetTheNewUvsThereToo) {
-  const MeshFile file = read(mixed().glb());
-  const GltfOutput output = write(file, kMixed, 1);
+  const MeshFile file = read_bytes(mixed().glb());
+  const GltfOutput output = write_with_uvs(file, kMixed, 1);
   const Parts parts(joined(output.files.back()));
-  const MeshFile back = read(joined(output.files.back()));
+  const MeshFile back = read_bytes(joined(output.files.back()));
   const std::vector<double> before = corner_uvs(file, 0), after = corner_uvs(back, 0);
   EXPECT_TRUE(std::equal(before.begin(), before.begin() + 12, after.begin())) << "textured: kept";
   const std::vector<double> added = corner_uvs(back, 1);
@@ -63,12 +63,13 @@ TEST(GltfSets, PrimitivesWithoutThoseBeforeGetTheNewUvsThereToo) {
                               "asks for: the new ones are there, too"});
   GltfBuilder bare;
   bare.mesh({{"POSITION", bare.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0})}});
-  EXPECT_NO_THROW(require_uv_set(read(bare.glb()), 1)) << "light maps of a scene without textures";
+  EXPECT_NO_THROW(require_uv_set(read_bytes(bare.glb()), 1))
+      << "light maps of a scene without textures";
 }
 
 TEST(GltfSets, TexturesOfUvsThatAreNewAreNoted) {
   const auto notes = [](const Json& texture, std::uint32_t uv_set) {
-    return write(read(textured(texture).glb()), kWhole, uv_set).notes;
+    return write_with_uvs(read_bytes(textured(texture).glb()), kWhole, uv_set).notes;
   };
   const std::vector<std::string> none;
   const auto note = [](const std::string& set, const std::string& free) {
@@ -97,7 +98,7 @@ TEST(GltfSets, TexturesOfExtensionsOfMaterialsCountAsTheirs) {
       {{"emissiveTexture", {{"index", 0}}}}};
   builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"] = {
       {"mappings", {{{"material", 1}, {"variants", {0}}}}}};
-  const std::vector<std::string> notes = write(read(builder.glb()), kWhole).notes;
+  const std::vector<std::string> notes = write_with_uvs(read_bytes(builder.glb()), kWhole).notes;
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0].find("2 textures ("), 0u) << "the third is of nothing: " << notes[0];
 }
@@ -108,7 +109,7 @@ TEST(GltfSets, TransformsOfTexturesGoWithTheUvsThatTheyMoved) {
   GltfBuilder builder = textured(texture);
   builder.json["extensionsUsed"] = {"KHR_texture_transform", "NOBODY_knows"};
   builder.json["extensionsRequired"] = {"KHR_texture_transform"};
-  const GltfOutput output = write(read(builder.glb()), kWhole);
+  const GltfOutput output = write_with_uvs(read_bytes(builder.glb()), kWhole);
   EXPECT_EQ(output.not_kept, std::vector<std::string>{"KHR_texture_transform of 1 texture"});
   const Json json = Parts(joined(output.files.back())).json;
   const Json& drawn = json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
@@ -116,7 +117,7 @@ TEST(GltfSets, TransformsOfTexturesGoWithTheUvsThatTheyMoved) {
   EXPECT_EQ(json["extensionsUsed"], Json({"NOBODY_knows"}));
   EXPECT_FALSE(json.contains("extensionsRequired"));
 
-  const GltfOutput beside = write(read(builder.glb()), kWhole, 1);
+  const GltfOutput beside = write_with_uvs(read_bytes(builder.glb()), kWhole, 1);
   EXPECT_TRUE(beside.not_kept.empty());
   const Json kept = Parts(joined(beside.files.back())).json;
   EXPECT_EQ(kept["materials"].dump(), builder.json["materials"].dump());
@@ -129,7 +130,8 @@ TEST(GltfSets, ATransformThatNamesASetStaysWithoutWhatMoves) {
       {"index", 0}, {"texCoord", 1}, {"extensions", {{"KHR_texture_transform", transform}}}};
   GltfBuilder builder = textured(texture);
   builder.json["extensionsUsed"] = {"KHR_texture_transform"};
-  const Json json = Parts(joined(write(read(builder.glb()), kWhole).files.back())).json;
+  const Json json =
+      Parts(joined(write_with_uvs(read_bytes(builder.glb()), kWhole).files.back())).json;
   const Json& drawn = json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
   EXPECT_EQ(drawn["extensions"]["KHR_texture_transform"], Json({{"texCoord", 0}}));
   EXPECT_EQ(json["extensionsUsed"].size(), 1u);
@@ -146,7 +148,7 @@ TEST(GltfSets, ExtensionsWhoseTexturesUseTheNewUvsAreNoted) {
        {{"propertyTextures",
          {{{"class", "a"}, {"properties", {{"heat", {{"index", 0}, {"channels", {0}}}}}}}}}}}};
   const auto notes = [&](std::uint32_t uv_set) {
-    return write(read(builder.glb()), kWhole, uv_set).notes;
+    return write_with_uvs(read_bytes(builder.glb()), kWhole, uv_set).notes;
   };
   const std::string end =
       " has textures for TEXCOORD_0, which is new now: --uv-set 1 leaves it as it is";

@@ -75,7 +75,7 @@ TEST(GltfWrite, EqualPositionsAreNotMergedAndHardEdgesStay) {
       {0,  1,  2,  0,  2,  3,  4,  5,  6,  4,  6,  7,  8,  9,  10, 8,  10, 11,
        12, 13, 14, 12, 14, 15, 16, 17, 18, 16, 18, 19, 20, 21, 22, 20, 22, 23});
   builder.mesh({{"POSITION", positions}}, indices);
-  const MeshFile file = read(builder.glb());
+  const MeshFile file = read_bytes(builder.glb());
   EXPECT_EQ(file.vertex_count(), 24u);
   EXPECT_EQ(file.polygons.size(), 12u);
   // UV vertices of the eight corners of the welded cube: still no vertex has two.
@@ -84,7 +84,7 @@ TEST(GltfWrite, EqualPositionsAreNotMergedAndHardEdgesStay) {
     const double* p = &file.positions[3 * std::size_t{vertex}];
     uv_vertices.push_back(static_cast<std::uint32_t>(p[0] + 2 * p[1] + 4 * p[2]));
   }
-  const Parts parts(joined(write(file, uv_vertices).files.back()));
+  const Parts parts(joined(write_with_uvs(file, uv_vertices).files.back()));
   EXPECT_EQ(parts.count(parts.primitive(0)["attributes"]["POSITION"]), 24u);
   EXPECT_EQ(parts.primitive(0)["indices"], indices);
 }
@@ -207,7 +207,7 @@ TEST(GltfWrite, TheRestOfTheDocumentIsAsItWas) {
 
 TEST(GltfWrite, WrittenTwiceItHasTheSameSize) {
   const auto again = [](const std::string& glb, const Corners& uv_vertices) {
-    return joined(write(read(glb), uv_vertices).files.back());
+    return joined(write_with_uvs(read_bytes(glb), uv_vertices).files.back());
   };
   const std::string once = again(rich_square().glb(), kCut), twice = again(once, kCut);
   EXPECT_EQ(once.size(), twice.size()) << "old UVs, and vertices from before the split, are gone";
@@ -219,7 +219,7 @@ TEST(GltfWrite, TangentsGoWithTheUvsThatTheyBelongedTo) {
     GltfBuilder builder = rich_square();
     builder.json["materials"] = {{{"normalTexture", normal_texture}}, Json::object()};
     builder.json["meshes"][0]["primitives"][0]["material"] = 0;
-    const GltfOutput output = write(read(builder.glb()), kCut, uv_set);
+    const GltfOutput output = write_with_uvs(read_bytes(builder.glb()), kCut, uv_set);
     const Parts parts(joined(output.files.back()));
     EXPECT_EQ(parts.primitive(0)["attributes"].contains("TANGENT"), output.not_kept.empty());
     return output.not_kept;
@@ -239,7 +239,7 @@ TEST(GltfWrite, MorphsOfTheOldUvsAreLeftOut) {
   GltfBuilder builder = rich_square();
   Json& target = builder.json["meshes"][0]["primitives"][0]["targets"][0];
   target["TEXCOORD_0"] = builder.vectors2({0, 0, 1, 0, 0, 0, 0, 0});
-  const GltfOutput output = write(read(builder.glb()), kCut);
+  const GltfOutput output = write_with_uvs(read_bytes(builder.glb()), kCut);
   const Parts parts(joined(output.files.back()));
   EXPECT_EQ(output.not_kept, std::vector<std::string>{"morphs of UVs"});
   EXPECT_FALSE(parts.primitive(0)["targets"][0].contains("TEXCOORD_0"));
@@ -258,17 +258,18 @@ TEST(GltfWrite, TheBufferIsWhereTheInputHadIt) {
     return read_mesh(output.files.back().path, Content::kSurface);
   };
   const std::vector<double> uvs = {0, .25, 1, .25, 2, .25, 4, .25, 5, .25, 3, .25};
-  const GltfOutput beside = write(file, kCut, 0, directory.path("c%.gltf"));
+  const GltfOutput beside = write_with_uvs(file, kCut, 0, directory.path("c%.gltf"));
   ASSERT_EQ(beside.files.size(), 2u);
   EXPECT_EQ(beside.files[0].path, directory.path("c%.bin"));
   EXPECT_EQ(corner_uvs(put(beside), 0), uvs);
   EXPECT_EQ(gltf_output_paths(file, directory.path("c%.gltf")),
             (std::vector<std::string>{directory.path("c%-1.bin"), directory.path("c%.gltf")}))
       << "c%.bin is there now";
-  EXPECT_EQ(corner_uvs(put(write(file, kCut, 0, directory.path("c.glb"))), 0), uvs);
-  EXPECT_EQ(corner_uvs(put(write(file, kCut, 0, input)), 0), uvs) << "in place";
+  EXPECT_EQ(corner_uvs(put(write_with_uvs(file, kCut, 0, directory.path("c.glb"))), 0), uvs);
+  EXPECT_EQ(corner_uvs(put(write_with_uvs(file, kCut, 0, input)), 0), uvs) << "in place";
 
-  const GltfOutput embedded = write(read(builder.glb()), kCut, 0, directory.path("d.gltf"));
+  const GltfOutput embedded =
+      write_with_uvs(read_bytes(builder.glb()), kCut, 0, directory.path("d.gltf"));
   EXPECT_EQ(embedded.files.size(), 1u);
   EXPECT_EQ(corner_uvs(put(embedded), 0), uvs);
 }
@@ -280,12 +281,12 @@ TEST(GltfWrite, ABufferThatIsThereIsNotReplacedUnderItsModel) {
   const MeshFile file =
       read_mesh(directory.file("a.gltf", builder.text("a.bin")), Content::kSurface);
   const auto buffer_of = [&](const char* name) {
-    const std::string path = write(file, kCut, 0, directory.path(name)).files[0].path;
+    const std::string path = write_with_uvs(file, kCut, 0, directory.path(name)).files[0].path;
     return std::filesystem::path(path).filename().string();
   };
   const auto replaced_by = [&](const char* name) {
     std::vector<std::string> names;
-    for (const std::string& path : write(file, kCut, 0, directory.path(name)).replaced) {
+    for (const std::string& path : write_with_uvs(file, kCut, 0, directory.path(name)).replaced) {
       names.push_back(std::filesystem::path(path).filename().string());
     }
     return names;
@@ -316,7 +317,7 @@ TEST(GltfWrite, ABufferOfTheInputStaysWhereAnotherModelHasItsName) {
   directory.file("b.gltf", builder.text("b.bin"));
   const MeshFile file =
       read_mesh(directory.file("a.gltf", builder.text("b.bin")), Content::kSurface);
-  const GltfOutput output = write(file, kCut, 0, directory.path("b.gltf"));
+  const GltfOutput output = write_with_uvs(file, kCut, 0, directory.path("b.gltf"));
   EXPECT_EQ(output.files[0].path, directory.path("b-1.bin"));
   EXPECT_TRUE(output.replaced.empty());
 }
@@ -326,8 +327,8 @@ TEST(GltfWrite, ImagesThatStayBehindAreNamed) {
   GltfBuilder builder = rich_square();
   builder.json["images"] = {{{"uri", "wood%20a.png"}}, {{"uri", "data:image/png;base64,AAAA"}}};
   const MeshFile file = read_mesh(directory.file("a.gltf", builder.text()), Content::kSurface);
-  EXPECT_TRUE(write(file, kCut, 0, directory.path("b.gltf")).not_kept.empty());
-  EXPECT_EQ(write(file, kCut, 0, directory.path("c/b.gltf")).not_kept,
+  EXPECT_TRUE(write_with_uvs(file, kCut, 0, directory.path("b.gltf")).not_kept.empty());
+  EXPECT_EQ(write_with_uvs(file, kCut, 0, directory.path("c/b.gltf")).not_kept,
             std::vector<std::string>{"image beside the input: wood a.png"});
 }
 
