@@ -71,5 +71,5 @@ class Job:
             self._error = error
 
     def _told(self, fraction: float, stage: str) -> bool:
-        self.fraction, self.stage = fraction, stage
+        self.fraction, self.stage = max(self.fraction, fraction), stage
         return not self._cancelled.is_set()

@@ -73,13 +73,15 @@ def measure(surface: Surface, corner_uvs: Array, allow_mirrored: bool = False) -
     overlapping = np.zeros(count, bool)
     overlapping[verdict.pairs.ravel()] = True
     flipped = np.zeros(count, bool)
-    flipped[flat.face_of_triangle[_flipped(surface, flat, found, allow_mirrored)]] = True
+    flips = verdict.negative + verdict.degenerate
+    if flips:  # else the signs that follow are those of faces that wind against their chart
+        flipped[flat.face_of_triangle[_flipped(flat, found, allow_mirrored)]] = True
     areas = _areas(surface, flat)
     energies = _energies(found.singular_values, areas)
     return Measures(
         len(np.unique(flat.chart_of_triangle)),
         *energies,
-        verdict.negative + verdict.degenerate,
+        flips,
         verdict.overlaps,
         float(np.nansum(np.abs(found.area) * areas)),
         flipped,
@@ -103,9 +105,7 @@ def _areas(surface: Surface, flat: Layout) -> Array:
     return areas
 
 
-def _flipped(
-    surface: Surface, flat: Layout, found: beltrami.Distortion, allow_mirrored: bool
-) -> Array:
+def _flipped(flat: Layout, found: beltrami.Distortion, allow_mirrored: bool) -> Array:
     """Return the triangles that are flipped or without area in the plane."""
     areas = np.nan_to_num(found.area)
     in_space = ~np.isnan(found.area)
@@ -151,7 +151,7 @@ def _stretch(count: int, flat: Layout, area: Array, areas: Array) -> Array:
 
 
 def colours(stretch: Array) -> Array:
-    """Return a colour for each stretch, (m, 4) in [0, 1]: blue is larger than the mean in the plane.
+    """Return a colour for each stretch, (m, 4) in [0, 1]: blue is larger than the mean.
 
     Red is smaller, where texels are few; grey is the mean.
     """

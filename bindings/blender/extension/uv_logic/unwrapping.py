@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from .settings import PAGE_OPTIONS
 _SHARE_OF_UNWRAPPING = 0.8  # of the progress, where packing is a call of its own
 
 
-class Refused(ValueError):
+class RefusedError(ValueError):
     """What is asked for does not go together; the message says what to do."""
 
 
@@ -64,29 +65,35 @@ class Unwrapped:
         What the new UVs are worth.
     reached : bool or None
         Whether the target was reached; None without a search.
+    density : float
+        Of charts that were packed beside others: 1, or less where there was no room for their
+        texels per unit.
     """
 
     uvs: list[Array]
     seams: list[Array]
     measures: measuring.Measures
     reached: bool | None
+    density: float = 1.0
 
 
 def unwrap(parts: Sequence[Part], request: Request, progress: Progress = silent) -> Unwrapped:
-    """Return new UVs of the chosen faces; raises Refused, and what the package raises."""
+    """Return new UVs of the chosen faces; raises RefusedError, and what the package raises."""
     surface = joined(parts)
     if len(surface.sizes) == 0:
-        raise Refused("no face is chosen: select some faces")
+        raise RefusedError("no face is chosen: select some faces")
     others = joined(parts, chosen=False)
     held = np.zeros(len(surface.sizes), bool)
     if request.keep_pins and surface.pinned.any():
         held = _pinned_regions(surface, request)
-    alone = not held.any() and packing.obstacles(others, 1) is None
+    alone = not held.any() and not packing.obstacles(
+        others, packing.pages_of(others, request.options)
+    )
     if alone:
         atlas = _atlas_of(surface, request, progress, packed=True)
         return _outcome(parts, surface, _corner_uvs(atlas), atlas.reached_target)
     if {"stack", "pack_splits"} & request.options.keys():
-        raise Refused(
+        raise RefusedError(
             "stacking and splits need the pages for themselves: select all faces, and unpin UVs"
         )
     return _among_others(parts, surface, others, held, request, progress)
@@ -103,7 +110,7 @@ def _among_others(
     """Unwrap what is pinned in its place, and pack the rest around it and around the others."""
     uvs = np.zeros((len(surface.corners), 2), np.float32)
     stays = np.zeros(len(surface.sizes), bool)
-    before, reached = 0.0, None
+    before, density, reached = 0.0, 1.0, None
     for faces, pinned in ((held, True), (~held, False)):
         if not faces.any():
             continue
@@ -123,17 +130,17 @@ def _among_others(
         options["threads"] = request.threads
         rest = part_of(progress, before, 1 - before)
         placed = packing.pack(surface.only(~stays), uvs[moves], around, options, rest)
-        uvs[moves] = placed.uvs
-    return _outcome(parts, surface, uvs, reached)
+        uvs[moves], density = placed.uvs, placed.density
+    return replace(_outcome(parts, surface, uvs, reached), density=density)
 
 
 def _atlas_of(
     surface: Surface, request: Request, progress: Progress, packed: bool
 ) -> beltrami.Atlas:
-    options: dict[str, Any] = dict(request.options)
+    options: dict[str, Any] = {**request.options, "cut": request.cut}
     if not packed:
         options = {name: value for name, value in options.items() if name not in PAGE_OPTIONS}
-        options["pack"] = "none"
+        options["pack"] = "none"  # the unit is that of the surface, or of the pins
     if request.cut != "auto" or len(np.unique(surface.part)) > 1:
         options.setdefault("weld", "off")  # what Blender does not join is apart
     if request.cut == "islands":
@@ -145,15 +152,17 @@ def _atlas_of(
     pins = np.flatnonzero(surface.pinned)
     if request.keep_pins and len(pins):
         options["pins"] = (pins, surface.uvs[pins])
-    return beltrami.unwrap(
-        surface.vertices,
-        surface.faces(),
-        seams=surface.seam_pairs(),
-        cut=request.cut,
-        threads=request.threads,
-        progress=progress,
-        **options,
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", beltrami.NotInjectiveWarning)  # the measures tell
+        atlas: beltrami.Atlas = beltrami.unwrap(
+            surface.vertices,
+            surface.faces(),
+            seams=surface.seam_pairs(),
+            threads=request.threads,
+            progress=progress,
+            **options,
+        )
+    return atlas
 
 
 # ---- Pins ---------------------------------------------------------------------------------
@@ -209,9 +218,7 @@ def _scales(surface: Surface, region: Array) -> Array:
     a, b, c = (surface.vertices[cut.triangles[:, k]].astype(np.float64) for k in range(3))
     space = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     a, b, c = (surface.uvs[cut.corners[:, k]].astype(np.float64) for k in range(3))
-    plane = np.abs(
-        (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0],
-    )
+    plane = np.abs(packing.doubled_areas(a, b, c))
     areas, of_uvs = np.bincount(of, space), np.bincount(of, plane)
     whole = of_uvs.sum() / areas.sum() if of_uvs.sum() > 0 else 2 / max(areas.sum(), 1e-30)
     with np.errstate(divide="ignore", invalid="ignore"):
