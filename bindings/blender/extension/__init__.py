@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: 2026 The beltrami authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The extension of Blender: unwraps, packs and checks UVs with beltrami."""
+
+from . import operators, panels, properties
+
+
+def register() -> None:
+    """Register all there is."""
+    properties.register()
+    operators.register()
+    panels.register()
+
+
+def unregister() -> None:
+    """Take all of it back."""
+    panels.unregister()
+    operators.unregister()
+    properties.unregister()
