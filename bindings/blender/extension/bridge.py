@@ -115,11 +115,12 @@ def write_uvs(thing: Any, part: Part, uvs: Array) -> None:
         return
     edited = bmesh.from_edit_mesh(mesh)
     layer = edited.loops.layers.uv.verify()
-    of_faces = np.split(uvs.astype(np.float64), np.cumsum(part.sizes)[:-1])
-    for face, chosen, rows in zip(edited.faces, part.chosen.tolist(), of_faces):
+    rows, begin = uvs.astype(np.float64).tolist(), 0
+    for face, chosen, size in zip(edited.faces, part.chosen.tolist(), part.sizes.tolist()):
         if chosen:
-            for loop, row in zip(face.loops, rows.tolist()):
+            for loop, row in zip(face.loops, rows[begin : begin + size]):
                 loop[layer].uv = row
+        begin += size
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 

@@ -126,7 +126,8 @@ def as_faces(corners: Array, sizes: Array) -> Any:
     """Return faces as the package takes them: rows, or a list where they are of several sizes."""
     if len(sizes) and (sizes == sizes[0]).all():
         return corners.reshape(-1, int(sizes[0]))
-    return np.split(corners, np.cumsum(sizes)[:-1])
+    ends = np.cumsum(sizes).tolist()
+    return [corners[begin:end] for begin, end in zip([0, *ends], ends)]
 
 
 def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:

@@ -332,7 +332,7 @@ def test_shape_keys_and_other_layers_stay(scene, monkey):
 
 
 def test_many_faces(scene):
-    scene.ops.mesh.primitive_uv_sphere_add(segments=300, ring_count=150)
+    scene.ops.mesh.primitive_uv_sphere_add(segments=150, ring_count=75)
     sphere = scene.context.object
     edit(sphere)
     scene.ops.uv.beltrami_auto(effort="quick")

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import conftest
 import numpy as np
 import pytest
+import shapes
 from uv_logic import measuring, packing
 from uv_logic.parts import joined, layout, regions
 
@@ -21,14 +21,16 @@ def halves(part):
     return dataclasses.replace(part, uvs=uvs), left
 
 
-def test_a_chart_is_what_shares_uv_vertices(hump):
+def test_a_chart_is_what_shares_uv_vertices():
+    hump = shapes.hump()
     part, left = halves(hump)
     flat = layout(joined([part]), part.uvs)
     assert len(np.unique(flat.chart_of_triangle)) == 2
     assert len(np.unique(flat.chart_of_triangle[left[flat.triangles[:, 0]]])) == 1
 
 
-def test_charts_are_packed_and_keep_their_shapes(hump):
+def test_charts_are_packed_and_keep_their_shapes():
+    hump = shapes.hump()
     part, _ = halves(hump)
     surface = joined([part])
     before = measuring.measure(surface, part.uvs)
@@ -41,7 +43,8 @@ def test_charts_are_packed_and_keep_their_shapes(hump):
     assert packed.report.margin >= 4
 
 
-def test_what_is_not_chosen_is_no_place_to_pack(hump):
+def test_what_is_not_chosen_is_no_place_to_pack():
+    hump = shapes.hump()
     part, left = halves(hump)
     part = dataclasses.replace(part, chosen=~left[::4])
     surface = joined([part])
@@ -53,7 +56,8 @@ def test_what_is_not_chosen_is_no_place_to_pack(hump):
     ).sound
 
 
-def test_charts_beyond_the_pages_are_no_obstacles(hump):
+def test_charts_beyond_the_pages_are_no_obstacles():
+    hump = shapes.hump()
     part = dataclasses.replace(hump, chosen=np.zeros(len(hump.sizes), bool))
     beyond = dataclasses.replace(part, uvs=part.uvs + np.float32(5))
     assert packing.obstacles(joined([part], chosen=False), 1)
@@ -62,7 +66,8 @@ def test_charts_beyond_the_pages_are_no_obstacles(hump):
     assert not packing.obstacles(joined([without], chosen=False), 1)
 
 
-def test_charts_across_tiles_are_obstacles_on_each(hump):
+def test_charts_across_tiles_are_obstacles_on_each():
+    hump = shapes.hump()
     part = dataclasses.replace(hump, chosen=np.zeros(len(hump.sizes), bool))
     across = dataclasses.replace(part, uvs=part.uvs * np.float32(0.5) + np.array([0.77, 0], "f4"))
     surface = joined([across], chosen=False)
@@ -80,7 +85,8 @@ def test_charts_across_tiles_are_obstacles_on_each(hump):
     assert packing.pages_of(surface, {}) == 1
 
 
-def test_nothing_is_packed_onto_charts_that_reach_beyond_the_page(hump):
+def test_nothing_is_packed_onto_charts_that_reach_beyond_the_page():
+    hump = shapes.hump()
     part, left = halves(hump)
     uvs = part.uvs.copy()
     uvs[left] += np.float32(0.3)
@@ -93,7 +99,8 @@ def test_nothing_is_packed_onto_charts_that_reach_beyond_the_page(hump):
     assert packed.uvs.max() <= 1
 
 
-def test_density_fills_tiles_of_udim(hump):
+def test_density_fills_tiles_of_udim():
+    hump = shapes.hump()
     apart = dataclasses.replace(hump, positions=hump.positions + 2)
     surface = joined([hump, apart])
     options = {"texels_per_unit": 400.0, "resolution": 512}
@@ -103,19 +110,22 @@ def test_density_fills_tiles_of_udim(hump):
     assert packed.uvs[:, 1].max() <= 1
 
 
-def test_without_uvs_there_is_nothing_to_pack(cube):
+def test_without_uvs_there_is_nothing_to_pack():
+    cube = shapes.cube()
     with pytest.raises(ValueError, match="unwrap first"):
         packing.pack(joined([cube]), cube.uvs, joined([cube], chosen=False), {})
 
 
-def test_seams_part_regions(hump):
+def test_seams_part_regions():
+    hump = shapes.hump()
     across = np.isin(hump.edges, np.arange(60, 72)).all(axis=1)
     surface = joined([dataclasses.replace(hump, seams=across)])
     assert len(np.unique(regions(surface, by_material=False))) == 2
     assert across.sum() == 11
 
 
-def test_flips_and_overlaps_are_found_where_they_are(hump):
+def test_flips_and_overlaps_are_found_where_they_are():
+    hump = shapes.hump()
     uvs = hump.uvs.copy()
     inner = hump.corners == 6 * 12 + 6
     uvs[inner] += np.float32(0.3)  # a vertex far beyond its neighbours
@@ -131,7 +141,8 @@ def test_flips_and_overlaps_are_found_where_they_are(hump):
     assert two.overlapping.any()
 
 
-def test_mirrored_charts_may_count_as_sound(hump):
+def test_mirrored_charts_may_count_as_sound():
+    hump = shapes.hump()
     uvs = hump.uvs * np.array([-1, 1], np.float32)
     surface = joined([hump])
     assert measuring.measure(surface, uvs).flipped.all()
@@ -141,9 +152,9 @@ def test_mirrored_charts_may_count_as_sound(hump):
 
 
 def test_energy_is_at_the_best_scale_and_two_for_what_keeps_lengths():
-    vertices, faces = conftest.bumpy()
+    vertices, faces = shapes.bumpy()
     vertices[:, 2] = 0
-    part = conftest.part(vertices, faces)
+    part = shapes.part(vertices, faces)
     uvs = (7 * vertices[faces.ravel(), :2]).astype(np.float32)
     found = measuring.measure(joined([part]), uvs)
     assert found.energy == pytest.approx(2, abs=1e-6)
@@ -153,7 +164,8 @@ def test_energy_is_at_the_best_scale_and_two_for_what_keeps_lengths():
     assert wide.p99 == pytest.approx(4.25, abs=1e-4)
 
 
-def test_uvs_without_area_have_no_energy(cube):
+def test_uvs_without_area_have_no_energy():
+    cube = shapes.cube()
     found = measuring.measure(joined([cube]), cube.uvs)
     assert found.energy == np.inf
     assert found.flips == 12

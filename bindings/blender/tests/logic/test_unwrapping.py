@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import conftest
 import numpy as np
 import pytest
+import shapes
 from uv_logic import measuring, unwrapping
 from uv_logic.parts import Part, joined
 from uv_logic.unwrapping import RefusedError, Request
@@ -25,7 +25,8 @@ def with_seams(part: Part, pairs: list[tuple[int, int]]) -> Part:
     return dataclasses.replace(part, seams=seams)
 
 
-def test_marked_seams_are_the_only_ones(cube):
+def test_marked_seams_are_the_only_ones():
+    cube = shapes.cube()
     marked = with_seams(cube, SEAMS)
     found = unwrapping.unwrap([marked], Request())
     assert found.measures.charts == 1
@@ -35,7 +36,8 @@ def test_marked_seams_are_the_only_ones(cube):
     assert found.reached is None
 
 
-def test_uvs_lie_on_the_page_with_the_margin(cube):
+def test_uvs_lie_on_the_page_with_the_margin():
+    cube = shapes.cube()
     found = unwrapping.unwrap([cube], Request(options={"hard_angle": 60.0, "margin": 16.0}))
     uvs = found.uvs[0]
     assert found.measures.charts == 6
@@ -43,7 +45,8 @@ def test_uvs_lie_on_the_page_with_the_margin(cube):
     assert uvs.max() <= 1 - 8 / 1024 + 1e-6
 
 
-def test_faces_that_are_not_chosen_stay_and_nothing_is_laid_on_them(hump):
+def test_faces_that_are_not_chosen_stay_and_nothing_is_laid_on_them():
+    hump = shapes.hump()
     others = hump.positions[hump.corners[::4], 0] < 0.5
     uvs = hump.uvs * np.float32(0.5)  # they cover a quarter of the page
     part = dataclasses.replace(hump, chosen=~others, uvs=uvs)
@@ -57,7 +60,8 @@ def test_faces_that_are_not_chosen_stay_and_nothing_is_laid_on_them(hump):
     assert found.uvs[0].max() <= 1
 
 
-def test_charts_beside_others_get_their_density(hump):
+def test_charts_beside_others_get_their_density():
+    hump = shapes.hump()
     others = hump.positions[hump.corners[::4], 0] < 0.2
     part = dataclasses.replace(hump, chosen=~others, uvs=hump.uvs * np.float32(0.25))
     found = unwrapping.unwrap([part], Request())
@@ -67,7 +71,8 @@ def test_charts_beside_others_get_their_density(hump):
     assert 0.2 < height.max() < 0.4
 
 
-def test_without_room_at_the_density_of_others_charts_are_smaller(hump):
+def test_without_room_at_the_density_of_others_charts_are_smaller():
+    hump = shapes.hump()
     others = hump.positions[hump.corners[::4], 0] < 0.45
     uvs = hump.uvs.copy()
     part = dataclasses.replace(hump, chosen=~others, uvs=uvs)
@@ -82,7 +87,8 @@ def test_without_room_at_the_density_of_others_charts_are_smaller(hump):
         unwrapping.unwrap([part, full], Request())
 
 
-def test_pins_stay_to_the_bit_and_their_chart_follows(hump):
+def test_pins_stay_to_the_bit_and_their_chart_follows():
+    hump = shapes.hump()
     corner = np.flatnonzero(np.isin(hump.corners, [0, 11]))
     pinned = np.zeros(len(hump.corners), bool)
     pinned[corner] = True
@@ -95,7 +101,8 @@ def test_pins_stay_to_the_bit_and_their_chart_follows(hump):
     assert np.ptp(found.uvs[0], axis=0).max() < 0.5  # not packed anew onto the whole page
 
 
-def test_one_pin_keeps_the_size_of_its_chart(hump):
+def test_one_pin_keeps_the_size_of_its_chart():
+    hump = shapes.hump()
     pinned = np.zeros(len(hump.corners), bool)
     pinned[0] = True
     uvs = hump.uvs * np.float32(0.3) + np.float32(0.2)
@@ -106,11 +113,12 @@ def test_one_pin_keeps_the_size_of_its_chart(hump):
     assert area == pytest.approx(0.09, rel=0.05)
 
 
-def test_what_is_not_pinned_is_packed_around_what_is(hump):
+def test_what_is_not_pinned_is_packed_around_what_is():
+    hump = shapes.hump()
     pinned = np.zeros(len(hump.corners), bool)
     pinned[np.flatnonzero(np.isin(hump.corners, [0, 11]))] = True
     held = dataclasses.replace(hump, pinned=pinned, uvs=hump.uvs * np.float32(0.5))
-    free = conftest.part(conftest.CUBE + 3, conftest.CUBE_FACES)
+    free = shapes.part(shapes.CUBE + 3, shapes.CUBE_FACES)
     found = unwrapping.unwrap([held, free], Request())
     np.testing.assert_array_equal(found.uvs[0][pinned], held.uvs[pinned])
     assert found.measures.sound
@@ -119,7 +127,8 @@ def test_what_is_not_pinned_is_packed_around_what_is(hump):
     assert found.uvs[1].max() <= 1
 
 
-def test_pins_that_no_map_meets_are_refused_with_a_sentence(hump):
+def test_pins_that_no_map_meets_are_refused_with_a_sentence():
+    hump = shapes.hump()
     pinned = np.zeros(len(hump.corners), bool)
     pinned[:4] = True  # all corners of a face
     uvs = hump.uvs.copy()
@@ -130,7 +139,8 @@ def test_pins_that_no_map_meets_are_refused_with_a_sentence(hump):
     assert unwrapping.unwrap([part], Request(keep_pins=False)).measures.sound
 
 
-def test_several_objects_share_a_page_at_one_density(cube):
+def test_several_objects_share_a_page_at_one_density():
+    cube = shapes.cube()
     large = dataclasses.replace(cube, positions=2 * cube.positions)
     found = unwrapping.unwrap([cube, large], Request())
     assert found.measures.sound
@@ -141,20 +151,23 @@ def test_several_objects_share_a_page_at_one_density(cube):
     assert areas[1] / areas[0] == pytest.approx(4, rel=0.01)
 
 
-def test_objects_at_one_place_are_not_joined(cube):
+def test_objects_at_one_place_are_not_joined():
+    cube = shapes.cube()
     found = unwrapping.unwrap([cube, cube], Request(cut="auto"))
     assert found.measures.charts >= 2
     assert found.measures.sound
 
 
-def test_materials_may_part_charts(hump):
+def test_materials_may_part_charts():
+    hump = shapes.hump()
     materials = (hump.positions[hump.corners[::4], 1] < 0.5).astype(int)
     part = dataclasses.replace(hump, materials=materials)
     assert unwrapping.unwrap([part], Request()).measures.charts == 1
     assert unwrapping.unwrap([part], Request(materials="cut")).measures.charts == 2
 
 
-def test_islands_keep_the_charts_of_the_uvs(hump):
+def test_islands_keep_the_charts_of_the_uvs():
+    hump = shapes.hump()
     moved = np.repeat(hump.positions[hump.corners[::4], 1] < 0.5, 4)
     uvs = hump.uvs.copy()
     uvs[moved] += np.float32(3)
@@ -165,9 +178,9 @@ def test_islands_keep_the_charts_of_the_uvs(hump):
 
 
 def test_seams_that_were_found_can_be_marked_and_used():
-    vertices, faces = conftest.bumpy(16)
+    vertices, faces = shapes.bumpy(16)
     vertices[:, 2] *= 4
-    part = conftest.part(vertices, faces)
+    part = shapes.part(vertices, faces)
     found = unwrapping.unwrap([part], Request(cut="auto", options={"target_energy": 2.02}))
     assert found.reached
     assert found.measures.energy <= 2.0201
@@ -181,7 +194,7 @@ def test_seams_that_were_found_can_be_marked_and_used():
 def test_polygons_of_several_sizes_are_taken():
     vertices = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0.5, 1]])
     faces = np.array([[0, 1, 2, 3]])
-    part = conftest.part(vertices, faces)
+    part = shapes.part(vertices, faces)
     part = dataclasses.replace(
         part,
         corners=np.array([0, 1, 2, 3, 1, 4, 2]),
@@ -196,7 +209,8 @@ def test_polygons_of_several_sizes_are_taken():
     assert found.measures.energy == pytest.approx(2, abs=1e-5)
 
 
-def test_nothing_chosen_and_stacks_beside_others_are_refused(hump):
+def test_nothing_chosen_and_stacks_beside_others_are_refused():
+    hump = shapes.hump()
     nothing = dataclasses.replace(hump, chosen=np.zeros(len(hump.sizes), bool))
     with pytest.raises(RefusedError, match="select some faces"):
         unwrapping.unwrap([nothing], Request())
@@ -205,7 +219,8 @@ def test_nothing_chosen_and_stacks_beside_others_are_refused(hump):
         unwrapping.unwrap([some], Request(cut="auto", options={"stack": "copies"}))
 
 
-def test_copies_among_objects_are_stacked(cube):
+def test_copies_among_objects_are_stacked():
+    cube = shapes.cube()
     apart = dataclasses.replace(cube, positions=cube.positions + 5)
     found = unwrapping.unwrap([cube, apart], Request(cut="auto", options={"stack": "copies"}))
     assert np.ptp(found.uvs[0], axis=0).max() > 0.5
@@ -213,7 +228,8 @@ def test_copies_among_objects_are_stacked(cube):
     np.testing.assert_array_equal(found.uvs[0][order[0]], found.uvs[1][order[1]])
 
 
-def test_progress_rises_to_the_end_and_cancels(hump):
+def test_progress_rises_to_the_end_and_cancels():
+    hump = shapes.hump()
     told: list[float] = []
 
     def listen(fraction: float, stage: str) -> bool:

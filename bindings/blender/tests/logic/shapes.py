@@ -4,14 +4,7 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
-import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "extension"))
-
 from uv_logic.parts import Part
 
 CUBE = np.array([[x, y, z] for z in (0.0, 1) for y in (0.0, 1) for x in (0.0, 1)])
@@ -53,12 +46,11 @@ def bumpy(side: int = 12) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([x, y, z], axis=-1).reshape(-1, 3), faces.reshape(-1, 4)
 
 
-@pytest.fixture
 def cube() -> Part:
+    """Return a cube without UVs."""
     return part(CUBE, CUBE_FACES)
 
 
-@pytest.fixture
 def hump() -> Part:
     """Return a surface whose UVs are its shadow, in [0, 1]."""
     vertices, faces = bumpy()
