@@ -82,12 +82,7 @@ def read(thing: Any, how: Reading) -> Part:
                 chosen &= _values(faces, "select", bool)
         if how.by_uvs and layer is not None and not how.everything:
             chosen &= _selected_in_uvs(mesh, layer, sizes)
-        uvs = np.zeros((count, 2), np.float32)
-        pinned = np.zeros(count, bool)
-        if layer is not None:
-            layer.uv.foreach_get("vector", uvs.reshape(-1))
-            if len(layer.pin) == count:
-                layer.pin.foreach_get("value", pinned)
+        uvs, pinned = _uvs_and_pins(layer, count)
         positions = _values(mesh.vertices, "co", np.float32, 3).astype(np.float64)
         return Part(
             thing.name,
@@ -206,6 +201,17 @@ def _readable(thing: Any) -> Iterator[Any]:
         yield copy
     finally:
         bpy.data.meshes.remove(copy)
+
+
+def _uvs_and_pins(layer: Any, count: int) -> tuple[Array, Array]:
+    """Return the UVs of so many corners, (c, 2), and which are pinned, (c,); without a layer 0."""
+    uvs = np.zeros((count, 2), np.float32)
+    pinned = np.zeros(count, bool)
+    if layer is not None:
+        layer.uv.foreach_get("vector", uvs.reshape(-1))
+        if len(layer.pin) == count:  # from Blender 5.0 on it may have none
+            layer.pin.foreach_get("value", pinned)
+    return uvs, pinned
 
 
 def _values(items: Any, name: str, dtype: Any, columns: int = 1) -> Array:

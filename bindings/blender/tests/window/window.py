@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: 2026 The beltrami authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a user does in a window, as events: see run.sh beside this file. Ends Blender."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import bmesh
+import bpy
+import numpy as np
+
+MODULE = "beltrami_uv"
+PATIENCE = 120  # seconds after which what waits has failed
+TICK = 0.01
+
+
+def older_layer(layer: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Read UVs and pins as Blender before 3.5 has them."""
+    uvs, pinned = np.zeros((count, 2), np.float32), np.zeros(count, bool)
+    if layer is not None:
+        layer.data.foreach_get("uv", uvs.reshape(-1))
+        layer.data.foreach_get("pin_uv", pinned)
+    return uvs, pinned
+
+
+def load() -> tuple[Any, Any]:
+    """Load the sources as an add-on, and return the modules that tests look into."""
+    bpy.utils.refresh_script_paths() if hasattr(bpy.utils, "refresh_script_paths") else None
+    bridge = importlib.import_module(f"{MODULE}.bridge")
+    if not hasattr(bpy.types.MeshUVLoopLayer, "uv"):
+        bridge._uvs_and_pins = older_layer
+    addon = importlib.import_module(MODULE)
+    addon.register()
+    return bridge, importlib.import_module(f"{MODULE}.running")
+
+
+def uvs_of(thing: Any) -> np.ndarray:
+    """Return the UVs of what is edited, (c, 2)."""
+    edited = bmesh.from_edit_mesh(thing.data)
+    layer = edited.loops.layers.uv.verify()
+    return np.array([loop[layer].uv[:] for face in edited.faces for loop in face.loops])
+
+
+def view() -> dict[str, Any]:
+    """Return the 3D view, as an override of the context."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "screen": window.screen, "area": area, "region": region}
+
+
+def event(kind: str, value: str = "PRESS", **modifiers: bool) -> None:
+    """Send an event to the middle of the 3D view."""
+    held = view()
+    region = held["region"]
+    at = {"x": region.x + region.width // 2, "y": region.y + region.height // 2}
+    held["window"].event_simulate(type=kind, value=value, **at, **modifiers)
+
+
+def key(kind: str, **modifiers: bool) -> None:
+    """Press a key and let it go."""
+    event(kind, "PRESS", **modifiers)
+    event(kind, "RELEASE", **modifiers)
+
+
+def invoke(operator: Any, **options: Any) -> set[str]:
+    """Invoke an operator as a menu does."""
+    with bpy.context.temp_override(**view()):
+        return operator("INVOKE_DEFAULT", True, **options)
+
+
+def until(is_so: Any) -> Iterator[None]:
+    """Wait for something; raises AssertionError after a long time."""
+    end = time.monotonic() + PATIENCE
+    while not is_so():
+        assert time.monotonic() < end, "waited in vain"
+        yield
+
+
+def story(running: Any) -> Iterator[None]:
+    """Tell what a user does, and look at what comes of it. Yields wherever Blender is to go on."""
+    shown = running.shown
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.ops.mesh.primitive_monkey_add()
+    thing = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide(number_cuts=7, smoothness=1)
+    bpy.ops.ed.undo_push(message="a large monkey")
+    yield
+    first = uvs_of(thing)
+
+    # Esc in the midst of a run.
+    assert invoke(bpy.ops.uv.beltrami_auto, effort="high") == {"RUNNING_MODAL"}
+    job = shown["job"]
+    yield from until(lambda: job.fraction > 0.1)
+    with bpy.context.temp_override(**view()):
+        if os.environ["BELTRAMI_PICTURE"] != "/dev/null":
+            bpy.ops.screen.screenshot(filepath=os.environ["BELTRAMI_PICTURE"])
+    yield
+    assert not job.done, "the run was over before Esc: the mesh is to be larger"
+    pressed = time.monotonic()
+    key("ESC")
+    yield from until(lambda: shown["job"] is None)
+    print(f"window: Esc took {1000 * (time.monotonic() - pressed):.0f} ms")
+    np.testing.assert_array_equal(uvs_of(thing), first)
+    yield from until(lambda: job.done)
+    yield
+    np.testing.assert_array_equal(uvs_of(thing), first)
+    print("window: nothing changed after Esc")
+
+    # A run to its end, then undo and redo.
+    assert invoke(bpy.ops.uv.beltrami_auto, effort="quick") == {"RUNNING_MODAL"}
+    yield from until(lambda: shown["job"] is None)
+    second = uvs_of(thing)
+    assert (second != first).any()
+    assert second.min() >= 0
+    assert second.max() <= 1
+    print("window: a run wrote its UVs")
+    yield
+    key("Z", ctrl=True)
+    yield from until(lambda: np.array_equal(uvs_of(bpy.context.object), first))
+    print("window: undo brought the old UVs back")
+    key("Z", ctrl=True, shift=True)
+    yield from until(lambda: np.array_equal(uvs_of(bpy.context.object), second))
+    print("window: redo brought the new UVs back")
+
+    # What is short is over before progress is shown, and can be undone as well.
+    assert invoke(bpy.ops.uv.beltrami_check, colours=True) == {"FINISHED"}
+    assert shown["check"]
+    print("window: the check says", ", ".join(shown["check"]))
+
+
+def main() -> None:
+    """Run the story between Blender's own events, and end with an exit code."""
+    _, running = load()
+    steps = story(running)
+
+    def step() -> float | None:
+        try:
+            next(steps)
+        except StopIteration:
+            print("window: passed", flush=True)
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+            print("window: failed", flush=True)
+            os._exit(1)
+        return TICK
+
+    bpy.app.timers.register(step, first_interval=0.5)
+
+
+sys.path.append(str(Path(os.environ["BLENDER_USER_SCRIPTS"]) / "addons"))
+main()
