@@ -60,6 +60,20 @@ def describe(found: measuring.Measures) -> str:
     )
 
 
+def details(found: measuring.Measures) -> tuple[str, ...]:
+    """Return what UVs are worth, in short lines."""
+    smallest, largest = np.exp(found.stretch.min()), np.exp(found.stretch.max())
+    return (
+        f"Islands: {found.charts}",
+        f"Flipped: {found.flips}",
+        f"Overlaps: {found.overlaps}",
+        f"Distortion: {found.energy:.4g} (2 is none)",
+        f"Of 99%: {found.p99:.4g}",
+        f"Lengths: {smallest:.2g} to {largest:.2g}",
+        f"Page covered: {100 * found.covered:.0f}%",
+    )
+
+
 class UnwrapMixin(RunningMixin):
     """What `Unwrap` and `Auto Unwrap` have in common."""
 
@@ -225,11 +239,7 @@ class UV_OT_beltrami_check(RunningMixin, bpy.types.Operator):
             for target, of_part in zip(self.targets, self._parted(colours)):
                 bridge.write_colours(target.thing, target.part.chosen, of_part)
         sentence = describe(result)
-        smallest, largest = np.exp(result.stretch.min()), np.exp(result.stretch.max())
-        shown["check"] = (
-            *sentence.split(", "),
-            f"lengths {smallest:.2g} to {largest:.2g} times the mean",
-        )
+        shown["check"] = details(result)
         self.report({"INFO" if result.sound else "WARNING"}, sentence)
 
     def _select(self, context: Any, bad: Any) -> None:

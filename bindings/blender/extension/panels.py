@@ -67,7 +67,7 @@ class IMAGE_PT_beltrami(bpy.types.Panel):
         layout.separator()
         column = layout.column()
         for name in (*_HAND_SET, "keep_seams", "mark_seams"):
-            column.prop(held, name)
+            column.prop(held, name, slider=name == "target_energy")
         handed = ("keep_seams", *_COMMON, *settings.AUTO_OPTIONS)
         self._button(UV_OT_beltrami_auto, "Auto Unwrap", handed, held)
         layout.separator()

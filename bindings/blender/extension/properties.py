@@ -89,12 +89,12 @@ def switch(name: str, description: str, default: bool) -> Any:
 
 SWITCHES = {
     "sharp_seams": (
-        "Seams at Sharp Edges",
+        "Cut Sharp Edges",
         "Cut along edges that are marked sharp, too",
         False,
     ),
     "keep_pins": ("Keep Pins", "Pinned UVs stay, and their islands follow them", True),
-    "keep_seams": ("Keep Marked Seams", "Cut along marked seams, beside those found", True),
+    "keep_seams": ("Keep Seams", "Cut along marked seams, beside those found", True),
     "mark_seams": ("Mark Seams", "Mark the edges along which the UVs part as seams", False),
     "scaled": (
         "Object Scale",
