@@ -42,6 +42,7 @@ class Target:
 
 def read_all(context: Any, how: bridge.Reading) -> list[Target]:
     """Return the objects to work on with their meshes; raises RefusedError without any face."""
+    context.view_layer.update()  # where objects are, after a script has moved them
     targets = [Target(thing, bridge.read(thing, how)) for thing in bridge.objects(context)]
     targets = [target for target in targets if len(target.part.sizes)]
     if not any(target.part.chosen.any() for target in targets):
@@ -158,7 +159,7 @@ class UV_OT_beltrami_auto(UnwrapMixin, bpy.types.Operator):
         return Request("auto", self.materials, False, given, properties.threads(context))
 
 
-@with_switches("scaled")
+@with_switches("keep_pins", "scaled")
 @with_options(settings.PAGE_OPTIONS)
 class UV_OT_beltrami_pack(RunningMixin, bpy.types.Operator):
     """Pack the islands of the selected faces, around those that are not selected."""
@@ -180,13 +181,8 @@ class UV_OT_beltrami_pack(RunningMixin, bpy.types.Operator):
         options = settings.given(properties.values_of(self, settings.PAGE_OPTIONS), "pack")
         options["threads"] = properties.threads(context)
 
-        def work(progress: Progress) -> Any:
-            surface = joined(parts)
-            others = joined(parts, chosen=False)
-            packed = packing.pack(surface, surface.uvs, others, options, progress)
-            return packed, unwrapping.spread(parts, surface, packed.uvs)
-
-        return work
+        keep_pins = self.keep_pins
+        return lambda progress: packing.pack_parts(parts, options, keep_pins, progress)
 
     def finish(self, context: Any, result: Any) -> None:
         """Write UVs."""

@@ -71,7 +71,9 @@ class IMAGE_PT_beltrami(bpy.types.Panel):
         handed = ("keep_seams", *_COMMON, *settings.AUTO_OPTIONS)
         self._button(UV_OT_beltrami_auto, "Auto Unwrap", handed, held)
         layout.separator()
-        self._button(UV_OT_beltrami_pack, "Pack", ("scaled", *settings.PAGE_OPTIONS), held)
+        self._button(
+            UV_OT_beltrami_pack, "Pack", ("keep_pins", "scaled", *settings.PAGE_OPTIONS), held
+        )
         layout.separator()
         column = layout.column()
         names = ("allow_mirrored", "colours", "selected_only", "select_faces")

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 import beltrami
 
 from .jobs import Progress, silent
-from .parts import Array, Layout, Surface, layout
+from .parts import Array, Layout, Part, Surface, both, joined, layout, spread
 
 _TILES_IN_A_ROW = 10  # of UDIM
 _MOST_ROWS = 99
@@ -198,6 +198,32 @@ def doubled_areas(a: Array, b: Array, c: Array) -> Array:
     u, v = b - a, c - a
     areas: Array = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     return areas
+
+
+def pack_parts(
+    parts: Sequence[Part],
+    options: Mapping[str, Any],
+    keep_pins: bool = True,
+    progress: Progress = silent,
+) -> tuple[Packed, list[Array]]:
+    """Pack the charts of the chosen faces of all parts; those with pins may stay where they are.
+
+    Returns where charts lie, and for each part the UVs of all of its corners, (c, 2). Raises what
+    `pack` raises.
+    """
+    surface, others = joined(parts), joined(parts, chosen=False)
+    stays = np.zeros(len(surface.sizes), bool)
+    if keep_pins and surface.pinned.any():
+        flat = layout(surface, surface.uvs)
+        held = flat.chart_of_triangle[surface.pinned[flat.triangles].any(axis=1)]
+        stays[flat.face_of_triangle[np.isin(flat.chart_of_triangle, held)]] = True
+        if stays.all():
+            raise ValueError("all islands are pinned: unpin some")
+    moves = surface.only(~stays)
+    packed = pack(moves, moves.uvs, both(others, surface.only(stays)), options, progress)
+    uvs = surface.uvs.copy()
+    uvs[np.repeat(~stays, surface.sizes)] = packed.uvs
+    return packed, spread(parts, surface, uvs)
 
 
 def _with_area(flat: Layout) -> Array:

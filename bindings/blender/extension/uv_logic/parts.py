@@ -170,6 +170,33 @@ def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
     )
 
 
+def both(one: Surface, other: Surface) -> Surface:
+    """Return two surfaces as one, which share no vertex; without edges."""
+    return Surface(
+        np.concatenate([one.vertices, other.vertices]),
+        np.concatenate([one.corners, other.corners + len(one.vertices)]),
+        np.concatenate([one.sizes, other.sizes]),
+        np.concatenate([one.materials, other.materials]),
+        np.concatenate([one.part, other.part]),
+        np.concatenate([one.uvs, other.uvs]),
+        np.concatenate([one.pinned, other.pinned]),
+        np.empty((0, 2), np.int64),
+        np.empty(0, bool),
+        np.concatenate([one.origins, other.origins]),
+    )
+
+
+def spread(parts: Sequence[Part], surface: Surface, corner_uvs: Array) -> list[Array]:
+    """Return for each part the UVs of all of its corners, new ones where faces are chosen."""
+    of_corner = np.repeat(surface.part, surface.sizes)
+    uvs = []
+    for number, part in enumerate(parts):
+        new = part.uvs.astype(np.float32, copy=True)
+        new[part.chosen_corners()] = corner_uvs[of_corner == number]
+        uvs.append(new)
+    return uvs
+
+
 def labels(count: int, pairs: Array) -> Array:
     """Return the least node of the component of each node, (count,), of a graph of pairs (k, 2)."""
     label = np.arange(count)

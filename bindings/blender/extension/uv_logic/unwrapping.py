@@ -15,7 +15,7 @@ import beltrami
 
 from . import measuring, packing
 from .jobs import Progress, part_of, silent
-from .parts import Array, Part, Surface, joined, regions
+from .parts import Array, Part, Surface, both, joined, regions, spread
 from .settings import PAGE_OPTIONS
 
 _SHARE_OF_UNWRAPPING = 0.8  # of the progress, where packing is a call of its own
@@ -125,7 +125,7 @@ def _among_others(
     if not stays.all():
         moves = np.repeat(~stays, surface.sizes)
         # What is pinned is an obstacle like the faces that were not chosen.
-        around = _both(others, _with_uvs(surface.only(stays), uvs[~moves]))
+        around = both(others, replace(surface.only(stays), uvs=uvs[~moves]))
         options = {name: request.options[name] for name in PAGE_OPTIONS if name in request.options}
         options["threads"] = request.threads
         rest = part_of(progress, before, 1 - before)
@@ -247,26 +247,6 @@ def _corner_uvs(atlas: beltrami.Atlas) -> Array:
     return uvs
 
 
-def _with_uvs(surface: Surface, uvs: Array) -> Surface:
-    return Surface(**{**surface.__dict__, "uvs": uvs})
-
-
-def _both(one: Surface, other: Surface) -> Surface:
-    """Return two surfaces as one, which share no vertex; without edges."""
-    return Surface(
-        np.concatenate([one.vertices, other.vertices]),
-        np.concatenate([one.corners, other.corners + len(one.vertices)]),
-        np.concatenate([one.sizes, other.sizes]),
-        np.concatenate([one.materials, other.materials]),
-        np.concatenate([one.part, other.part]),
-        np.concatenate([one.uvs, other.uvs]),
-        np.concatenate([one.pinned, other.pinned]),
-        np.empty((0, 2), np.int64),
-        np.empty(0, bool),
-        np.concatenate([one.origins, other.origins]),
-    )
-
-
 def _outcome(
     parts: Sequence[Part],
     surface: Surface,
@@ -281,14 +261,3 @@ def _outcome(
     seams = [surface.origins[cuts[of_vertex[cuts[:, 0]] == k]] for k in range(len(parts))]
     measures = measuring.measure(surface, corner_uvs)
     return Unwrapped(spread(parts, surface, corner_uvs), seams, measures, reached)
-
-
-def spread(parts: Sequence[Part], surface: Surface, corner_uvs: Array) -> list[Array]:
-    """Return for each part the UVs of all of its corners, new ones where faces are chosen."""
-    of_corner = np.repeat(surface.part, surface.sizes)
-    uvs = []
-    for number, part in enumerate(parts):
-        new = part.uvs.astype(np.float32, copy=True)
-        new[part.chosen_corners()] = corner_uvs[of_corner == number]
-        uvs.append(new)
-    return uvs

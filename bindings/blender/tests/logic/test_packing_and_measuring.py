@@ -56,6 +56,21 @@ def test_what_is_not_chosen_is_no_place_to_pack():
     ).sound
 
 
+def test_charts_with_pins_stay_where_they_are():
+    part, left = halves(shapes.hump())
+    pinned = np.zeros(len(left), bool)
+    pinned[np.flatnonzero(left)[0]] = True
+    part = dataclasses.replace(part, pinned=pinned)
+    _, (uvs,) = packing.pack_parts([part], {"margin": 8.0})
+    np.testing.assert_array_equal(uvs[left], part.uvs[left])
+    assert (uvs[~left] != part.uvs[~left]).any()
+    assert measuring.measure(joined([part]), uvs).sound
+    _, (uvs,) = packing.pack_parts([part], {"margin": 8.0}, keep_pins=False)
+    assert (uvs[left] != part.uvs[left]).any()
+    with pytest.raises(ValueError, match="unpin some"):
+        packing.pack_parts([dataclasses.replace(part, pinned=pinned | ~left)], {})
+
+
 def test_charts_beyond_the_pages_are_no_obstacles():
     hump = shapes.hump()
     part = dataclasses.replace(hump, chosen=np.zeros(len(hump.sizes), bool))
