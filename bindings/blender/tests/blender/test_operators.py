@@ -341,3 +341,14 @@ def test_many_faces(scene):
     edit(sphere)
     scene.ops.uv.beltrami_auto(effort="quick")
     assert verdict(sphere).injective
+
+
+def test_a_selection_of_uvs_chooses_faces(scene, installed, monkey):
+    bridge = installed.bridge
+    scene.context.scene.tool_settings.use_uv_select_sync = False
+    wanted = right_half(monkey)
+    bridge.select(monkey, wanted, in_uvs=True)
+    read = bridge.read(monkey, bridge.Reading(by_uvs=True))
+    np.testing.assert_array_equal(read.chosen, wanted)
+    assert bridge.read(monkey, bridge.Reading()).chosen.all()
+    assert bridge.read(monkey, bridge.Reading(by_uvs=True, everything=True)).chosen.all()
