@@ -83,11 +83,10 @@ def row(option: Any, generate: Any) -> str:
     choices = option.choices if kind == "choice" else []
     names = ", ".join(f'"{choice}"' for choice in choices) + ("," if len(choices) == 1 else "")
     default = f'"{option.default}"' if isinstance(option.default, str) else repr(option.default)
-    lines = [f'"{option.name}"', f'"{kind}"', default]
-    lines += [repr(float(option.minimum)), repr(float(option.maximum)), f"({names})"]
-    lines += [f'"{option.summary}"']
-    lines += [str(bool(option.calls & call)) for call in (generate.UNWRAP, generate.PACK)]
-    lines += [str(option.of_presets)]
+    head = [f'"{option.name}"', f'"{kind}"', default, float(option.minimum), float(option.maximum)]
+    calls = [bool(option.calls & call) for call in (generate.UNWRAP, generate.PACK)]
+    lines = [", ".join(map(str, head)), f"({names})", f'"{option.summary}"']
+    lines += [", ".join(map(str, [*calls, option.of_presets]))]
     return "    Option(\n" + "".join(f"        {line},\n" for line in lines) + "    ),\n"
 
 
