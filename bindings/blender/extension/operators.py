@@ -16,8 +16,8 @@ from .properties import with_options, with_switches
 from .running import RunningMixin, shown
 from .uv_logic import measuring, packing, settings, unwrapping
 from .uv_logic.jobs import Progress
-from .uv_logic.parts import Part, joined
-from .uv_logic.unwrapping import RefusedError, Request
+from .uv_logic.parts import Part, RefusedError, joined
+from .uv_logic.unwrapping import Request
 
 _OPTIONS = {"REGISTER", "UNDO"}
 
@@ -52,13 +52,19 @@ def read_all(context: Any, how: bridge.Reading) -> list[Target]:
 
 def describe(found: measuring.Measures) -> str:
     """Return what UVs are worth, in one line."""
-    flips = f"{found.flips} flipped triangles" if found.flips else "no flips"
-    overlaps = f"{found.overlaps} overlaps" if found.overlaps else "no overlaps"
-    islands = "1 island" if found.charts == 1 else f"{found.charts} islands"
+    flips = counted(found.flips, "flipped triangle") if found.flips else "no flips"
+    overlaps = counted(found.overlaps, "overlap") if found.overlaps else "no overlaps"
+    sentence = f"{counted(found.charts, 'island')}, {flips}, {overlaps}"
+    if not np.isfinite(found.energy):
+        return f"{sentence}, no face with an area both in space and in the UVs"
     return (
-        f"{islands}, {flips}, {overlaps}, distortion {found.energy:.4g} in the mean "
-        f"(2 is none), {found.p99:.4g} at 99%"
+        f"{sentence}, distortion {found.energy:.4g} in the mean (2 is none), {found.p99:.4g} at 99%"
     )
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things in words."""
+    return f"1 {what}" if number == 1 else f"{number} {what}s"
 
 
 def details(found: measuring.Measures) -> tuple[str, ...]:
@@ -138,7 +144,9 @@ class UV_OT_beltrami_unwrap(UnwrapMixin, bpy.types.Operator):
         values = properties.values_of(self, self.names)
         given = settings.given(values, "unwrap")
         count = properties.threads(context)
-        return Request(self.cut, self.materials, self.keep_pins, given, count)
+        return Request(
+            self.cut, self.materials, self.keep_pins, given, count, tell_seams=self.mark_seams
+        )
 
 
 @with_switches("keep_seams", "sharp_seams", "mark_seams", "scaled")
@@ -156,7 +164,8 @@ class UV_OT_beltrami_auto(UnwrapMixin, bpy.types.Operator):
         """Return what to do."""
         values = properties.values_of(self, self.names)
         given = settings.given(values, "unwrap")
-        return Request("auto", self.materials, False, given, properties.threads(context))
+        count = properties.threads(context)
+        return Request("auto", self.materials, False, given, count, tell_seams=self.mark_seams)
 
 
 @with_switches("keep_pins", "scaled")
@@ -192,9 +201,9 @@ class UV_OT_beltrami_pack(RunningMixin, bpy.types.Operator):
         for target, of_part in zip(self.targets, uvs):
             bridge.write_uvs(target.thing, target.part, of_part)
         report = packed.report
-        pages = "1 tile" if report.pages == 1 else f"{report.pages} tiles"
+        where = f"{counted(report.charts, 'island')} on {counted(report.pages, 'tile')}"
         sentence = (
-            f"{report.charts} islands on {pages}, {100 * report.utilisation:.0f}% covered, "
+            f"{where}, {100 * report.utilisation:.0f}% covered, "
             f"margin {report.margin:.2f} texels of {report.resolution}"
         )
         if packed.density < 1:

@@ -61,9 +61,14 @@ class Measures:
         return self.flips == 0 and self.overlaps == 0
 
 
-def measure(surface: Surface, corner_uvs: Array, allow_mirrored: bool = False) -> Measures:
-    """Measure UVs of corners, (c, 2); mirrored charts may count as sound."""
-    flat = layout(surface, corner_uvs)
+def measure(
+    surface: Surface,
+    corner_uvs: Array,
+    allow_mirrored: bool = False,
+    flat: Layout | None = None,
+) -> Measures:
+    """Measure UVs of corners, (c, 2), whose layout may be known; mirrored charts may be sound."""
+    flat = flat or layout(surface, corner_uvs)
     given = _as_given(surface, corner_uvs)
     verdict = beltrami.check_atlas(
         surface.vertices, surface.faces(), given, allow_mirrored, most_pairs=_MOST_PAIRS
@@ -161,9 +166,8 @@ def colours(stretch: Array) -> Array:
     return np.concatenate([colour, np.ones((len(stretch), 1))], axis=1)
 
 
-def seams(surface: Surface, corner_uvs: Array) -> Array:
-    """Return the edges between two faces along which UVs of corners part, (k, 2) vertices."""
-    flat = layout(surface, corner_uvs)
+def seams(surface: Surface, flat: Layout) -> Array:
+    """Return the edges between two faces along which a layout is cut, (k, 2) vertices."""
     pairs, _ = sides(surface)
     ends = np.cumsum(surface.sizes)
     following = np.arange(len(surface.corners)) + 1

@@ -17,6 +17,10 @@ import numpy as np
 Array = np.ndarray[Any, np.dtype[Any]]
 
 
+class RefusedError(ValueError):
+    """What is asked for cannot be done; the message says what to do."""
+
+
 @dataclass(frozen=True, eq=False)
 class Part:
     """The mesh of one object.
@@ -131,7 +135,10 @@ def as_faces(corners: Array, sizes: Array) -> Any:
 
 
 def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
-    """Return the chosen faces of all parts as one surface, or with False the others."""
+    """Return the chosen faces of all parts as one surface, or with False the others.
+
+    Raises RefusedError where one of their vertices is nowhere.
+    """
     vertices, corners, sizes, materials, numbers = [], [], [], [], []
     uvs, pinned, edges, seams, origins = [], [], [], [], []
     before = 0
@@ -140,6 +147,7 @@ def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
         of_faces = np.repeat(faces, part.sizes)
         used = np.zeros(len(part.positions), bool)
         used[part.corners[of_faces]] = True
+        _require_finite(part, used)
         new = np.cumsum(used) - 1 + before
         within = used[part.edges].all(axis=1)
         vertices.append(part.positions[used])
@@ -195,6 +203,15 @@ def spread(parts: Sequence[Part], surface: Surface, corner_uvs: Array) -> list[A
         new[part.chosen_corners()] = corner_uvs[of_corner == number]
         uvs.append(new)
     return uvs
+
+
+def _require_finite(part: Part, used: Array) -> None:
+    odd = np.flatnonzero(used & ~np.isfinite(part.positions).all(axis=1))
+    if len(odd):
+        raise RefusedError(
+            f"vertex {odd[0]} of {part.name} has a coordinate that is infinite or not a number: "
+            "repair or remove it"
+        )
 
 
 def labels(count: int, pairs: Array) -> Array:

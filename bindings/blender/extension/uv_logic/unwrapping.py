@@ -15,14 +15,10 @@ import beltrami
 
 from . import measuring, packing
 from .jobs import Progress, part_of, silent
-from .parts import Array, Part, Surface, both, joined, regions, spread
+from .parts import Array, Part, RefusedError, Surface, both, joined, layout, regions, spread
 from .settings import PAGE_OPTIONS
 
 _SHARE_OF_UNWRAPPING = 0.8  # of the progress, where packing is a call of its own
-
-
-class RefusedError(ValueError):
-    """What is asked for does not go together; the message says what to do."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +38,8 @@ class Request:
         Keywords of `beltrami.unwrap`, those of pages among them.
     threads : int
         How many to use.
+    tell_seams : bool
+        Whether the seams of the result are wanted.
     """
 
     cut: str = "given"
@@ -49,6 +47,7 @@ class Request:
     keep_pins: bool = True
     options: Mapping[str, object] = field(default_factory=dict)
     threads: int = 1
+    tell_seams: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +59,8 @@ class Unwrapped:
     uvs : list of (c, 2) arrays of float32
         For each part those of all of its corners: the faces that were not chosen keep theirs.
     seams : list of (k, 2) arrays of integers
-        For each part the edges along which its chosen faces are cut, by its vertices.
+        For each part the edges along which its chosen faces are cut, by its vertices; empty where
+        they are not wanted.
     measures : measuring.Measures
         What the new UVs are worth.
     reached : bool or None
@@ -91,7 +91,7 @@ def unwrap(parts: Sequence[Part], request: Request, progress: Progress = silent)
     )
     if alone:
         atlas = _atlas_of(surface, request, progress, packed=True)
-        return _outcome(parts, surface, _corner_uvs(atlas), atlas.reached_target)
+        return _outcome(parts, surface, _corner_uvs(atlas), request, atlas.reached_target)
     if {"stack", "pack_splits"} & request.options.keys():
         raise RefusedError(
             "stacking and splits need the pages for themselves: select all faces, and unpin UVs"
@@ -131,7 +131,7 @@ def _among_others(
         rest = part_of(progress, before, 1 - before)
         placed = packing.pack(surface.only(~stays), uvs[moves], around, options, rest)
         uvs[moves], density = placed.uvs, placed.density
-    return replace(_outcome(parts, surface, uvs, reached), density=density)
+    return replace(_outcome(parts, surface, uvs, request, reached), density=density)
 
 
 def _atlas_of(
@@ -251,13 +251,16 @@ def _outcome(
     parts: Sequence[Part],
     surface: Surface,
     corner_uvs: Array,
+    request: Request,
     reached: bool | None,
 ) -> Unwrapped:
     """Lead UVs of the surface's corners back to the parts."""
-    of_corner = np.repeat(surface.part, surface.sizes)
+    flat = layout(surface, corner_uvs)
+    cuts = np.empty((0, 2), np.int64)
+    if request.tell_seams:
+        cuts = measuring.seams(surface, flat)
     of_vertex = np.zeros(len(surface.vertices), np.int64)
-    of_vertex[surface.corners] = of_corner
-    cuts = measuring.seams(surface, corner_uvs)
+    of_vertex[surface.corners] = np.repeat(surface.part, surface.sizes)
     seams = [surface.origins[cuts[of_vertex[cuts[:, 0]] == k]] for k in range(len(parts))]
-    measures = measuring.measure(surface, corner_uvs)
+    measures = measuring.measure(surface, corner_uvs, flat=flat)
     return Unwrapped(spread(parts, surface, corner_uvs), seams, measures, reached)

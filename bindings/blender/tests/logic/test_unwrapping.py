@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import shapes
 from uv_logic import measuring, unwrapping
-from uv_logic.parts import Part, joined
-from uv_logic.unwrapping import RefusedError, Request
+from uv_logic.parts import Part, RefusedError, joined
+from uv_logic.unwrapping import Request
 
 import beltrami
 
@@ -28,7 +28,7 @@ def with_seams(part: Part, pairs: list[tuple[int, int]]) -> Part:
 def test_marked_seams_are_the_only_ones():
     cube = shapes.cube()
     marked = with_seams(cube, SEAMS)
-    found = unwrapping.unwrap([marked], Request())
+    found = unwrapping.unwrap([marked], Request(tell_seams=True))
     assert found.measures.charts == 1
     assert found.measures.sound
     assert found.measures.energy == pytest.approx(2, abs=1e-4)
@@ -181,7 +181,9 @@ def test_seams_that_were_found_can_be_marked_and_used():
     vertices, faces = shapes.bumpy(16)
     vertices[:, 2] *= 4
     part = shapes.part(vertices, faces)
-    found = unwrapping.unwrap([part], Request(cut="auto", options={"target_energy": 2.02}))
+    found = unwrapping.unwrap(
+        [part], Request("auto", options={"target_energy": 2.02}, tell_seams=True)
+    )
     assert found.reached
     assert found.measures.energy <= 2.0201
     assert len(found.seams[0]) > 0
@@ -207,6 +209,14 @@ def test_polygons_of_several_sizes_are_taken():
     found = unwrapping.unwrap([part], Request())
     assert found.measures.charts == 1
     assert found.measures.energy == pytest.approx(2, abs=1e-5)
+
+
+def test_a_vertex_that_is_nowhere_is_named():
+    hump = shapes.hump()
+    positions = hump.positions.copy()
+    positions[7, 1] = np.nan
+    with pytest.raises(RefusedError, match="vertex 7 of part"):
+        unwrapping.unwrap([dataclasses.replace(hump, positions=positions)], Request())
 
 
 def test_nothing_chosen_and_stacks_beside_others_are_refused():
