@@ -15,10 +15,11 @@ import bpy
 
 import beltrami
 
-from .uv_logic.jobs import Job, Progress, silent
+from .uv_logic.jobs import Job, Progress, end_all, silent
 
 _INTERVAL = 0.05  # seconds between two looks at the thread
 _SHORT = 0.15  # seconds in which a run ends without progress being shown
+_LAST = 10.0  # seconds that a thread has for its end, when Blender quits
 #: What is refused or fails with a sentence for users.
 _FAILURES = (beltrami.BeltramiError, ValueError, MemoryError)
 
@@ -133,6 +134,11 @@ class RunningMixin:
         manager.progress_end()
         context.workspace.status_text_set(None)
         _redraw(context)
+
+
+def unregister() -> None:
+    """End what still computes: Blender quits, or the extension is disabled."""
+    end_all(_LAST)
 
 
 def _redraw(context: Any) -> None:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -20,6 +21,21 @@ def silent(_fraction: float, _stage: str) -> bool:
 def part_of(progress: Progress, before: float, share: float) -> Progress:
     """Return the progress of a part of some work, which is told fractions of the part."""
     return lambda fraction, stage: progress(min(1.0, before + share * fraction), stage)
+
+
+_started: weakref.WeakSet[Job] = weakref.WeakSet()
+
+
+def end_all(seconds: float) -> bool:
+    """Ask all work to end, and wait so long for each; return whether all has ended.
+
+    A thread that came back into Python while that shuts down would take Blender with it.
+    """
+    jobs = list(_started)
+    for job in jobs:
+        job.cancel()
+    ended = [job.wait(seconds) for job in jobs]
+    return all(ended)
 
 
 class Job:
@@ -40,6 +56,7 @@ class Job:
 
     def start(self) -> Job:
         """Begin."""
+        _started.add(self)
         self._thread.start()
         return self
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from uv_logic import settings
-from uv_logic.jobs import Job, part_of
+from uv_logic.jobs import Job, end_all, part_of
 
 import beltrami
 
@@ -60,6 +60,19 @@ def test_a_cancelled_run_of_the_library_ends():
     assert began.is_set()
     with pytest.raises(beltrami.Cancelled):
         job.result()
+
+
+def test_all_work_can_be_ended():
+    began = threading.Event()
+
+    def work(progress):
+        while progress(0.5, "on and on"):
+            began.set()
+
+    jobs = [Job(work).start() for _ in range(2)]
+    assert began.wait(PATIENCE)
+    assert end_all(PATIENCE)
+    assert all(job.done for job in jobs)
 
 
 def test_what_work_raises_comes_out_with_the_result():
