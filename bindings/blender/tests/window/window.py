@@ -153,6 +153,22 @@ def story(running: Any) -> Iterator[None]:
     yield from until(lambda: np.array_equal(uvs_of(bpy.context.object), second))
     print("window: redo brought the new UVs back")
 
+    # The panel of the last operation: undo, and the operator anew with another option.
+    invoke(bpy.ops.uv.beltrami_pack, margin=2)
+    yield from until(lambda: shown["job"] is None)
+    packed = uvs_of(bpy.context.object)
+    yield
+    last = bpy.context.window_manager.operators[-1]
+    assert last.bl_idname == "UV_OT_beltrami_pack"
+    last.properties.margin = 40
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_redo()
+    yield
+    again = uvs_of(bpy.context.object)
+    assert (again != packed).any()
+    assert again.min() >= 20 / 1024 - 1e-6
+    print("window: the last operation was adjusted")
+
     # The check colours faces, and leaves a text for the panel.
     invoke(bpy.ops.uv.beltrami_check, colours=True)
     yield from until(lambda: shown["job"] is None)
