@@ -13,6 +13,7 @@
 
 #include "commands/command.h"
 #include "commands/completions.h"
+#include "commands/man_page.h"
 #include "commands/options.h"
 #include "commands/spelling.h"
 #include "files/inside_folder.h"
@@ -442,6 +443,11 @@ int run(int argc, char** argv) {
   const CLI::App* transfer_app = add_transfer(app, transfer);
   std::string shell;
   const CLI::App* completions_app = add_completions(app, shell);
+  app.add_flag_callback(
+         "--man",
+         [&app] { throw CLI::CallForVersion(man_page(app, beltrami_version_string()), 0); },
+         "Print the manual page, beltrami.1")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
