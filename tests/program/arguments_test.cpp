@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -134,6 +135,34 @@ TEST(Arguments, NamesFromFilesReachNoTerminalRaw) {
   EXPECT_EQ(missing.err_lines(), 1);
 }
 
+TEST(ReportOnStandardOutput, IsAllThatIsPrintedThere) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(4));
+  const std::string out = directory.path("out.obj");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"flatten", in, out},
+                                                  {"unwrap", in, out},
+                                                  {"pack", out, directory.path("packed.obj")},
+                                                  {"check", out}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--report", "-", "--quiet"});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["command"], command[0]);
+    EXPECT_EQ(report["injective"], true);
+    arguments.pop_back();
+    EXPECT_TRUE(nlohmann::json::accept(run(arguments).out));
+  }
+}
+
+TEST(ReportOnStandardOutput, TellsAFailure) {
+  const TemporaryDirectory directory;
+  const Outcome outcome = run({"check", directory.path("none.obj"), "--report", "-"});
+  EXPECT_EQ(outcome.exit_code, kExitUnusable);
+  EXPECT_EQ(outcome.err_lines(), 1);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["status"], "FILE_ERROR");
+}
+
 TEST(ManPage, HasEveryOptionOfEveryCommandAndOneTitle) {
   const Outcome page = run({"--man"});
   EXPECT_EQ(page.exit_code, 0);
@@ -153,8 +182,8 @@ TEST(ManPage, IsWellFormed) {
   const TemporaryDirectory directory;
   const std::string page = directory.file("beltrami.1", run({"--man"}).out);
   const std::string said = directory.path("said");
-  ASSERT_EQ(
-      std::system(("groff -man -Tascii -ww -z '" + page + "' > '" + said + "' 2>&1").c_str()), 0);
+  ASSERT_EQ(std::system(("groff -man -Tascii -ww -z '" + page + "' > '" + said + "' 2>&1").c_str()),
+            0);
   EXPECT_EQ(std::filesystem::file_size(said), 0u);
 }
 
