@@ -29,7 +29,7 @@ class ProgressBar {
   std::string stage_;
 };
 
-/// The line itself: "flatten    [#####.....]  50%     3.2 s". It is shorter than `columns`: where
+/// The line itself: "flatten    [#####......]  50%     3.2 s". It is shorter than `columns`: where
 /// they are few, the bar goes first, then the time, then the stage. "" where nothing fits.
 std::string progress_line(double fraction, const std::string& stage, double seconds, int columns);
 

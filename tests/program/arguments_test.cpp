@@ -149,7 +149,7 @@ TEST(ReportOnStandardOutput, IsAllThatIsPrintedThere) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(report["command"], command[0]);
-    EXPECT_EQ(report["injective"], true);
+    EXPECT_EQ(report["injective"]["result"], true);
     arguments.pop_back();
     EXPECT_TRUE(nlohmann::json::accept(run(arguments).out));
   }

@@ -120,7 +120,7 @@ TEST(ProgressLine, FitsTheTerminal) {
     EXPECT_LT(line.size(), static_cast<std::size_t>(columns) + (columns == 0 ? 1 : 0));
     EXPECT_EQ(line.find("50%") != std::string::npos, columns > 4) << columns;
   }
-  EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 40), "flatten    [#####.....]  50%     3.2 s");
+  EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 40), "flatten    [#####......]  50%     3.2 s");
   EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 30), "flatten     50%     3.2 s");
 }
 
