@@ -1,17 +1,15 @@
-#include "picture/resample.h"
+#include "bake/page.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <thread>
+#include <cstring>
 #include <tuple>
 #include <utility>
 
-#include "files/point_numbers.h"
-#include "process/interrupt.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
 
-namespace beltrami::cli {
+namespace beltrami {
 namespace {
 
 using Weights = std::array<double, 3>;
@@ -32,7 +30,7 @@ constexpr double kHair = -1e-9;
 
 /// What has been read of a texel.
 struct Gathered {
-  Sums sums{};
+  TexelSums sums{};
   float count = 0;          ///< places that were read
   std::uint16_t taken = 0;  ///< places that a triangle is at
   bool settled = false;     ///< the rest is not asked for
@@ -60,6 +58,12 @@ struct Density {
   bool few() const { return std::max(columns, rows) <= kFewPlaces; }
 };
 
+/// What the texels of some rows gather, and what was found last.
+struct Band {
+  std::vector<Gathered>& texels;
+  std::size_t& hint;
+};
+
 /// A triangle that is ready to be drawn.
 struct Placed {
   std::size_t number = 0;
@@ -68,59 +72,67 @@ struct Placed {
   Density density;
 };
 
+/// The base 2 logarithm of `x` above 1, rounded up.
+int ceil_log2(double x) {
+  int exponent = 0;
+  const double mantissa = std::frexp(x, &exponent);
+  return mantissa > 0.5 ? exponent : exponent - 1;
+}
+
 int level_for(double texels) {
-  return texels > kStep ? static_cast<int>(std::ceil(std::log2(std::min(texels, 1e9)))) : 0;
+  return texels > kStep ? ceil_log2(std::min(texels, 1e9)) : 0;
 }
 
 class Baker {
  public:
-  explicit Baker(const BakeJob& job) : job_(job), side_(job.side) {
+  Baker(const PageBake& job, const PageRoom& room, std::span<Filled> filled, const Work& work)
+      : job_(job), room_(room), filled_(filled), side_(job.side) {
     sort_into_bands();
-    int most = 0;
-    for (std::size_t t = 0; t < job_.triangles.size(); ++t) {
-      if (const std::optional<Placed> placed = place(t)) {
-        most = std::max({most, placed->density.level, placed->density.level_of_parts});
+    std::vector<int> most(static_cast<std::size_t>(side_ > 0 ? chunks() : 0), 0);
+    parallel_for(work, count(), kTriangles, [&](std::int64_t begin, std::int64_t end) {
+      int& own = most[static_cast<std::size_t>(begin / kTriangles)];
+      for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+        if (const std::optional<Placed> placed = place(t)) {
+          own = std::max({own, placed->density.level, placed->density.level_of_parts});
+        }
       }
-    }
-    for (Texture& page : job_.pages) page.make_levels(most);
+    });
+    const int levels = most.empty() ? 0 : *std::max_element(most.begin(), most.end());
+    for (Texture& page : job_.pages) page.make_levels(levels, work);
   }
 
-  Baked run() {
-    const auto side = static_cast<std::size_t>(side_);
-    baked_.image.width = baked_.image.height = side_;
-    baked_.image.components = job_.pages.front().components();
-    baked_.image.values.assign(baked_.image.row_size() * side, 0);
-    baked_.filled.assign(side * side, 0);
-    const int wanted = job_.source_of ? 1 : job_.threads;
-    const int threads = std::clamp(wanted, 1, static_cast<int>(bands()));
-    // What needs memory comes before the threads, but for the list of them itself.
-    std::vector<std::vector<Gathered>> texels(static_cast<std::size_t>(threads));
-    for (auto& of_thread : texels) of_thread.resize(side * kBandRows);
-    std::vector<std::thread> others;
-    others.reserve(texels.size());
-    try {
-      for (std::size_t i = 1; i < texels.size(); ++i) {
-        others.emplace_back([this, &mine = texels[i]] { work(mine, false); });
-      }
-    } catch (const std::exception&) {
-      // The system has no more of them, or no memory for more: those that there are do all.
+  BakedTexels run(const Work& work) {
+    std::fill(filled_.begin(), filled_.end(), Filled::kNothing);
+    const auto all = static_cast<std::int64_t>(bands());
+    // Some bands at a time, so that progress is told in between.
+    const std::int64_t at_once = std::max<std::int64_t>(2 * work.threads(), kBandsAtOnce);
+    for (std::int64_t first = 0; first < all; first += at_once) {
+      parallel_for(work, std::min(at_once, all - first), 1,
+                   [&](std::int64_t begin, std::int64_t end) {
+                     std::vector<Gathered> texels(static_cast<std::size_t>(side_) * kBandRows);
+                     for (std::int64_t band = first + begin; band < first + end; ++band) {
+                       bake_band(static_cast<std::size_t>(band), texels);
+                     }
+                   });
+      work.report(double(first) / double(all));
     }
-    work(texels[0], true);
-    for (std::thread& other : others) other.join();
-    throw_if_interrupted();
-    if (failure_) std::rethrow_exception(failure_);
-    for (const auto& [covered, without] : counts_) {
-      baked_.covered += covered;
-      baked_.without_source += without;
+    BakedTexels sum;
+    for (const BakedTexels& of_band : counts_) {
+      sum.covered += of_band.covered;
+      sum.without_source += of_band.without_source;
     }
-    return std::move(baked_);
+    return sum;
   }
 
  private:
+  static constexpr std::int64_t kTriangles = 4096, kBandsAtOnce = 4;
+
+  std::int64_t count() const { return static_cast<std::int64_t>(job_.triangles.size()); }
+  std::int64_t chunks() const { return (count() + kTriangles - 1) / kTriangles; }
   std::size_t bands() const { return static_cast<std::size_t>((side_ - 1) / kBandRows + 1); }
 
   /// Those that a triangle is in; an empty range where it is beside the page.
-  std::pair<int, int> bands_of(const BakedTriangle& t) const {
+  std::pair<int, int> bands_of(const UvTriangle& t) const {
     const double low = side_ - std::max({t[0][1], t[1][1], t[2][1]});
     const double high = side_ - std::min({t[0][1], t[1][1], t[2][1]});
     if (!(high >= 0 && low < side_)) return {0, 0};
@@ -129,8 +141,10 @@ class Baker {
   }
 
   void sort_into_bands() {
+    PollSometimes poll;
     first_.assign(bands() + 1, 0);
-    for (const BakedTriangle& triangle : job_.triangles) {
+    for (const UvTriangle& triangle : job_.triangles) {
+      poll();
       const auto [begin, end] = bands_of(triangle);
       for (int band = begin; band < end; ++band) ++first_[static_cast<std::size_t>(band) + 1];
     }
@@ -138,35 +152,23 @@ class Baker {
     in_bands_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t t = 0; t < job_.triangles.size(); ++t) {
+      poll();
       const auto [begin, end] = bands_of(job_.triangles[t]);
       for (int band = begin; band < end; ++band) {
-        in_bands_[next[static_cast<std::size_t>(band)]++] = t;
+        in_bands_[next[static_cast<std::size_t>(band)]++] = static_cast<std::uint32_t>(t);
       }
     }
     counts_.resize(bands());
   }
 
-  /// Bakes bands as long as there are some. Throws nothing.
-  void work(std::vector<Gathered>& texels, bool tells) noexcept {
-    try {
-      while (!interrupted()) {
-        const std::size_t band = next_band_++;
-        if (band >= bands()) return;
-        bake_band(band, texels);
-        if (tells && job_.progress) job_.progress(double(band) / double(bands()));
-      }
-    } catch (...) {
-      if (!failed_.test_and_set()) failure_ = std::current_exception();
-    }
-  }
-
   void bake_band(std::size_t band, std::vector<Gathered>& texels) {
     const int begin = static_cast<int>(band) * kBandRows, end = std::min(begin + kBandRows, side_);
     std::fill(texels.begin(), texels.end(), Gathered{});
+    std::size_t hint = 0;  // neighbours are near one another
     for (const bool parts : {false, true}) {
       for (std::size_t i = first_[band]; i < first_[band + 1]; ++i) {
         if (const std::optional<Placed> placed = place(in_bands_[i])) {
-          draw(*placed, begin, end, parts, texels);
+          draw(*placed, begin, end, parts, {texels, hint});
         }
       }
     }
@@ -246,29 +248,29 @@ class Baker {
   }
 
   /// What is within a triangle, or else the `parts` of texels that are.
-  void draw(const Placed& placed, int begin, int end, bool parts,
-            std::vector<Gathered>& texels) const {
+  void draw(const Placed& placed, int begin, int end, bool parts, const Band& band) const {
     const auto& [a, b, c] = placed.corners;
     const double top = std::min({a[1], b[1], c[1]}), bottom = std::max({a[1], b[1], c[1]});
     const int first = std::max(begin, static_cast<int>(std::max(std::floor(top), -1.0)));
     const int last = static_cast<int>(std::min<double>(end - 1, std::floor(bottom)));
     for (int row = first; row <= last; ++row) {
+      poll_interrupt();
       const auto [from, to] = columns(placed, row);
       for (int column = from; column < to; ++column) {
         Gathered& texel =
-            texels[static_cast<std::size_t>(row - begin) * static_cast<std::size_t>(side_) +
-                   static_cast<std::size_t>(column)];
+            band.texels[static_cast<std::size_t>(row - begin) * static_cast<std::size_t>(side_) +
+                        static_cast<std::size_t>(column)];
         if (texel.settled) continue;
         if (parts) {
-          add_parts(placed, column, row, texel);
+          add_parts(placed, column, row, texel, band.hint);
         } else {
-          settle(placed, column, row, texel);
+          settle(placed, column, row, texel, band.hint);
         }
       }
     }
   }
 
-  void settle(const Placed& placed, int column, int row, Gathered& texel) const {
+  void settle(const Placed& placed, int column, int row, Gathered& texel, std::size_t& hint) const {
     const double x = column + 0.5, y = row + 0.5;
     const Weights centre = placed.slopes.weights(x, y);
     if (!is_inside(centre)) return;
@@ -281,7 +283,7 @@ class Baker {
     }
     if (density.columns * density.rows == 1) {
       texel.settled = true;
-      return read(placed, centre, 0, texel);
+      return read(placed, centre, 0, texel, hint);
     }
     texel.settled = true;
     for (int j = 0; j < density.rows; ++j) {
@@ -289,12 +291,13 @@ class Baker {
         read(placed,
              placed.slopes.weights(column + (i + 0.5) / density.columns,
                                    row + (j + 0.5) / density.rows),
-             density.level, texel);
+             density.level, texel, hint);
       }
     }
   }
 
-  void add_parts(const Placed& placed, int column, int row, Gathered& texel) const {
+  void add_parts(const Placed& placed, int column, int row, Gathered& texel,
+                 std::size_t& hint) const {
     for (int part = 0; part < kParts * kParts && texel.taken != kAllParts; ++part) {
       const auto bit = static_cast<std::uint16_t>(1u << part);
       if ((texel.taken & bit) != 0) continue;
@@ -304,14 +307,15 @@ class Baker {
       const Weights weights = placed.slopes.weights(x, y);
       if (!is_inside(weights)) continue;
       texel.taken = static_cast<std::uint16_t>(texel.taken | bit);
-      read(placed, weights, placed.density.level_of_parts, texel);
+      read(placed, weights, placed.density.level_of_parts, texel, hint);
     }
   }
 
-  void read(const Placed& placed, const Weights& weights, int level, Gathered& texel) const {
-    Source source;
+  void read(const Placed& placed, const Weights& weights, int level, Gathered& texel,
+            std::size_t& hint) const {
+    TexelSource source;
     if (job_.source_of) {
-      const std::optional<Source> found = job_.source_of(placed.number, weights);
+      const std::optional<TexelSource> found = job_.source_of(placed.number, weights, hint);
       if (!found) return;
       source = *found;
     } else {
@@ -328,13 +332,13 @@ class Baker {
     if (job_.turns.empty()) {
       return page.add(source.u, source.v, job_.reading, level, texel.sums);
     }
-    Sums sums{};
+    TexelSums sums{};
     page.add(source.u, source.v, job_.reading, level, sums);
-    turn(job_.turns[placed.number], weights, sums);
+    turn(job_.turns[placed.number], weights, page.zero(), sums);
     for (std::size_t k = 0; k < sums.size(); ++k) texel.sums[k] += sums[k];
   }
 
-  static void turn(const AxesTurn& turn, const Weights& weights, Sums& sums) {
+  static void turn(const AxesTurn& turn, const Weights& weights, double zero, TexelSums& sums) {
     double cosine = 0, sine = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       cosine += weights[k] * turn.corners[k][0];
@@ -342,182 +346,47 @@ class Baker {
     }
     const double length = std::sqrt(cosine * cosine + sine * sine);
     if (!(length > 0)) return;
-    const double x = sums[0] - Texture::kZero, y = turn.old_side * (sums[1] - Texture::kZero);
-    sums[0] = static_cast<float>((cosine * x - sine * y) / length + Texture::kZero);
-    sums[1] = static_cast<float>(turn.new_side * (sine * x + cosine * y) / length + Texture::kZero);
+    const double x = sums[0] - zero, y = turn.old_side * (sums[1] - zero);
+    sums[0] = static_cast<float>((cosine * x - sine * y) / length + zero);
+    sums[1] = static_cast<float>(turn.new_side * (sine * x + cosine * y) / length + zero);
   }
 
   void write_band(std::size_t band, int begin, int end, const std::vector<Gathered>& texels) {
     const auto side = static_cast<std::size_t>(side_);
-    const std::size_t offset = static_cast<std::size_t>(begin) * side;
-    const auto components = static_cast<std::size_t>(baked_.image.components);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(end - begin) * side; ++i) {
-      const Gathered& texel = texels[i];
-      if (!texel.settled && texel.taken == 0) continue;
-      ++counts_[band].first;
-      if (texel.count > 0) {
-        baked_.filled[offset + i] = 1;
-        job_.pages.front().finish(texel.sums, texel.count,
-                                  &baked_.image.values[components * (offset + i)]);
-      } else {
-        ++counts_[band].second;
-      }
-    }
-  }
-
-  const BakeJob& job_;
-  int side_;
-  Baked baked_;
-  std::vector<std::size_t> first_, in_bands_;  ///< triangles of each band, one band after another
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> counts_;  ///< covered, without a source
-  std::atomic<std::size_t> next_band_ = 0;
-  std::atomic_flag failed_;
-  std::exception_ptr failure_;
-};
-
-/// The gutters of a page, ring by ring.
-class Gutters {
- public:
-  explicit Gutters(Baked& baked)
-      : image_(baked.image), filled_(baked.filled), side_(baked.image.width) {}
-
-  void fill(int rings) {
-    std::vector<Place> ring;
-    for (int row = 0; row < side_; ++row) {
-      for (int column = 0; column < side_; ++column) {
-        if (filled_[index(row, column)] == 0 && is_beside_filled(row, column)) {
-          filled_[index(row, column)] = kNext;
-          ring.push_back({row, column});
+    const std::size_t step = static_cast<std::size_t>(room_.components) * bytes_of(room_.type);
+    for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
+      unsigned char* out = room_.pixels + row * room_.row_bytes;
+      std::memset(out, 0, side * step);
+      const Gathered* in = &texels[(row - static_cast<std::size_t>(begin)) * side];
+      for (std::size_t i = 0; i < side; ++i) {
+        const Gathered& texel = in[i];
+        if (!texel.settled && texel.taken == 0) continue;
+        ++counts_[band].covered;
+        if (texel.count > 0) {
+          filled_[row * side + i] = Filled::kBaked;
+          job_.pages.front().finish(texel.sums, texel.count, out + step * i);
+        } else {
+          ++counts_[band].without_source;
         }
       }
     }
-    for (int round = 0; round < rings && !ring.empty(); ++round) {
-      throw_if_interrupted();
-      for (const Place& texel : ring) take_mean(texel);
-      for (const auto& [row, column] : ring) filled_[index(row, column)] = 1;
-      std::vector<Place> next;
-      for (const Place& texel : ring) add_neighbours(texel, next);
-      ring = std::move(next);
-    }
-    for (const auto& [row, column] : ring) filled_[index(row, column)] = 0;
   }
 
- private:
-  struct Place {
-    int row, column;
-  };
-  /// In the next ring.
-  static constexpr std::uint8_t kNext = 2;
-
-  std::size_t index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) +
-           static_cast<std::size_t>(column);
-  }
-
-  template <class Visit>
-  void visit_neighbours(const Place& texel, const Visit& visit) const {
-    for (int y = std::max(texel.row - 1, 0); y <= std::min(texel.row + 1, side_ - 1); ++y) {
-      for (int x = std::max(texel.column - 1, 0); x <= std::min(texel.column + 1, side_ - 1); ++x) {
-        visit(y, x);
-      }
-    }
-  }
-
-  bool is_beside_filled(int row, int column) const {
-    bool beside = false;
-    visit_neighbours({row, column},
-                     [&](int y, int x) { beside = beside || filled_[index(y, x)] == 1; });
-    return beside;
-  }
-
-  void add_neighbours(const Place& texel, std::vector<Place>& ring) {
-    visit_neighbours(texel, [&](int row, int column) {
-      std::uint8_t& state = filled_[index(row, column)];
-      if (state != 0) return;
-      state = kNext;
-      ring.push_back({row, column});
-    });
-  }
-
-  void take_mean(const Place& texel) {
-    switch (image_.components) {
-      case 1:
-        return take_mean_of<1>(texel);
-      case 2:
-        return take_mean_of<2>(texel);
-      case 3:
-        return take_mean_of<3>(texel);
-      default:
-        return take_mean_of<4>(texel);
-    }
-  }
-
-  template <std::size_t kComponents>
-  void take_mean_of(const Place& texel) {
-    int count = 0;
-    std::array<int, kComponents> sums{};
-    visit_neighbours(texel, [&](int row, int column) {
-      const std::size_t i = index(row, column);
-      if (filled_[i] != 1) return;
-      ++count;
-      const std::uint8_t* values = &image_.values[kComponents * i];
-      for (std::size_t k = 0; k < kComponents; ++k) sums[k] += values[k];
-    });
-    std::uint8_t* own = &image_.values[kComponents * index(texel.row, texel.column)];
-    for (std::size_t k = 0; k < kComponents; ++k) {
-      own[k] = static_cast<std::uint8_t>((sums[k] + count / 2) / count);
-    }
-  }
-
-  Pixels& image_;
-  std::vector<std::uint8_t>& filled_;
+  const PageBake& job_;
+  const PageRoom& room_;
+  std::span<Filled> filled_;
   int side_;
+  std::vector<std::size_t> first_;       ///< of each band in in_bands_
+  std::vector<std::uint32_t> in_bands_;  ///< triangles of each band, one band after another
+  std::vector<BakedTexels> counts_;      ///< of each band
 };
 
 }  // namespace
 
-Baked bake(const BakeJob& job) {
-  return Baker(job).run();
+BakedTexels bake_page(const PageBake& job, const PageRoom& room, std::span<Filled> filled,
+                      const Work& work) {
+  Baker baker(job, room, filled, work.part(0, 0));
+  return baker.run(work);
 }
 
-std::vector<std::uint8_t> inner_seams(std::span<const BakedTriangle> triangles,
-                                      std::span<const SourceTriangle> sources) {
-  struct Side {
-    std::pair<std::uint32_t, std::uint32_t> ends;   // on the new page, the lesser first
-    std::pair<std::uint32_t, std::uint32_t> shown;  // the same on the old one
-    std::size_t triangle, corner;
-  };
-  PointNumbers<2> places, old_places;
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    std::array<std::uint32_t, 3> ends{}, shown{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      ends[k] = places.number(triangles[t][k]);
-      shown[k] = old_places.number(sources[t].uvs[k]);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-      if (ends[a] > ends[b]) std::swap(a, b);
-      sides.push_back({{ends[a], ends[b]}, {shown[a], shown[b]}, t, k});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.ends, a.triangle, a.corner) < std::tie(b.ends, b.triangle, b.corner);
-  });
-  std::vector<std::uint8_t> seams(triangles.size(), 0);
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side &a = sides[i - 1], &b = sides[i];
-    if (a.ends != b.ends || a.shown == b.shown) continue;
-    for (const Side* side : {&a, &b}) {
-      seams[side->triangle] = static_cast<std::uint8_t>(seams[side->triangle] | 1u << side->corner);
-    }
-  }
-  return seams;
-}
-
-void fill_gutters(Baked& baked, int rings) {
-  Gutters(baked).fill(rings);
-}
-
-}  // namespace beltrami::cli
+}  // namespace beltrami
