@@ -262,8 +262,7 @@ class Unwrapping {
     StageClock clock(report_, "bake");
     bake_->place(triangles_);
     bake_->run(
-        static_cast<int>(options_.integer(BELTRAMI_OPTION_RESOLUTION)),
-        static_cast<int>(options_.integer(BELTRAMI_OPTION_THREADS)),
+        context_.get(), static_cast<int>(options_.integer(BELTRAMI_OPTION_RESOLUTION)),
         [this](double share) { bar_.show(share, "bake"); }, report_);
     clock.finish();
   }
