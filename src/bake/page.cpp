@@ -70,6 +70,8 @@ struct Placed {
   std::array<std::array<double, 2>, 3> corners{};  ///< rows from the top
   Slopes slopes;
   Density density;
+  /// The place on the old page as a function of that on the new one, like slopes.
+  std::array<double, 3> u{}, v{};
 };
 
 /// The base 2 logarithm of `x` above 1, rounded up.
@@ -192,7 +194,15 @@ class Baker {
       placed.slopes.of[k] = {(p[1] - q[1]) / twice_area, (q[0] - p[0]) / twice_area,
                              (p[0] * q[1] - p[1] * q[0]) / twice_area};
     }
-    if (!job_.sources.empty()) placed.density = density(number, placed.slopes);
+    if (job_.sources.empty()) return placed;
+    placed.density = density(number, placed.slopes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& [u, v] = job_.sources[number].uvs[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        placed.u[i] += placed.slopes.of[k][i] * u;
+        placed.v[i] += placed.slopes.of[k][i] * v;
+      }
+    }
     return placed;
   }
 
@@ -283,14 +293,12 @@ class Baker {
     }
     if (density.columns * density.rows == 1) {
       texel.settled = true;
-      return read(placed, centre, 0, texel, hint);
+      return read(placed, x, y, 0, texel, hint);
     }
     texel.settled = true;
     for (int j = 0; j < density.rows; ++j) {
       for (int i = 0; i < density.columns; ++i) {
-        read(placed,
-             placed.slopes.weights(column + (i + 0.5) / density.columns,
-                                   row + (j + 0.5) / density.rows),
+        read(placed, column + (i + 0.5) / density.columns, row + (j + 0.5) / density.rows,
              density.level, texel, hint);
       }
     }
@@ -307,25 +315,24 @@ class Baker {
       const Weights weights = placed.slopes.weights(x, y);
       if (!is_inside(weights)) continue;
       texel.taken = static_cast<std::uint16_t>(texel.taken | bit);
-      read(placed, weights, placed.density.level_of_parts, texel, hint);
+      read(placed, x, y, placed.density.level_of_parts, texel, hint);
     }
   }
 
-  void read(const Placed& placed, const Weights& weights, int level, Gathered& texel,
+  /// What is shown at a place of the page, within the triangle.
+  void read(const Placed& placed, double x, double y, int level, Gathered& texel,
             std::size_t& hint) const {
     TexelSource source;
     if (job_.source_of) {
-      const std::optional<TexelSource> found = job_.source_of(placed.number, weights, hint);
+      const std::optional<TexelSource> found =
+          job_.source_of(placed.number, placed.slopes.weights(x, y), hint);
       if (!found) return;
       source = *found;
     } else {
-      const SourceTriangle& triangle = job_.sources[placed.number];
-      if (triangle.page == kNoPage) return;
-      source.page = triangle.page;
-      for (std::size_t k = 0; k < 3; ++k) {
-        source.u += weights[k] * triangle.uvs[k][0];
-        source.v += weights[k] * triangle.uvs[k][1];
-      }
+      source.page = job_.sources[placed.number].page;
+      if (source.page == kNoPage) return;
+      source.u = placed.u[0] * x + placed.u[1] * y + placed.u[2];
+      source.v = placed.v[0] * x + placed.v[1] * y + placed.v[2];
     }
     texel.count += 1;
     const Texture& page = job_.pages[source.page];
@@ -334,7 +341,7 @@ class Baker {
     }
     TexelSums sums{};
     page.add(source.u, source.v, job_.reading, level, sums);
-    turn(job_.turns[placed.number], weights, page.zero(), sums);
+    turn(job_.turns[placed.number], placed.slopes.weights(x, y), page.zero(), sums);
     for (std::size_t k = 0; k < sums.size(); ++k) texel.sums[k] += sums[k];
   }
 

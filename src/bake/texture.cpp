@@ -129,7 +129,7 @@ Texture::Texture(const ImageView& image, ImageKind kind, const ColourTables& tab
     level.pixels = image.pixels;
     level.colours = image.type == PixelType::kByte ? colours() : 0;
   }
-  level.gather = gather_for(level.type);
+  level.gather = gather_for(level.type, level.colours > 0);
   levels_.push_back(std::move(level));
 }
 
@@ -167,44 +167,47 @@ void Texture::own_linear(const ImageView& image, Level& level, const Work& work)
   });
 }
 
-template <PixelType kType>
+template <PixelType kType, bool kColours>
 Texture::Gather Texture::gather_of(int components, bool weighted) {
+  constexpr int kOne = kColours ? 1 : 0, kThree = kColours ? 3 : 0;
   switch (components) {
     case 1:
-      return &gather<kType, 1, false>;
+      return &gather<kType, 1, kOne, false>;
     case 2:
-      return weighted ? &gather<kType, 2, true> : &gather<kType, 2, false>;
+      return weighted ? &gather<kType, 2, kOne, true> : &gather<kType, 2, kOne, false>;
     case 3:
-      return &gather<kType, 3, false>;
+      return &gather<kType, 3, kThree, false>;
     default:
-      return weighted ? &gather<kType, 4, true> : &gather<kType, 4, false>;
+      return weighted ? &gather<kType, 4, kThree, true> : &gather<kType, 4, kThree, false>;
   }
 }
 
-Texture::Gather Texture::gather_for(PixelType type) const {
+Texture::Gather Texture::gather_for(PixelType type, bool colours) const {
   switch (type) {
     case PixelType::kByte:
-      return gather_of<PixelType::kByte>(components_, weighted());
+      return colours ? gather_of<PixelType::kByte, true>(components_, weighted())
+                     : gather_of<PixelType::kByte, false>(components_, weighted());
     case PixelType::kShort:
-      return gather_of<PixelType::kShort>(components_, weighted());
+      return gather_of<PixelType::kShort, false>(components_, weighted());
     case PixelType::kFloat:
       break;
   }
-  return gather_of<PixelType::kFloat>(components_, weighted());
+  return gather_of<PixelType::kFloat, false>(components_, weighted());
 }
 
+template <PixelType kType>
 void Texture::read_texel(const Level& level, int row, int column, TexelSums& texel) const {
+  using Number = NumberOf<kType>;
   const auto components = static_cast<std::size_t>(components_);
   const std::size_t first = static_cast<std::size_t>(column) * components;
   const unsigned char* bytes = level.pixels + static_cast<std::size_t>(row) * level.row_bytes;
   for (std::size_t k = 0; k < components; ++k) {
-    if (level.type == PixelType::kByte) {
+    const auto number = number_at<Number>(bytes + sizeof(Number) * (first + k));
+    if constexpr (kType == PixelType::kByte) {
       const bool colour = static_cast<int>(k) < level.colours;
-      texel[k] = (colour ? tables_->linear_of_byte : tables_->number_of_byte)[bytes[first + k]];
-    } else if (level.type == PixelType::kShort) {
-      texel[k] = number_at<std::uint16_t>(bytes + 2 * (first + k));
+      texel[k] = (colour ? tables_->linear_of_byte : tables_->number_of_byte)[number];
     } else {
-      texel[k] = number_at<float>(bytes + 4 * (first + k));
+      texel[k] = static_cast<float>(number);
     }
   }
 }
@@ -218,7 +221,24 @@ Texture::Level Texture::half_of(const Level& level, const Work& work) const {
   half.row_bytes = static_cast<std::size_t>(half.width) * components * bytes_of(half.type);
   half.own.resize(half.row_bytes * static_cast<std::size_t>(half.height));
   half.pixels = half.own.data();
-  half.gather = gather_for(half.type);
+  half.gather = gather_for(half.type, false);
+  switch (level.type) {
+    case PixelType::kByte:
+      halve_rows<PixelType::kByte>(level, half, work);
+      break;
+    case PixelType::kShort:
+      halve_rows<PixelType::kShort>(level, half, work);
+      break;
+    case PixelType::kFloat:
+      halve_rows<PixelType::kFloat>(level, half, work);
+      break;
+  }
+  return half;
+}
+
+template <PixelType kType>
+void Texture::halve_rows(const Level& level, Level& half, const Work& work) const {
+  const auto components = static_cast<std::size_t>(components_);
   const std::vector<Share> columns = shares(level.width, half.width);
   const std::vector<Share> rows = shares(level.height, half.height);
   const bool by_alpha = weighted();
@@ -228,7 +248,7 @@ Texture::Level Texture::half_of(const Level& level, const Work& work) const {
     float total = 0;
     for (int j = 0; j < row.count; ++j) {
       for (int i = 0; i < column.count; ++i) {
-        read_texel(level, row.first + j, column.first + i, texel);
+        read_texel<kType>(level, row.first + j, column.first + i, texel);
         float weight =
             row.weights[static_cast<std::size_t>(j)] * column.weights[static_cast<std::size_t>(i)];
         if (by_alpha) {
@@ -260,7 +280,6 @@ Texture::Level Texture::half_of(const Level& level, const Work& work) const {
       }
     }
   });
-  return half;
 }
 
 void Texture::make_levels(int count, const Work& work) {
@@ -270,7 +289,7 @@ void Texture::make_levels(int count, const Work& work) {
   }
 }
 
-template <PixelType kType, int kComponents, bool kWeighted>
+template <PixelType kType, int kComponents, int kColours, bool kWeighted>
 void Texture::gather(const Level& level, const ColourTables& tables, double u, double v,
                      const ImageReading& reading, TexelSums& sums) {
   using Number = NumberOf<kType>;
@@ -300,8 +319,8 @@ void Texture::gather(const Level& level, const ColourTables& tables, double u, d
   const auto value = [&](std::size_t i, std::size_t k) -> float {
     const auto number = number_at<Number>(texels[i] + k * sizeof(Number));
     if constexpr (kType == PixelType::kByte) {
-      const bool colour = static_cast<int>(k) < level.colours;
-      return (colour ? tables.linear_of_byte : tables.number_of_byte)[number];
+      return k < kColours ? tables.linear_of_byte[number]
+                          : static_cast<float>(kPerByte * static_cast<int>(number));
     } else {
       return static_cast<float>(number);
     }

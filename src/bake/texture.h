@@ -66,15 +66,18 @@ class Texture {
     int colours = 0;  ///< components that are bytes of sRGB
     Gather gather = nullptr;
   };
-  template <PixelType kType, int kComponents, bool kWeighted>
+  template <PixelType kType, int kComponents, int kColours, bool kWeighted>
   static void gather(const Level& level, const ColourTables& tables, double u, double v,
                      const ImageReading& reading, TexelSums& sums);
-  template <PixelType kType>
+  template <PixelType kType, bool kColours>
   static Gather gather_of(int components, bool weighted);
-  Gather gather_for(PixelType type) const;
+  Gather gather_for(PixelType type, bool colours) const;
   void own_linear(const ImageView& image, Level& level, const Work& work) const;
   Level half_of(const Level& level, const Work& work) const;
+  template <PixelType kType>
   void read_texel(const Level& level, int row, int column, TexelSums& texel) const;
+  template <PixelType kType>
+  void halve_rows(const Level& level, Level& half, const Work& work) const;
   bool weighted() const { return kind_ == ImageKind::kTransparent && components_ % 2 == 0; }
   bool is_colour() const {
     return kind_ == ImageKind::kColours || kind_ == ImageKind::kTransparent;
