@@ -175,7 +175,7 @@ def test_progress_ends_it() -> None:
         ({"images": []}, ValueError, "no image"),
         ({"old_uvs": SQUARE[:1]}, ValueError, "shape"),
         ({"new_uvs": SQUARE[0]}, ValueError, "shape"),
-        ({"new_uvs": SQUARE * np.inf}, beltrami.NonFiniteError, "corner"),
+        ({"new_uvs": SQUARE * np.nan}, beltrami.NonFiniteError, "corner"),
         ({"pixels": "rgb"}, ValueError, "choose from"),
         ({"resolution": 0}, ValueError, "resolution"),
         ({"gutter": -1}, ValueError, "gutter"),
