@@ -71,20 +71,6 @@ std::string one_digit(double value) {
   return text.data();
 }
 
-/// Whether an image has the colours of a normal map: mostly blue, and not grey.
-bool shows_directions(const Pixels& image) {
-  if (image.components < 3) return false;
-  double red = 0, green = 0, blue = 0;
-  // Of 16 bits the upper ones will do, which come last.
-  const std::size_t bytes = image.bytes, texel = bytes * static_cast<std::size_t>(image.components);
-  for (std::size_t i = bytes - 1; i + 2 * bytes < image.values.size(); i += texel) {
-    red += image.values[i];
-    green += image.values[i + bytes];
-    blue += image.values[i + 2 * bytes];
-  }
-  return blue > 1.2 * red && blue > 1.2 * green;
-}
-
 std::vector<double> vertex_normals(const MeshFile& file) {
   std::vector<const Column*> columns;
   for (const char* name : {"nx", "ny", "nz"}) {
@@ -107,7 +93,7 @@ struct TextureBake::Places {
 };
 
 TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file_(file) {
-  const MeshFormat format = format_of(file.path);
+  const MeshFormat format = file.gltf ? MeshFormat::kGltf : format_of(file.path);
   if (format == MeshFormat::kObj && format_of(output) == MeshFormat::kObj) {
     libraries_ = std::make_unique<MaterialLibraries>(file, true);
   } else if (format != MeshFormat::kGltf || format_of(output) != MeshFormat::kGltf) {

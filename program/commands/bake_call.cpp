@@ -87,7 +87,8 @@ BakeOutcome BakeCall::run(beltrami_context* context, const std::string& name,
   const auto known = std::find_if(images.begin(), images.end(),
                                   [](const Pixels& image) { return !image.values.empty(); });
   std::vector<beltrami_image> views;
-  for (const Pixels& image : images) views.push_back(view_of(image.values.empty() ? *known : image));
+  for (const Pixels& image : images)
+    views.push_back(view_of(image.values.empty() ? *known : image));
   Pixels all;
   all.width = side;
   all.height = static_cast<int>(page_count) * side;

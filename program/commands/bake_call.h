@@ -33,14 +33,15 @@ struct BakeCall {
   int side = 0;
   std::uint64_t gutter = kWholePage;
   std::uint64_t page_count = 1;
-  std::vector<double> old_uvs, new_uvs;               ///< u v of each corner of triangles
-  std::vector<std::uint64_t> old_pages, new_pages;    ///< of each triangle, or empty
-  std::vector<double> positions, normals, tangents;   ///< of each corner, or empty
-  std::vector<double> source_positions;               ///< of each corner of other triangles
+  std::vector<double> old_uvs, new_uvs;              ///< u v of each corner of triangles
+  std::vector<std::uint64_t> old_pages, new_pages;   ///< of each triangle, or empty
+  std::vector<double> positions, normals, tangents;  ///< of each corner, or empty
+  std::vector<double> source_positions;              ///< of each corner of other triangles
 
   std::vector<Pixels> pages;  ///< the result
 
-  /// Bakes `pages`. Throws Failure, which begins with `name`; most texels without a source are none.
+  /// Bakes `pages`. Throws Failure, which begins with `name`; most texels without a source are
+  /// none.
   BakeOutcome run(beltrami_context* context, const std::string& name, const BakeProgress& progress);
 
  private:

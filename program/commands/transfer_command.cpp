@@ -283,13 +283,13 @@ class Transfer {
     call.page_count = pages.size();
     for (const std::uint64_t page : to_.pages) {
       const auto found = std::lower_bound(pages.begin(), pages.end(), page);
-      call.new_pages.push_back(page == kNoPage
-                                   ? kNoPage
-                                   : static_cast<std::uint64_t>(found - pages.begin()));
+      call.new_pages.push_back(page == kNoPage ? kNoPage
+                                               : static_cast<std::uint64_t>(found - pages.begin()));
     }
     for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
       // What shows nothing may have no numbers.
-      if (to_.pages[t] == kNoPage) std::fill_n(call.new_uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
+      if (to_.pages[t] == kNoPage)
+        std::fill_n(call.new_uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
     }
     if (elsewhere_) {
       call.positions = numbers_of(to_.places);

@@ -123,7 +123,8 @@ std::string png_file(int width, int height, int components, std::size_t bytes,
   std::string head;
   append_big(static_cast<std::uint32_t>(width), head);
   append_big(static_cast<std::uint32_t>(height), head);
-  head += {static_cast<char>(8 * bytes), kColourTypes[static_cast<std::size_t>(components)], 0, 0, 0};
+  head +=
+      {static_cast<char>(8 * bytes), kColourTypes[static_cast<std::size_t>(components)], 0, 0, 0};
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk("IHDR", head, file);
   append_chunk("IDAT", zlib_bytes(filtered), file);
@@ -162,16 +163,29 @@ std::optional<Pixels> read_image(std::string_view bytes) {
   const auto* file = reinterpret_cast<const std::uint8_t*>(bytes.data());
   const auto size = static_cast<int>(bytes.size());
   if (stbi_is_16_bit_from_memory(file, size) != 0) image.bytes = 2;
-  void* pixels = image.bytes == 2
-                     ? static_cast<void*>(stbi_load_16_from_memory(
-                           file, size, &image.width, &image.height, &image.components, 0))
-                     : stbi_load_from_memory(file, size, &image.width, &image.height,
-                                             &image.components, 0);
+  void* pixels =
+      image.bytes == 2
+          ? static_cast<void*>(stbi_load_16_from_memory(file, size, &image.width, &image.height,
+                                                        &image.components, 0))
+          : stbi_load_from_memory(file, size, &image.width, &image.height, &image.components, 0);
   if (pixels == nullptr) return std::nullopt;
   const std::unique_ptr<void, void (*)(void*)> owner(pixels, &std::free);
   const auto* first = static_cast<const std::uint8_t*>(pixels);
   image.values.assign(first, first + image.row_size() * static_cast<std::size_t>(image.height));
   return image;
+}
+
+bool shows_directions(const Pixels& image) {
+  if (image.components < 3) return false;
+  double red = 0, green = 0, blue = 0;
+  // Of 16 bits the upper ones will do, which come last.
+  const std::size_t bytes = image.bytes, texel = bytes * static_cast<std::size_t>(image.components);
+  for (std::size_t i = bytes - 1; i + 2 * bytes < image.values.size(); i += texel) {
+    red += image.values[i];
+    green += image.values[i + bytes];
+    blue += image.values[i + 2 * bytes];
+  }
+  return blue > 1.2 * red && blue > 1.2 * green;
 }
 
 std::vector<TextQuad> text_quads(const std::string& text) {

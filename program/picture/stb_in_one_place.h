@@ -34,6 +34,9 @@ std::optional<Pixels> read_image(std::string_view bytes);
 /// Whether read_image may read this, by its first bytes.
 bool is_image(std::string_view bytes);
 
+/// Whether an image has the colours of a normal map: mostly blue, and not grey.
+bool shows_directions(const Pixels& image);
+
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {
   float x0, y0, x1, y1;

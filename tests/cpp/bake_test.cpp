@@ -51,7 +51,7 @@ TEST(CppBake, RefusesWhatDoesNotFit) {
 
 TEST(CppBake, ACallableEndsIt) {
   const Shown shown;
-  const auto end = [](double, const char*) { return true; };
+  const auto end = [](double, const char*) { return false; };
   EXPECT_EQ(Context().try_bake<std::uint16_t>(shown.job, end).status(), Status::kCancelled);
 }
 

@@ -98,7 +98,14 @@ def test_what_is_beyond_the_image(wrap: Any) -> None:
 def test_pages_have_images_of_their_own() -> None:
     images = [np.full((8, 8), 10, np.uint8), np.full((4, 4), 20, np.uint8)]
     baked = beltrami.bake(
-        images, SQUARE, SQUARE, resolution=8, gutter=0, old_pages=[0, 1], new_pages=[1, 0], masks=True
+        images,
+        SQUARE,
+        SQUARE,
+        resolution=8,
+        gutter=0,
+        old_pages=[0, 1],
+        new_pages=[1, 0],
+        masks=True,
     )
     assert baked.images.shape == (2, 8, 8)
     assert set(baked.images[0].ravel().tolist()) == {0, 20}
@@ -162,9 +169,7 @@ def test_texels_without_a_source_are_counted() -> None:
 
 def test_progress_ends_it() -> None:
     with pytest.raises(beltrami.Cancelled):
-        beltrami.bake(
-            noise(np.uint8, 3), SQUARE, SQUARE, resolution=512, progress=lambda *_: False
-        )
+        beltrami.bake(noise(np.uint8, 3), SQUARE, SQUARE, resolution=512, progress=lambda *_: False)
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,9 @@ class BakeCounts:
 class BakeContext(Context):
     """A context that bakes."""
 
-    def bake(self, arrays: BakeArrays, pixels: Array, masks: Array | None, hook: Hook) -> BakeCounts:
+    def bake(
+        self, arrays: BakeArrays, pixels: Array, masks: Array | None, hook: Hook
+    ) -> BakeCounts:
         """Bake into `pixels` and `masks`. Raises what the hook raises."""
         job = sized("beltrami_bake_job")
         images = ffi.new("beltrami_image[]", len(arrays.images))
