@@ -61,7 +61,7 @@ def bake(
     resolution: int = 1024,
     gutter: int | None = None,
     wrap: WrapChoice | tuple[WrapChoice, WrapChoice] = "repeat",
-    filter: FilterChoice = "linear",
+    texel_filter: FilterChoice = "linear",
     old_pages: npt.ArrayLike | None = None,
     new_pages: npt.ArrayLike | None = None,
     vertices: npt.ArrayLike | None = None,
@@ -100,7 +100,7 @@ def bake(
         Texels around charts that continue them; None fills the whole page.
     wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
         What an image shows beyond the unit square, along u and v.
-    filter : {"linear", "nearest"}, default "linear"
+    texel_filter : {"linear", "nearest"}, default "linear"
         Whether places between texels are interpolated.
     old_pages, new_pages : (m,) array_like of integers, optional
         The image that each triangle is read from, and the page that it lies on, counted from 0; -1
@@ -186,7 +186,7 @@ def bake(
         raise ValueError(f"resolution is {resolution}: give 1 to 32768")
     numbers = {
         "pixels": _choice("pixels", pixels, PIXELS),
-        "filter": _choice("filter", filter, FILTERS),
+        "filter": _choice("texel_filter", texel_filter, FILTERS),
         "wrap_u": _choice("wrap", along_u, WRAPS),
         "wrap_v": _choice("wrap", along_v, WRAPS),
         "face_count": faces,
