@@ -207,26 +207,28 @@ class ToGltf {
     } catch (const Failure& failure) {
       if (failure.exit_code == kExitCancelled) throw;
     }
-    Json& json = document_.json["materials"][material];
-    const auto add = [&](Json& place, const char* slot) {
-      if (place.contains(slot)) return false;
-      place[slot] = texture_info(use, bytes);
+    // Found anew at each use: what is added to the document moves its parts.
+    const auto own = [&]() -> Json& { return document_.json["materials"][material]; };
+    const auto pbr = [&]() -> Json& { return own()["pbrMetallicRoughness"]; };
+    const auto add = [&](const auto& place, const char* slot) {
+      if (place().contains(slot)) return false;
+      Json info = texture_info(use, bytes);
+      place()[slot] = std::move(info);
       return true;
     };
     bool added = false;
     if (with_uvs_ != nullptr && is_image(bytes)) {
       if (use.keyword == "map_kd") {
-        Json& pbr = json["pbrMetallicRoughness"];
         added = add(pbr, "baseColorTexture");
         // Exporters leave any colour beside a picture, and viewers of OBJ show the picture alone.
-        for (std::size_t k = 0; k < 3; ++k) pbr["baseColorFactor"][k] = 1.0;
+        for (std::size_t k = 0; k < 3; ++k) pbr()["baseColorFactor"][k] = 1.0;
       } else if (use.keyword == "map_ke") {
-        added = add(json, "emissiveTexture");
-        if (added) json["emissiveFactor"] = {1.0, 1.0, 1.0};
+        added = add(own, "emissiveTexture");
+        if (added) own()["emissiveFactor"] = {1.0, 1.0, 1.0};
       } else if (use.meaning == Meaning::kDirections || use.meaning == Meaning::kRelief) {
         const std::optional<Pixels> image = read_image(bytes);
         const bool directions = use.meaning == Meaning::kDirections;
-        added = image && (directions || shows_directions(*image)) && add(json, "normalTexture");
+        added = image && (directions || shows_directions(*image)) && add(own, "normalTexture");
       }
     }
     if (!added) not_kept_.push_back(use.name);

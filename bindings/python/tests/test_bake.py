@@ -153,7 +153,12 @@ def test_another_surface_of_the_same_shape() -> None:
     assert np.abs(baked.images[0].astype(int) - image).max() <= 1
     with pytest.raises(beltrami.InvalidArgumentError, match="texels have no source"):
         beltrami.bake(
-            image, SQUARE, other, resolution=64, vertices=places + np.array([0, 0, 5]), source_vertices=PLACES
+            image,
+            SQUARE,
+            other,
+            resolution=64,
+            vertices=places + np.array([0, 0, 5]),
+            source_vertices=PLACES,
         )
 
 
