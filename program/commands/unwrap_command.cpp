@@ -134,7 +134,7 @@ class Unwrapping {
     return writes_gltf() && format_of(arguments_.input) != MeshFormat::kGltf;
   }
 
-  bool writes_gltf() const { return format_of(arguments_.output) == MeshFormat::kGltf; }
+  bool writes_gltf() const { return is_gltf_name(arguments_.output); }
 
   void read() {
     bar_.show(0, "read");

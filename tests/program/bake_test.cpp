@@ -402,6 +402,36 @@ TEST(Bake, TheFilesOfAGltfLieBesideIt) {
   EXPECT_EQ(run({"unwrap", out, again, "--bake", "--resolution", "64"}).exit_code, 0);
 }
 
+TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl",
+                 "newmtl wood\nKd 0.8 0.2 0.1\nPr 0.5\nmap_Kd wood.png\n"
+                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Pr wood.png\n");
+  directory.file("wood.png", png_of(16, smooth));
+  const std::string in =
+      directory.file("a.obj",
+                     "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\n"
+                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n"
+                     "usemtl glass\nf 2/1 5/2 6/3 3/4\n");
+  const Outcome outcome =
+      run({"unwrap", in, directory.path("out.glb"), "--bake", "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("map_Pr of material 'glass'"), std::string::npos) << outcome.err;
+  const Parts parts(directory.read("out.glb"));
+  ASSERT_EQ(parts.json["materials"].size(), 2u);
+  const Json& wood = parts.json["materials"][0]["pbrMetallicRoughness"];
+  EXPECT_EQ(wood["baseColorFactor"], Json({1.0, 1.0, 1.0, 1.0}));
+  EXPECT_EQ(wood["roughnessFactor"], 0.5);
+  EXPECT_TRUE(wood.contains("baseColorTexture"));
+  const Json& glass = parts.json["materials"][1];
+  EXPECT_EQ(glass["alphaMode"], "BLEND");
+  EXPECT_EQ(glass["pbrMetallicRoughness"]["baseColorFactor"], Json({0.0, 0.0, 1.0, 0.25}));
+  EXPECT_EQ(parts.json["meshes"][0]["primitives"].size(), 2u);
+  EXPECT_NE(run({"unwrap", in, directory.path("o.glb"), "--write-seams", directory.path("s.txt")})
+                .err.find("--write-seams"),
+            std::string::npos);
+}
+
 TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {
   const TemporaryDirectory directory;
   const std::string text =
