@@ -198,9 +198,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
       ->required();
-  command
-      ->add_option("OUT", arguments.output,
-                   "Mesh with UVs to write: .obj or .ply; .gltf or .glb where IN is glTF")
+  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
       ->required();
   command
       ->add_option("--seams", arguments.seams,

@@ -363,7 +363,8 @@ enum {
   BELTRAMI_CALL_FORCE_SIGNED_ = -1,
   BELTRAMI_CALL_RUN = 1,    /* beltrami_run */
   BELTRAMI_CALL_UNWRAP = 2, /* beltrami_unwrap */
-  BELTRAMI_CALL_PACK = 4    /* beltrami_pack */
+  BELTRAMI_CALL_PACK = 4,   /* beltrami_pack */
+  BELTRAMI_CALL_BAKE = 8    /* beltrami_bake */
 };
 
 typedef struct beltrami_option_info {
@@ -413,7 +414,9 @@ enum {
   BELTRAMI_F32 = 0,
   BELTRAMI_F64 = 1,
   BELTRAMI_U32 = 2,
-  BELTRAMI_U64 = 3
+  BELTRAMI_U64 = 3,
+  BELTRAMI_U8 = 4, /* of pixels alone, as is the next */
+  BELTRAMI_U16 = 5
 };
 
 /* Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
@@ -960,6 +963,113 @@ BELTRAMI_API beltrami_status beltrami_get_packed_uvs(beltrami_context* context, 
  * through all meshes, by their first faces. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh,
                                                         void* out, int32_t type, uint64_t stride);
+
+/* ---- Baking: what images show through old UVs, for new UVs --------------------------------- */
+
+/* What an image shows beyond [0,1]^2. */
+enum {
+  BELTRAMI_WRAP_FORCE_SIGNED_ = -1,
+  BELTRAMI_WRAP_REPEAT = 0,
+  BELTRAMI_WRAP_CLAMP = 1, /* its outermost texels */
+  BELTRAMI_WRAP_MIRROR = 2 /* itself, mirrored at every other time */
+};
+
+/* How texels are read. */
+enum {
+  BELTRAMI_FILTER_FORCE_SIGNED_ = -1,
+  BELTRAMI_FILTER_LINEAR = 0, /* between texels; a mean where many are shown by one */
+  BELTRAMI_FILTER_NEAREST = 1 /* each place shows its texel; means of 4 x 4 places in a new one */
+};
+
+/* What the channels of an image are, which says how a mean of them is taken. */
+enum {
+  BELTRAMI_PIXELS_FORCE_SIGNED_ = -1,
+  BELTRAMI_PIXELS_LINEAR = 0, /* as they are: roughness, heights, linear light */
+  BELTRAMI_PIXELS_SRGB = 1,   /* colours, in linear light; a second or fourth channel is linear */
+  BELTRAMI_PIXELS_SRGB_ALPHA = 2, /* the same, and a colour counts by that channel, its alpha */
+  BELTRAMI_PIXELS_NORMALS = 3     /* of tangent space, with 3 or 4 channels: x and y of normals,
+                                   * 0 at the middle of the type's range (F32: 0.5), are turned from
+                                   * the axes of the old UVs to those of the new ones */
+};
+
+/* An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
+ * F32 as it is. */
+typedef struct beltrami_image {
+  const void* pixels;
+  uint64_t width;    /* 1 to 65536 */
+  uint64_t height;   /* 1 to 65536 */
+  uint64_t stride;   /* bytes from one row to the next (0: packed) */
+  int32_t type;      /* BELTRAMI_U8, BELTRAMI_U16 or BELTRAMI_F32 */
+  uint32_t channels; /* 1 to 4 */
+} beltrami_image;
+
+/* Triangles with two layouts of UVs, and the images of the old one. A corner is one of 3 of each
+ * face, one after another. Buffers said to be optional are left out by data NULL. */
+typedef struct beltrami_bake_job {
+  uint32_t struct_size;
+  uint32_t flags;               /* 0 */
+  const beltrami_image* images; /* one for each old page, of one type and as many channels */
+  uint64_t image_count;
+  int32_t pixels;             /* BELTRAMI_PIXELS_ */
+  int32_t filter;             /* BELTRAMI_FILTER_ */
+  int32_t wrap_u;             /* BELTRAMI_WRAP_ */
+  int32_t wrap_v;             /* BELTRAMI_WRAP_ */
+  uint64_t face_count;        /* at most 700,000,000 */
+  beltrami_buffer new_uvs;    /* an item of 2 per corner, F32 or F64, on the page of the face:
+                               * [0,1]^2 */
+  beltrami_buffer new_pages;  /* optional: face_count items of 1, U32 or U64, counted from 0; all
+                               * bits set: the face is on none. Left out: all are on page 0 */
+  beltrami_buffer old_uvs;    /* an item of 2 per corner, F32 or F64, in units of the image of the
+                               * page. A face with one that is not finite has no source */
+  beltrami_buffer old_pages;  /* optional: as new_pages, of images; all bits set: no source */
+  beltrami_buffer positions;  /* an item of 3 per corner, F32 or F64; optional but for NORMALS
+                               * and with source_positions */
+  beltrami_buffer normals;    /* optional, for NORMALS: an item of 3 per corner, F32 or F64; NaN
+                               * or left out: that of the face */
+  beltrami_buffer tangents;   /* optional, for NORMALS: an item of 4 per corner, F32 or F64: the
+                               * axis of the old u, and -1 where UVs are mirrored, else 1. Left
+                               * out: as MikkTSpace has them */
+  uint64_t source_face_count; /* with source_positions */
+  beltrami_buffer source_positions; /* optional: an item of 3 per corner of another surface of the
+                                     * same shape in the same place, F32 or F64. old_uvs and
+                                     * old_pages are then of its source_face_count faces, and each
+                                     * texel shows the nearest place of it, of a face that looks the
+                                     * same way. Not for NORMALS */
+  uint64_t resolution;              /* texels to the side of a new page, 1 to 32768 */
+  uint64_t gutter;       /* texels around charts that continue them; all bits set: the whole
+                          * page */
+  uint64_t page_count;   /* new pages, 1 to 1000 */
+  const int32_t* cancel; /* as in beltrami_mesh */
+} beltrami_bake_job;
+
+/* Room for what is baked, and what is told of it. */
+typedef struct beltrami_baked {
+  uint32_t struct_size;
+  uint32_t reserved;       /* 0 */
+  void* pixels;            /* given: room for page_count pages of resolution rows from the top, one
+                            * page after another, of the images' type and channels; 0 where nothing
+                            * is baked */
+  uint64_t stride;         /* given: bytes from one row to the next (0: packed) */
+  uint8_t* masks;          /* given: NULL, or room for a byte per texel of each page, a
+                            * BELTRAMI_TEXEL_ number */
+  uint64_t texels;         /* that a face covers, at least in part */
+  uint64_t without_source; /* of these: nothing was baked there */
+  double old_texels;       /* of the images along the side of a new texel, in the mean: above 1 is
+                            * coarser than before; 0 with source_positions */
+  double seconds;          /* wall time of the call */
+  double cpu_seconds;      /* of the whole process during the call */
+} beltrami_baked;
+
+/* Reads images through the old UVs of faces, and writes them for the new ones: one bilinear reading
+ * where densities agree, else the mean of up to 4 x 4 places of a texel, of a smaller image where
+ * these are too few. Where faces overlap the first is shown. It takes the option threads, on which
+ * the bits do not depend; the context's mesh and results stay. Returns OK, or errors:
+ * INVALID_ARGUMENT, also where most texels have no source (`out` has all numbers then, and the
+ * pixels), EMPTY (no faces), NON_FINITE (corner: a new UV or a position), CANCELLED, OUT_OF_MEMORY,
+ * INVALID_STATE (during a run). After an error pixels and masks hold anything. */
+BELTRAMI_API beltrami_status beltrami_bake(beltrami_context* context, const beltrami_bake_job* job,
+                                           beltrami_baked* out, beltrami_progress progress,
+                                           void* user);
 
 /* ---- Checks without a context ----------------------------------------------------------- */
 /* They judge the caller's own arrays, keep nothing and need no run; `mesh->cancel` ends them.

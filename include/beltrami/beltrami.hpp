@@ -12,6 +12,7 @@
 #define BELTRAMI_BELTRAMI_HPP
 
 #include <beltrami/beltrami.h>
+#include <beltrami/cpp/bake.hpp>
 #include <beltrami/cpp/checks.hpp>
 #include <beltrami/cpp/context.hpp>
 #include <beltrami/cpp/options.hpp>

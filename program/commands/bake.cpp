@@ -10,15 +10,13 @@
 #include <string_view>
 #include <utility>
 
+#include "commands/bake_call.h"
 #include "commands/command.h"
 #include "files/column.h"
 #include "files/gltf/uri.h"
 #include "files/gltf_file.h"
 #include "files/polygons.h"
-#include "picture/axes_turn.h"
-#include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
-#include "picture/texture.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -73,19 +71,6 @@ std::string one_digit(double value) {
   return text.data();
 }
 
-/// Whether an image has the colours of a normal map: mostly blue, and not grey.
-bool shows_directions(const Pixels& image) {
-  if (image.components < 3) return false;
-  double red = 0, green = 0, blue = 0;
-  const auto step = static_cast<std::size_t>(image.components);
-  for (std::size_t i = 0; i < image.values.size(); i += step) {
-    red += image.values[i];
-    green += image.values[i + 1];
-    blue += image.values[i + 2];
-  }
-  return blue > 1.2 * red && blue > 1.2 * green;
-}
-
 std::vector<double> vertex_normals(const MeshFile& file) {
   std::vector<const Column*> columns;
   for (const char* name : {"nx", "ny", "nz"}) {
@@ -103,14 +88,12 @@ std::vector<double> vertex_normals(const MeshFile& file) {
 }  // namespace
 
 struct TextureBake::Places {
-  std::vector<std::uint32_t> corners;  ///< three for each triangle, of the file's faces
-  std::vector<BakedTriangle> triangles;
-  std::vector<SourceTriangle> sources;
+  std::vector<std::uint32_t> corners;    ///< three for each triangle, of the file's faces
   std::vector<double> old_uvs, new_uvs;  ///< per corner
 };
 
 TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file_(file) {
-  const MeshFormat format = format_of(file.path);
+  const MeshFormat format = file.gltf ? MeshFormat::kGltf : format_of(file.path);
   if (format == MeshFormat::kObj && format_of(output) == MeshFormat::kObj) {
     libraries_ = std::make_unique<MaterialLibraries>(file, true);
   } else if (format != MeshFormat::kGltf || format_of(output) != MeshFormat::kGltf) {
@@ -207,7 +190,7 @@ std::vector<double> TextureBake::old_uvs(std::uint64_t uv_set) const {
   return found;
 }
 
-TextureBake::Places TextureBake::places_of(const TextureUse& use, int side) const {
+TextureBake::Places TextureBake::places_of(const TextureUse& use) const {
   const std::vector<bool> has =
       libraries_ ? libraries_->faces_of(use.material) : gltf_faces_of(file_, use.material);
   const std::vector<double> uvs = old_uvs(use.uv_set);
@@ -215,18 +198,11 @@ TextureBake::Places TextureBake::places_of(const TextureUse& use, int side) cons
   Places places;
   for (std::size_t first = 0; first < corners_.size(); first += 3) {
     if (!has[file_.polygons.of_corner(corners_[first])]) continue;
-    BakedTriangle& triangle = places.triangles.emplace_back();
-    SourceTriangle& source = places.sources.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = 2 * (first + k);
       const double u = uvs[at], v = uvs[at + 1];
-      source.uvs[k] = {a * u + b * v + c, d * u + e * v + f};
-      if (!std::isfinite(source.uvs[k][0]) || !std::isfinite(source.uvs[k][1])) {
-        source.page = kNoPage;
-      }
-      triangle[k] = {side * new_uvs_[at], side * new_uvs_[at + 1]};
       places.corners.push_back(corners_[first + k]);
-      places.old_uvs.insert(places.old_uvs.end(), source.uvs[k].begin(), source.uvs[k].end());
+      places.old_uvs.insert(places.old_uvs.end(), {a * u + b * v + c, d * u + e * v + f});
       places.new_uvs.insert(places.new_uvs.end(), {new_uvs_[at], new_uvs_[at + 1]});
     }
   }
@@ -262,45 +238,29 @@ std::vector<double> normals_of_corners(const MeshFile& file,
   return found;
 }
 
-std::vector<AxesTurn> turns_of(const MeshFile& file, const TextureUse& use,
-                               const std::vector<std::uint32_t>& corners,
-                               const std::vector<double>& old_uvs,
-                               const std::vector<double>& new_uvs) {
-  std::vector<double> positions, normals, tangents;
+/// What the axes of normals are found by.
+void add_axes(const MeshFile& file, const TextureUse& use,
+              const std::vector<std::uint32_t>& corners, BakeCall& call) {
   if (file.gltf) {
     // Viewers find tangents in the coordinates of the mesh itself.
-    positions = of_corners(file, gltf_attribute(file, "POSITION", 3), corners, 3);
-    normals = of_corners(file, gltf_attribute(file, "NORMAL", 3), corners, 3);
+    call.positions = of_corners(file, gltf_attribute(file, "POSITION", 3), corners, 3);
+    call.normals = of_corners(file, gltf_attribute(file, "NORMAL", 3), corners, 3);
     // Those of a file are for the UVs of its normal map as they are, without a transform.
-    tangents = of_corners(file, gltf_attribute(file, "TANGENT", 4), corners, 4);
+    if (use.transform == TextureUse{}.transform) {
+      call.tangents = of_corners(file, gltf_attribute(file, "TANGENT", 4), corners, 4);
+    }
   } else {
-    positions = of_corners(file, file.positions, corners, 3);
-    normals = normals_of_corners(file, corners);
+    call.positions = of_corners(file, file.positions, corners, 3);
+    call.normals = normals_of_corners(file, corners);
   }
-  if (use.transform != TextureUse{}.transform) tangents.clear();
-  return axes_turns({positions, normals, tangents, old_uvs, new_uvs});
 }
 
 }  // namespace
 
-void TextureBake::note_density(const Places& places, int width, int height, int side) {
-  double before = 0, after = 0;
-  const auto area = [](const std::array<std::array<double, 2>, 3>& t) {
-    return std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) -
-                    (t[2][0] - t[0][0]) * (t[1][1] - t[0][1])) /
-           2;
-  };
-  for (std::size_t t = 0; t < places.triangles.size(); ++t) {
-    if (places.sources[t].page == kNoPage) continue;
-    before += area(places.sources[t].uvs) * width * height;
-    after += area(places.triangles[t]);
-  }
-  if (after > 0 && side > 0) coarser_ = std::max(coarser_, std::sqrt(before / after));
-}
-
-void TextureBake::bake_one(BakedTexture& baked, int side, int threads,
-                           const std::function<void(double)>& progress, Report& report) {
+void TextureBake::bake_one(BakedTexture& baked, beltrami_context* context, int side,
+                           const BakeProgress& progress, Report& report) {
   const std::string bytes = image_of(baked.use);
+  BakeCall call;
   std::optional<Pixels> image = read_image(bytes);
   if (!image) refuse_image(file_.path, baked.use, bytes);
   if (baked.use.meaning == Meaning::kRelief) {
@@ -309,48 +269,38 @@ void TextureBake::bake_one(BakedTexture& baked, int side, int threads,
   if (image->components < 3 && baked.use.meaning == Meaning::kDirections) {
     baked.use.meaning = Meaning::kNumbers;  // a grey image has no directions
   }
-  const Places places = places_of(baked.use, side);
-  note_density(places, image->width, image->height, side);
-  std::vector<AxesTurn> turns;
-  if (baked.use.meaning == Meaning::kDirections) {
-    turns = turns_of(file_, baked.use, places.corners, places.old_uvs, places.new_uvs);
-  }
-  std::array<Texture, 1> texture = {Texture(*image, baked.use.meaning)};
-  image.reset();
-  const std::vector<std::uint8_t> seams = inner_seams(places.triangles, places.sources);
-  BakeJob job;
-  job.seams = seams;
-  job.triangles = places.triangles;
-  job.sources = places.sources;
-  job.turns = turns;
-  job.pages = texture;
-  job.reading = baked.use.reading;
-  job.side = side;
-  job.threads = threads;
-  job.progress = progress;
-  Baked page = bake(job);
-  if (2 * page.without_source > page.covered) {
+  call.images.push_back(*std::move(image));
+  call.meaning = baked.use.meaning;
+  call.reading = baked.use.reading;
+  call.side = side;
+  Places places = places_of(baked.use);
+  if (call.meaning == Meaning::kDirections) add_axes(file_, baked.use, places.corners, call);
+  call.old_uvs = std::move(places.old_uvs);
+  call.new_uvs = std::move(places.new_uvs);
+  const BakeOutcome outcome = call.run(context, file_.path + ": " + baked.use.name, progress);
+  if (2 * outcome.without_source > outcome.texels) {
     throw Failure(file_.path + ": " + baked.use.name +
                   ": most of its texels have no source, since " +
                   "their faces have no UVs in set " + std::to_string(baked.use.uv_set) +
                   ": do without --bake");
   }
-  if (page.covered == 0) {
+  if (outcome.texels == 0) {
     report.notes.push_back(baked.use.name + " covers no texel: raise --resolution");
   }
-  texels_ += page.covered;
-  without_source_ += page.without_source;
-  fill_gutters(page, side);
-  baked.png = png_bytes(side, side, page.image.components, page.image.values.data());
+  coarser_ = std::max(coarser_, outcome.old_texels);
+  texels_ += outcome.texels;
+  without_source_ += outcome.without_source;
+  call.images.clear();
+  baked.png = png_bytes(call.pages.front());
 }
 
-void TextureBake::run(int side, int threads, const std::function<void(double)>& progress,
+void TextureBake::run(beltrami_context* context, int side, const BakeProgress& progress,
                       Report& report) {
   for (std::size_t i = 0; i < baked_.size(); ++i) {
     throw_if_interrupted();
     const auto part = [&](double share) { progress((double(i) + share) / double(baked_.size())); };
     part(0);
-    bake_one(baked_[i], side, threads, part, report);
+    bake_one(baked_[i], context, side, part, report);
   }
   report.textures = {baked_.size(), texels_, without_source_};
   if (baked_.empty()) {

@@ -1,14 +1,16 @@
 // The textures of a mesh's materials, baked for its new UVs.
 #pragma once
 
+#include <beltrami/beltrami.h>
+
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "commands/bake_call.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
@@ -32,9 +34,9 @@ class TextureBake {
   /// Takes over where corners have their new UVs, and where they had the old ones; `triangles`:
   /// three corners of the file's faces each.
   void place(const std::vector<std::uint32_t>& triangles);
-  /// Bakes all, each on a page of `side` texels. Throws Failure where most of a texture would be
-  /// made up.
-  void run(int side, int threads, const std::function<void(double)>& progress, Report& report);
+  /// Bakes all, each on a page of `side` texels, on the threads of `context`. Throws Failure where
+  /// most of a texture would be made up.
+  void run(beltrami_context* context, int side, const BakeProgress& progress, Report& report);
 
   /// For write_outputs, of glTF.
   std::vector<BakedTexture> take_textures() { return std::move(baked_); }
@@ -47,10 +49,9 @@ class TextureBake {
   std::string image_of(const TextureUse& use) const;
   void name_files(const std::string& output);
   std::vector<double> old_uvs(std::uint64_t uv_set) const;
-  Places places_of(const TextureUse& use, int side) const;
-  void bake_one(BakedTexture& baked, int side, int threads,
-                const std::function<void(double)>& progress, Report& report);
-  void note_density(const Places& places, int width, int height, int side);
+  Places places_of(const TextureUse& use) const;
+  void bake_one(BakedTexture& baked, beltrami_context* context, int side,
+                const BakeProgress& progress, Report& report);
 
   const MeshFile& file_;
   std::unique_ptr<MaterialLibraries> libraries_;  ///< of OBJ

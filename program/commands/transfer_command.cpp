@@ -10,8 +10,10 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "commands/bake_call.h"
 #include "commands/command.h"
 #include "commands/pages.h"
 #include "commands/report.h"
@@ -20,10 +22,7 @@
 #include "files/polygons.h"
 #include "files/texture_use.h"
 #include "files/triangulate.h"
-#include "picture/nearest_face.h"
-#include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
-#include "picture/texture.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -33,10 +32,13 @@ namespace {
 
 using Uv = std::array<double, 2>;
 using TriangleUvs = std::array<Uv, 3>;
+using Place = std::array<double, 3>;
+
+constexpr std::uint64_t kNoPage = BakeCall::kNoPage;
 
 /// Of the size of OLD: how far corners of the same face may be apart, as single precision and a few
-/// digits of a text leave them; and how far what a texel shows may be from it.
-constexpr double kSame = 1e-5, kReach = 0.02;
+/// digits of a text leave them.
+constexpr double kSame = 1e-5;
 
 Uv uv_of_corner(const MeshFile& file, std::uint32_t corner) {
   const auto& [values, of_corner] = file.corner_uvs;
@@ -75,7 +77,7 @@ Pixels read_texture(const std::string& path) {
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
 struct Textured {
-  std::vector<PlacedTriangle> places;
+  std::vector<Place> places;         ///< of the corners
   std::vector<TriangleUvs> uvs;      ///< on their pages
   std::vector<std::uint64_t> pages;  ///< kNoPage for a triangle that no texture is on
   bool tiled = false;                ///< a triangle is in another tile of the plane than [0,1]^2
@@ -85,11 +87,11 @@ struct Textured {
 Textured textured(const MeshFile& file, const std::vector<std::uint32_t>& corners) {
   Textured mesh;
   for (std::size_t first = 0; first < corners.size(); first += 3) {
-    PlacedTriangle& place = mesh.places.emplace_back();
     TriangleUvs& uvs = mesh.uvs.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t vertex = file.polygons.corners()[corners[first + k]];
-      for (std::size_t d = 0; d < 3; ++d) place[k][d] = file.positions[3 * vertex + d];
+      const double* place = &file.positions[3 * vertex];
+      mesh.places.push_back({place[0], place[1], place[2]});
       uvs[k] = uv_of_corner(file, corners[first + k]);
     }
     const std::optional<Uv> tile = tile_of(uvs);
@@ -157,6 +159,35 @@ bool same_places(const MeshFile& from, const MeshFile& to, double tolerance) {
   return true;
 }
 
+/// The diagonal of the box around a mesh.
+double size_of(const Textured& mesh) {
+  Place low = mesh.places.empty() ? Place{} : mesh.places.front(), high = low;
+  for (const Place& place : mesh.places) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], place[d]);
+      high[d] = std::max(high[d], place[d]);
+    }
+  }
+  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+/// x y z of each corner.
+std::vector<double> numbers_of(const std::vector<Place>& places) {
+  std::vector<double> numbers;
+  numbers.reserve(3 * places.size());
+  for (const Place& place : places) numbers.insert(numbers.end(), place.begin(), place.end());
+  return numbers;
+}
+
+std::vector<double> numbers_of(const std::vector<TriangleUvs>& triangles) {
+  std::vector<double> numbers;
+  numbers.reserve(6 * triangles.size());
+  for (const TriangleUvs& uvs : triangles) {
+    for (const Uv& uv : uvs) numbers.insert(numbers.end(), uv.begin(), uv.end());
+  }
+  return numbers;
+}
+
 class Transfer {
  public:
   explicit Transfer(const TransferArguments& arguments) : arguments_(arguments) {}
@@ -185,35 +216,10 @@ class Transfer {
       const bool same_vertices =
           joins_faces(to) && from.polygons.corners() == to.polygons.corners();
       from_ = textured(from, corners);
-      surface_.emplace(from_.places);
-      if (same_vertices || same_places(from, to, kSame * surface_->size())) {
-        surface_.reset();
-        return;
-      }
+      if (same_vertices || same_places(from, to, kSame * size_of(from_))) return;
     }
     from_ = textured(from, triangle_corners(from));
-    surface_.emplace(from_.places);
-  }
-
-  /// Where the texture has what a point of a new triangle shows, by the nearest place of OLD.
-  /// Precondition: surface_.
-  std::optional<Source> source(std::size_t triangle, const std::array<double, 3>& weights) {
-    const PlacedTriangle& place = to_.places[triangle];
-    Place point{0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t d = 0; d < 3; ++d) point[d] += weights[k] * place[k][d];
-    }
-    const std::optional<OnFace> at =
-        surface_->find(point, normal_of(place), kReach * surface_->size(), last_found_);
-    if (!at) return std::nullopt;
-    last_found_ = at->face;
-    if (from_.pages[at->face] == kNoPage) return std::nullopt;
-    Source source{from_.pages[at->face], 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      source.u += at->weights[k] * from_.uvs[at->face][k][0];
-      source.v += at->weights[k] * from_.uvs[at->face][k][1];
-    }
-    return source;
+    elsewhere_ = true;
   }
 
   /// Whether UVs of OLD beyond [0,1]^2 are on other pages, and not on the one texture again.
@@ -252,62 +258,52 @@ class Transfer {
         throw Failure(path + ": is not there, and faces of " + arguments_.old_mesh +
                       " are on that tile: a texture that repeats is read with --wrap repeat");
       }
-      const Pixels texture = read_texture(unnumbered ? arguments_.texture : path);
-      textures_[page] = Texture(texture, Meaning::kNumbers);
-      if (components_ == 0) components_ = texture.components;
-      if (texture.components != components_) {
-        throw Failure(path + ": has other components than the pages before it");
+      Pixels texture = read_texture(unnumbered ? arguments_.texture : path);
+      const Pixels& known = textures_[pages.front()];
+      if (page != pages.front() &&
+          (texture.components != known.components || texture.bytes != known.bytes)) {
+        throw Failure(path + ": has other components or bits than the pages before it");
       }
       side_ = std::max({side_, texture.width, texture.height});
+      textures_[page] = std::move(texture);
     }
     if (arguments_.resolution > 0) side_ = arguments_.resolution;
-    // The first page is asked how many components there are; of an unused one none is read.
-    if (textures_.front().components() == 0) textures_.front() = textures_[pages.front()];
-  }
-
-  /// What is on a page of NEW.
-  Baked bake_page(std::uint64_t page) {
-    std::vector<BakedTriangle> triangles;
-    std::vector<std::size_t> number;
-    for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
-      if (to_.pages[t] != page) continue;
-      BakedTriangle& triangle = triangles.emplace_back(to_.uvs[t]);
-      for (auto& corner : triangle) {
-        for (double& x : corner) x *= side_;
-      }
-      number.push_back(t);
-    }
-    BakeJob job;
-    job.triangles = triangles;
-    job.pages = textures_;
-    job.reading = reading();
-    job.side = side_;
-    std::vector<SourceTriangle> sources;
-    if (surface_) {
-      job.source_of = [&](std::size_t t, const std::array<double, 3>& weights) {
-        return source(number[t], weights);
-      };
-    } else {
-      for (const std::size_t t : number) sources.push_back({from_.pages[t], from_.uvs[t]});
-      job.sources = sources;
-    }
-    Baked baked = bake(job);
-    fill_gutters(baked, arguments_.margin);
-    return baked;
   }
 
   int write_pages() {
     const std::vector<std::uint64_t> pages = pages_in_use(to_);
-    std::uint64_t covered = 0, without_source = 0;
+    BakeCall call;
+    call.images = std::move(textures_);
+    call.reading = reading();
+    call.side = side_;
+    call.gutter = static_cast<std::uint64_t>(arguments_.margin);
+    call.old_uvs = numbers_of(from_.uvs);
+    call.old_pages = from_.pages;
+    call.new_uvs = numbers_of(to_.uvs);
+    call.page_count = pages.size();
+    for (const std::uint64_t page : to_.pages) {
+      const auto found = std::lower_bound(pages.begin(), pages.end(), page);
+      call.new_pages.push_back(page == kNoPage ? kNoPage
+                                               : static_cast<std::uint64_t>(found - pages.begin()));
+    }
+    for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
+      // What shows nothing may have no numbers.
+      if (to_.pages[t] == kNoPage)
+        std::fill_n(call.new_uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
+    }
+    if (elsewhere_) {
+      call.positions = numbers_of(to_.places);
+      call.source_positions = numbers_of(from_.places);
+    }
+    const Context context = make_context();
+    const BakeOutcome outcome = call.run(context.get(), arguments_.new_mesh, {});
+    const std::uint64_t covered = outcome.texels, without_source = outcome.without_source;
     std::deque<AtomicFile> outputs;
-    for (const std::uint64_t page : pages) {
+    for (std::size_t i = 0; i < pages.size(); ++i) {
       throw_if_interrupted();
-      const Baked baked = bake_page(page);
-      covered += baked.covered;
-      without_source += baked.without_source;
       AtomicFile& file = outputs.emplace_back(
-          pages.back() > 0 ? path_of_page(arguments_.output, page) : arguments_.output);
-      file.write(png_bytes(side_, side_, components_, baked.image.values.data()));
+          pages.back() > 0 ? path_of_page(arguments_.output, pages[i]) : arguments_.output);
+      file.write(png_bytes(call.pages[i]));
       file.close();
     }
     require_sources(covered, without_source);
@@ -317,10 +313,10 @@ class Transfer {
     std::string summary =
         "pages      " + std::to_string(pages.size()) + " of " + std::to_string(side_) + " texels\n";
     if (repeats_) summary += "texture    repeats: UVs of OLD go beyond [0,1]^2\n";
-    if (surface_) {
+    if (elsewhere_) {
       summary += "faces      others than those of OLD: the nearest places of it are taken\n";
     }
-    if (without_source > 0 || surface_) {
+    if (without_source > 0 || elsewhere_) {
       summary += "no source  " + std::to_string(without_source) + " of " + std::to_string(covered) +
                  " texels, which nothing of OLD is near\n";
     }
@@ -343,11 +339,10 @@ class Transfer {
 
   const TransferArguments& arguments_;
   Textured from_, to_;
-  std::optional<NearestFace> surface_;  ///< of OLD, where NEW has other faces
-  std::size_t last_found_ = 0;          ///< neighbours are near one another
-  std::vector<Texture> textures_;
-  bool repeats_ = false;  ///< UVs of OLD go beyond the one texture
-  int side_ = 0, components_ = 0;
+  bool elsewhere_ = false;        ///< NEW has other faces than OLD: nearest places are read
+  std::vector<Pixels> textures_;  ///< of the pages of OLD; without pixels for those without faces
+  bool repeats_ = false;          ///< UVs of OLD go beyond the one texture
+  int side_ = 0;
 };
 
 }  // namespace

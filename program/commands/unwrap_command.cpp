@@ -14,6 +14,7 @@
 #include "commands/pages.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
+#include "commands/to_gltf.h"
 #include "files/atomic_file.h"
 #include "files/given_cuts.h"
 #include "files/gltf_file.h"
@@ -77,7 +78,11 @@ class Unwrapping {
  private:
   /// Everything about files that can be told before the work.
   void require_files() const {
-    require_output_format(arguments_.input, arguments_.output);
+    if (becomes_gltf()) {
+      require_no_numbers();
+    } else {
+      require_output_format(arguments_.input, arguments_.output);
+    }
     require_uv_set_of_gltf(arguments_.uv_set, arguments_.output);
     require_png_name(arguments_.picture);
     if (writes_gltf() && arguments_.triangulate) {
@@ -112,7 +117,24 @@ class Unwrapping {
     return options_.integer(BELTRAMI_OPTION_PACK) != BELTRAMI_PACK_NONE && arguments_.pins.empty();
   }
 
-  bool writes_gltf() const { return format_of(arguments_.output) == MeshFormat::kGltf; }
+  /// Vertices and faces have other numbers in glTF than in the file that is read.
+  void require_no_numbers() const {
+    for (const auto& [option, path] :
+         {std::pair("--seams", arguments_.seams), std::pair("--pins", arguments_.pins),
+          std::pair("--paint", arguments_.paint),
+          std::pair("--write-seams", arguments_.written_seams)}) {
+      if (path.empty()) continue;
+      throw Failure(
+          std::string(option) +
+          ": it goes by numbers of vertices of IN, and glTF has others: write .obj or .ply");
+    }
+  }
+
+  bool becomes_gltf() const {
+    return writes_gltf() && format_of(arguments_.input) != MeshFormat::kGltf;
+  }
+
+  bool writes_gltf() const { return is_gltf_name(arguments_.output); }
 
   void read() {
     bar_.show(0, "read");
@@ -120,6 +142,7 @@ class Unwrapping {
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
     file_ =
         read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface, arguments_.reach);
+    if (becomes_gltf()) file_ = as_gltf(file_, islands ? Content::kAll : Content::kSurface);
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
       for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {
@@ -262,8 +285,7 @@ class Unwrapping {
     StageClock clock(report_, "bake");
     bake_->place(triangles_);
     bake_->run(
-        static_cast<int>(options_.integer(BELTRAMI_OPTION_RESOLUTION)),
-        static_cast<int>(options_.integer(BELTRAMI_OPTION_THREADS)),
+        context_.get(), static_cast<int>(options_.integer(BELTRAMI_OPTION_RESOLUTION)),
         [this](double share) { bar_.show(share, "bake"); }, report_);
     clock.finish();
   }

@@ -185,6 +185,14 @@ std::string MaterialLibraries::slot(const Material& material, const Line& line) 
   return std::to_string(number) + " " + std::to_string(&line - material.lines.data());
 }
 
+std::string MaterialLibraries::value(std::uint64_t material, std::string_view keyword) const {
+  for (const Line& line : materials_[material].lines) {
+    std::string_view rest = line.text;
+    if (lower(take_word(rest)) == keyword) return std::string(rest);
+  }
+  return {};
+}
+
 std::vector<TextureUse> MaterialLibraries::textures() const {
   std::vector<TextureUse> uses;
   const std::vector<bool> used = materials_in_use();
@@ -195,6 +203,7 @@ std::vector<TextureUse> MaterialLibraries::textures() const {
       TextureUse use;
       use.name = line.keyword + " of material '" + one_line(material.name) + "'";
       use.stem = material.name + "_" + lower(line.keyword);
+      use.keyword = lower(line.keyword);
       use.material = i;
       use.image = line.name;
       use.transform = line.transform;

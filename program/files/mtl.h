@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/mesh_file.h"
@@ -17,6 +18,11 @@ class MaterialLibraries {
   /// where one cannot be read; else it is passed over. `file` must outlive the object.
   MaterialLibraries(const MeshFile& file, bool strict);
 
+  /// How many materials there are, used or not, and what they are called.
+  std::uint64_t count() const { return materials_.size(); }
+  const std::string& name(std::uint64_t material) const { return materials_[material].name; }
+  /// What follows a keyword, in small letters, where a material first has it; "" where it has not.
+  std::string value(std::uint64_t material, std::string_view keyword) const;
   /// Every texture that follows UVs, of the materials that faces have.
   std::vector<TextureUse> textures() const;
   /// Per face, whether it has this material.

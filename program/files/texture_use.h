@@ -31,6 +31,7 @@ enum class Meaning {
 struct TextureUse {
   std::string name;                ///< for people: "baseColorTexture of materials[2] 'wood'"
   std::string stem;                ///< for files: "wood_baseColor"
+  std::string keyword;             ///< of MTL, in small letters: "map_kd"
   std::uint64_t material = 0;      ///< by its number in the file that has it
   std::vector<std::string> slots;  ///< where the material names it: JSON pointers, or keywords
   std::string image;               ///< for people: "images[3] 'wood.jpg'"

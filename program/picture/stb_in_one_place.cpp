@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -110,20 +111,40 @@ void append_chunk(const char* type, const std::string& data, std::string& bytes)
 
 }  // namespace
 
-std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
+namespace {
+
+/// `pixels` are as PNG has them: those of 16 bits begin with the upper ones.
+std::string png_file(int width, int height, int components, std::size_t bytes,
+                     const std::uint8_t* pixels) {
   constexpr std::array<char, 5> kColourTypes = {0, 0, 4, 2, 6};
-  const auto step = static_cast<std::size_t>(components);
+  const std::size_t step = static_cast<std::size_t>(components) * bytes;
   const std::size_t size = static_cast<std::size_t>(width) * step;
   const std::string filtered = filtered_rows(size, static_cast<std::size_t>(height), step, pixels);
   std::string head;
   append_big(static_cast<std::uint32_t>(width), head);
   append_big(static_cast<std::uint32_t>(height), head);
-  head += {8, kColourTypes[step], 0, 0, 0};
-  std::string bytes = "\x89PNG\r\n\x1A\n";
-  append_chunk("IHDR", head, bytes);
-  append_chunk("IDAT", zlib_bytes(filtered), bytes);
-  append_chunk("IEND", "", bytes);
-  return bytes;
+  head +=
+      {static_cast<char>(8 * bytes), kColourTypes[static_cast<std::size_t>(components)], 0, 0, 0};
+  std::string file = "\x89PNG\r\n\x1A\n";
+  append_chunk("IHDR", head, file);
+  append_chunk("IDAT", zlib_bytes(filtered), file);
+  append_chunk("IEND", "", file);
+  return file;
+}
+
+}  // namespace
+
+std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
+  return png_file(width, height, components, 1, pixels);
+}
+
+std::string png_bytes(const Pixels& image) {
+  if (image.bytes == 1 || std::endian::native == std::endian::big) {
+    return png_file(image.width, image.height, image.components, image.bytes, image.values.data());
+  }
+  std::vector<std::uint8_t> swapped(image.values.size());
+  for (std::size_t i = 0; i < swapped.size(); ++i) swapped[i] = image.values[i ^ 1];
+  return png_file(image.width, image.height, image.components, image.bytes, swapped.data());
 }
 
 bool is_image(std::string_view bytes) {
@@ -139,13 +160,32 @@ bool is_image(std::string_view bytes) {
 std::optional<Pixels> read_image(std::string_view bytes) {
   if (!is_image(bytes)) return std::nullopt;
   Pixels image;
-  std::uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
-                                               static_cast<int>(bytes.size()), &image.width,
-                                               &image.height, &image.components, 0);
+  const auto* file = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  const auto size = static_cast<int>(bytes.size());
+  if (stbi_is_16_bit_from_memory(file, size) != 0) image.bytes = 2;
+  void* pixels =
+      image.bytes == 2
+          ? static_cast<void*>(stbi_load_16_from_memory(file, size, &image.width, &image.height,
+                                                        &image.components, 0))
+          : stbi_load_from_memory(file, size, &image.width, &image.height, &image.components, 0);
   if (pixels == nullptr) return std::nullopt;
-  const std::unique_ptr<std::uint8_t, void (*)(void*)> owner(pixels, &std::free);
-  image.values.assign(pixels, pixels + image.row_size() * static_cast<std::size_t>(image.height));
+  const std::unique_ptr<void, void (*)(void*)> owner(pixels, &std::free);
+  const auto* first = static_cast<const std::uint8_t*>(pixels);
+  image.values.assign(first, first + image.row_size() * static_cast<std::size_t>(image.height));
   return image;
+}
+
+bool shows_directions(const Pixels& image) {
+  if (image.components < 3) return false;
+  double red = 0, green = 0, blue = 0;
+  // Of 16 bits the upper ones will do, which come last.
+  const std::size_t bytes = image.bytes, texel = bytes * static_cast<std::size_t>(image.components);
+  for (std::size_t i = bytes - 1; i + 2 * bytes < image.values.size(); i += texel) {
+    red += image.values[i];
+    green += image.values[i + bytes];
+    blue += image.values[i + 2 * bytes];
+  }
+  return blue > 1.2 * red && blue > 1.2 * green;
 }
 
 std::vector<TextQuad> text_quads(const std::string& text) {

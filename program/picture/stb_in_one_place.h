@@ -10,23 +10,32 @@
 
 namespace beltrami::cli {
 
-/// Pixels of 1 to 4 components of a byte each, rows from the top.
+/// Pixels of 1 to 4 components of one byte or two each, in the order of the machine; rows from the
+/// top.
 struct Pixels {
   int width = 0, height = 0, components = 0;
   std::vector<std::uint8_t> values;
+  std::size_t bytes = 1;  ///< of a component
+  /// Bytes of a row.
   std::size_t row_size() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(components);
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(components) * bytes;
   }
 };
 
-/// The bytes of a PNG file of pixels with 1 to 4 components.
+/// The bytes of a PNG file, of as many bits as the pixels.
+std::string png_bytes(const Pixels& image);
+/// The same of pixels with 8 bits for each component.
 std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels);
 
-/// What a PNG or JPEG file shows, with 8 bits for each component; nothing where it is none.
+/// What a PNG or JPEG file shows, with 8 bits for each component, or 16 where a PNG has them;
+/// nothing where it is none.
 std::optional<Pixels> read_image(std::string_view bytes);
 
 /// Whether read_image may read this, by its first bytes.
 bool is_image(std::string_view bytes);
+
+/// Whether an image has the colours of a normal map: mostly blue, and not grey.
+bool shows_directions(const Pixels& image);
 
 /// Rectangles that make up a line of ASCII text, y down; a line is about 10 units high.
 struct TextQuad {

@@ -35,6 +35,8 @@ BELTRAMI_FIRST_SIZE(beltrami_chart, box);
 BELTRAMI_FIRST_SIZE(beltrami_atlas_certificate, reserved);
 BELTRAMI_FIRST_SIZE(beltrami_uv_mesh, cancel);
 BELTRAMI_FIRST_SIZE(beltrami_packing, cpu_seconds);
+BELTRAMI_FIRST_SIZE(beltrami_bake_job, cancel);
+BELTRAMI_FIRST_SIZE(beltrami_baked, cpu_seconds);
 #undef BELTRAMI_FIRST_SIZE
 
 /// The struct_size of the caller's struct; throws Error INVALID_ARGUMENT if it is null or too

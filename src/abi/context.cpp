@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "abi/bake_job.h"
 #include "abi/buffers.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"
+#include "base/resources.h"
 #include "base/work.h"
 #include "chart/memory_estimate.h"
 #include "mesh/rest_shape.h"
@@ -176,6 +178,27 @@ beltrami_status beltrami_context::pack(const beltrami_uv_mesh* const* meshes,
   packed = std::move(result);
   last_packer = Packer::kPack;
   return beltrami::status_of(packed->result.outcome);
+}
+
+beltrami_status beltrami_context::bake(const beltrami_bake_job* job, beltrami_baked* out,
+                                       beltrami_progress progress, void* user) {
+  const double wall = beltrami::wall_seconds(), cpu = beltrami::cpu_seconds();
+  const beltrami_bake_job header = beltrami::read_bake_header(job);
+  const beltrami::BakeRoom room = beltrami::room_of(header, out);
+  beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
+  beltrami::HostProgress host(progress, user);
+  const beltrami::Work work =
+      beltrami::Work(beltrami::limits(options), host.watched()).named("bake");
+  const beltrami::BakeProblem problem = beltrami::read_bake_problem(header, work);
+  const beltrami::BakeReport report = beltrami::bake(problem, room.pages, room.masks, work);
+  if (mark.take_request() || host.cancelled()) {
+    throw beltrami::Cancelled();
+  }
+  beltrami::write_baked(report, beltrami::wall_seconds() - wall, beltrami::cpu_seconds() - cpu,
+                        out);
+  beltrami::require_sources(report);
+  return BELTRAMI_OK;
 }
 
 const beltrami::PackedMeshes& beltrami_context::packing() const {

@@ -64,6 +64,10 @@ struct beltrami_context {
   beltrami_status pack(const beltrami_uv_mesh* const* meshes, std::uint64_t mesh_count,
                        beltrami_progress progress, void* user);
 
+  /// Bakes images. Throws Error INVALID_ARGUMENT, EMPTY, NON_FINITE or OUT_OF_MEMORY, or Cancelled.
+  beltrami_status bake(const beltrami_bake_job* job, beltrami_baked* out,
+                       beltrami_progress progress, void* user);
+
   /// The results. Throws Error INVALID_STATE where there are none.
   const beltrami::Flattening& results() const;
   const beltrami::Unwrapped& atlas() const;

@@ -112,7 +112,7 @@ const OptionEntry kOptions[] = {
         .maximum = 1024,
         .get = get<&Options::threads>,
         .set = set<&Options::threads>,
-        .calls = kEveryCall,
+        .calls = kEveryCall | BELTRAMI_CALL_BAKE,
     },
     {
         .key = BELTRAMI_OPTION_UNIT_SQUARE,

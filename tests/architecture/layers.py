@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable
 LIBRARY = [
     {"base"},
     {"mesh", "exact"},
-    {"admit", "energy", "linear", "pack", "prolong", "ring", "simplify"},
+    {"admit", "bake", "energy", "linear", "pack", "prolong", "ring", "simplify"},
     {"descend"},
     {"flatten", "repair"},
     {"chart"},

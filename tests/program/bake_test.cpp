@@ -12,14 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "commands/bake_call.h"
+#include "commands/command.h"
 #include "files/mesh_file.h"
 #include "files/texture_use.h"
 #include "gltf_builder.h"
 #include "gltf_parts.h"
-#include "picture/axes_turn.h"
-#include "picture/resample.h"
 #include "picture/stb_in_one_place.h"
-#include "picture/texture.h"
 #include "process/failure.h"
 #include "run_program.h"
 #include "temporary_directory.h"
@@ -272,26 +271,15 @@ TEST(Bake, MirroredHalvesKeepTheirNormals) {
 
 TEST(Bake, ANormalMapTurnsWithItsChart) {
   // The new axis of u is the old one of v: what tilted along the old u tilts along -v now.
-  const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  const std::vector<double> old_uvs = {0, 0, 1, 0, 0, 1}, new_uvs = {0, 1, 0, 0, 1, 1};
-  const std::vector<AxesTurn> turns = axes_turns({positions, {}, {}, old_uvs, new_uvs});
-  ASSERT_EQ(turns.size(), 1u);
-  for (const auto& [cosine, sine] : turns[0].corners) {
-    EXPECT_NEAR(cosine, 0, 1e-12);
-    EXPECT_NEAR(sine, -1, 1e-12);
-  }
-  const std::vector<BakedTriangle> triangles = {{{{0, 16}, {0, 0}, {16, 16}}}};
-  const std::vector<SourceTriangle> sources = {{0, {{{0, 0}, {1, 0}, {0, 1}}}}};
-  Pixels image{1, 1, 3, {200, 128, 220}};
-  std::array<Texture, 1> pages = {Texture(image, Meaning::kDirections)};
-  BakeJob job;
-  job.triangles = triangles;
-  job.sources = sources;
-  job.turns = turns;
-  job.pages = pages;
-  job.side = 16;
-  const Baked baked = bake(job);
-  const std::uint8_t* texel = &baked.image.values[3 * (16 * 4 + 2)];
+  BakeCall call;
+  call.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  call.old_uvs = {0, 0, 1, 0, 0, 1};
+  call.new_uvs = {0, 1, 0, 0, 1, 1};
+  call.images = {Pixels{1, 1, 3, {200, 128, 220}}};
+  call.meaning = Meaning::kDirections;
+  call.side = 16;
+  EXPECT_EQ(call.run(make_context().get(), "a", {}).without_source, 0u);
+  const std::uint8_t* texel = &call.pages.front().values[3 * (16 * 4 + 2)];
   EXPECT_NEAR(texel[0], 128, 1);
   EXPECT_NEAR(texel[1], 55, 1);
   EXPECT_EQ(texel[2], 220);
@@ -299,23 +287,16 @@ TEST(Bake, ANormalMapTurnsWithItsChart) {
 
 /// A page of side 4 from a page of side 16 of stripes, one of 0 and one of 255 in turn.
 std::uint8_t mean_of_stripes(Meaning meaning) {
-  Pixels stripes{16, 16, 1, {}};
-  for (int i = 0; i < 256; ++i) stripes.values.push_back(i % 2 == 0 ? 0 : 255);
-  std::array<Texture, 1> pages = {Texture(stripes, meaning)};
-  const std::vector<BakedTriangle> triangles = {{{{0, 0}, {4, 0}, {4, 4}}},
-                                                {{{0, 0}, {4, 4}, {0, 4}}}};
-  const std::vector<SourceTriangle> sources = {{0, {{{0, 0}, {1, 0}, {1, 1}}}},
-                                               {0, {{{0, 0}, {1, 1}, {0, 1}}}}};
-  BakeJob job;
-  job.triangles = triangles;
-  job.sources = sources;
-  job.pages = pages;
-  job.side = 4;
-  const Baked baked = bake(job);
-  EXPECT_EQ(baked.covered, 16u);
-  EXPECT_EQ(std::count(baked.image.values.begin(), baked.image.values.end(), baked.image.values[5]),
-            16);
-  return baked.image.values[5];
+  BakeCall call;
+  call.images = {Pixels{16, 16, 1, {}}};
+  for (int i = 0; i < 256; ++i) call.images[0].values.push_back(i % 2 == 0 ? 0 : 255);
+  call.meaning = meaning;
+  call.old_uvs = call.new_uvs = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1};
+  call.side = 4;
+  EXPECT_EQ(call.run(make_context().get(), "a", {}).texels, 16u);
+  const std::vector<std::uint8_t>& values = call.pages.front().values;
+  EXPECT_EQ(std::count(values.begin(), values.end(), values[5]), 16);
+  return values[5];
 }
 
 TEST(Bake, ManyTexelsInOneAreTheirMeanInLightOrInNumbers) {
@@ -325,13 +306,23 @@ TEST(Bake, ManyTexelsInOneAreTheirMeanInLightOrInNumbers) {
 
 TEST(Bake, WhatIsTransparentLendsNoColour) {
   // Texels of red that is seen, and of green that is not.
-  Pixels image{2, 1, 4, {255, 0, 0, 255, 0, 255, 0, 0}};
-  const Texture texture(image, Meaning::kTransparent);
-  Sums sums{};
-  texture.add(0.5, 0.5, {Beyond::kClamp, Beyond::kClamp}, 0, sums);
-  std::array<std::uint8_t, 4> texel{};
-  texture.finish(sums, 1, texel.data());
-  EXPECT_EQ(texel, (std::array<std::uint8_t, 4>{255, 0, 0, 128}));
+  BakeCall call;
+  call.images = {Pixels{2, 1, 4, {255, 0, 0, 255, 0, 255, 0, 0}}};
+  call.meaning = Meaning::kTransparent;
+  call.old_uvs = call.new_uvs = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1};
+  call.side = 1;
+  call.run(make_context().get(), "a", {});
+  EXPECT_EQ(call.pages.front().values, (std::vector<std::uint8_t>{255, 0, 0, 128}));
+}
+
+TEST(Bake, PicturesOf16BitsKeepThem) {
+  Pixels image{5, 3, 2, {}};
+  image.bytes = 2;
+  for (int i = 0; i < 60; ++i) image.values.push_back(static_cast<std::uint8_t>(37 * i));
+  const std::optional<Pixels> back = read_image(png_bytes(image));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->bytes, 2u);
+  EXPECT_EQ(back->values, image.values);
 }
 
 TEST(Bake, PicturesComeBackFromTheirFiles) {
@@ -409,6 +400,36 @@ TEST(Bake, TheFilesOfAGltfLieBesideIt) {
   EXPECT_EQ(json["images"][0]["uri"], "o____a_b_baseColor.png");
   const std::string again = directory.path("again.gltf");
   EXPECT_EQ(run({"unwrap", out, again, "--bake", "--resolution", "64"}).exit_code, 0);
+}
+
+TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl",
+                 "newmtl wood\nKd 0.8 0.2 0.1\nPr 0.5\nmap_Kd wood.png\n"
+                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Pr wood.png\n");
+  directory.file("wood.png", png_of(16, smooth));
+  const std::string in =
+      directory.file("a.obj",
+                     "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\n"
+                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n"
+                     "usemtl glass\nf 2/1 5/2 6/3 3/4\n");
+  const Outcome outcome =
+      run({"unwrap", in, directory.path("out.glb"), "--bake", "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("map_Pr of material 'glass'"), std::string::npos) << outcome.err;
+  const Parts parts(directory.read("out.glb"));
+  ASSERT_EQ(parts.json["materials"].size(), 2u);
+  const Json& wood = parts.json["materials"][0]["pbrMetallicRoughness"];
+  EXPECT_EQ(wood["baseColorFactor"], Json({1.0, 1.0, 1.0, 1.0}));
+  EXPECT_EQ(wood["roughnessFactor"], 0.5);
+  EXPECT_TRUE(wood.contains("baseColorTexture"));
+  const Json& glass = parts.json["materials"][1];
+  EXPECT_EQ(glass["alphaMode"], "BLEND");
+  EXPECT_EQ(glass["pbrMetallicRoughness"]["baseColorFactor"], Json({0.0, 0.0, 1.0, 0.25}));
+  EXPECT_EQ(parts.json["meshes"][0]["primitives"].size(), 2u);
+  EXPECT_NE(run({"unwrap", in, directory.path("o.glb"), "--write-seams", directory.path("s.txt")})
+                .err.find("--write-seams"),
+            std::string::npos);
 }
 
 TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {

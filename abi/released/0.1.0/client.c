@@ -289,6 +289,38 @@ static void unwrap(beltrami_context* context) {
   REQUIRE(pairs[0] == BELTRAMI_NO_ELEMENT && pairs[2] == 7);
 }
 
+static void bake(beltrami_context* context) {
+  GUARDED(beltrami_baked) baked;
+  static const double uvs[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+  static const uint8_t pixels[4] = {1, 2, 3, 4};
+  uint8_t room[5] = {0, 0, 0, 0, 7};
+  beltrami_image image;
+  beltrami_bake_job job;
+  int calls = 0;
+  memset(&image, 0, sizeof image);
+  image.pixels = pixels;
+  image.width = image.height = 2;
+  image.type = BELTRAMI_U8;
+  image.channels = 1;
+  memset(&job, 0, sizeof job);
+  job.struct_size = sizeof job;
+  job.images = &image;
+  job.image_count = 1;
+  job.face_count = 2;
+  job.new_uvs.data = job.old_uvs.data = uvs;
+  job.new_uvs.type = job.old_uvs.type = BELTRAMI_F64;
+  job.resolution = 2;
+  job.page_count = 1;
+  ARM(baked);
+  baked.value.pixels = room;
+  baked.value.stride = 0;
+  baked.value.masks = NULL;
+  REQUIRE(beltrami_bake(context, &job, &baked.value, count_calls, &calls) == BELTRAMI_OK);
+  ALIVE(baked);
+  REQUIRE(baked.value.texels == 4 && baked.value.without_source == 0 && calls > 0);
+  REQUIRE(memcmp(room, pixels, 4) == 0 && room[4] == 7);
+}
+
 static void pack(beltrami_context* context) {
   GUARDED(beltrami_packing) packing;
   GUARDED(beltrami_atlas_certificate) certificate;
@@ -349,6 +381,7 @@ int main(void) {
   read_results(context);
   unwrap(context);
   pack(context);
+  bake(context);
   beltrami_destroy(context);
   check_without_a_context();
   return EXIT_SUCCESS;

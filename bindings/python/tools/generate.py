@@ -162,7 +162,7 @@ class _OptionInfo(ctypes.Structure):
 
 ABI = 1  # BELTRAMI_ABI
 INT, FLOAT, CHOICE = range(3)  # BELTRAMI_TYPE_
-RUN, UNWRAP, PACK = 1, 2, 4  # BELTRAMI_CALL_
+RUN, UNWRAP, PACK, BAKE = 1, 2, 4, 8  # BELTRAMI_CALL_
 
 
 def read_options(library: Path) -> Iterator[Option]:
@@ -381,7 +381,7 @@ def with_options(source: str, of_all_calls: list[Option]) -> str:
     A module has the options of one call: with ``# call: unwrap`` of that, else of a run.
     """
     marked = re.search(r"^# call: (\w+)$", source, re.MULTILINE)
-    call = {"unwrap": UNWRAP, "pack": PACK}[marked[1]] if marked else RUN
+    call = {"unwrap": UNWRAP, "pack": PACK, "bake": BAKE}[marked[1]] if marked else RUN
     options = [option for option in of_all_calls if option.calls & call]
     inside: dict[str, Callable[[Option], str]] = {
         "parameters": lambda option: option.annotated,

@@ -3,6 +3,7 @@
 #define BELTRAMI_CPP_CONTEXT_HPP
 
 #include <beltrami/beltrami.h>
+#include <beltrami/cpp/bake.hpp>
 #include <beltrami/cpp/config.hpp>
 #include <beltrami/cpp/handle.hpp>
 #include <beltrami/cpp/options.hpp>
@@ -13,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -149,6 +151,29 @@ class Context {
     return try_pack(&mesh, 1, progress);
   }
 
+  /// Reads images through old UVs and writes them for new ones: beltrami_bake, which says what the
+  /// fields of `job` mean; its size is set here. `Number` is that of the images' type:
+  /// std::uint8_t, std::uint16_t or float.
+  template <class Number>
+  Result<Baked<Number>> try_bake(beltrami_bake_job job, Progress progress = {}) {
+    const std::shared_ptr<detail::Handle> handle = handle_;
+    if (!handle) return moved_from();
+    job.struct_size = sizeof job;
+    Baked<Number> baked;
+    if (const std::optional<Failure> refused = detail::make_room(job, baked)) return *refused;
+    auto out = detail::sized<beltrami_baked>();
+    out.pixels = baked.pixels.data();
+    out.masks = baked.masks.data();
+    const beltrami_status status =
+        beltrami_bake(handle->context, &job, &out, progress.function(), progress.user());
+    progress.rethrow();
+    if (status < 0) return handle->failure(status);
+    baked.texels = out.texels;
+    baked.without_source = out.without_source;
+    baked.old_texels = out.old_texels;
+    return baked;
+  }
+
   /// Copies the disk, and estimates how many bytes flattening it will take at its peak:
   /// beltrami_estimate_memory. Results of flattening end with it.
   Result<std::uint64_t> try_estimate_memory(const Surface& disk) {
@@ -208,6 +233,10 @@ class Context {
   }
   Packing pack(const UvMesh& mesh, Progress progress = {}) {
     return try_pack(mesh, std::move(progress)).value();
+  }
+  template <class Number>
+  Baked<Number> bake(const beltrami_bake_job& job, Progress progress = {}) {
+    return try_bake<Number>(job, std::move(progress)).value();
   }
   std::uint64_t estimate_memory(const Surface& disk) {
     return try_estimate_memory(disk).value();

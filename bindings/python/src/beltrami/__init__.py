@@ -18,6 +18,7 @@ that are no disk are cut into charts: every corner of every face gets a UV.
 from . import _library, plot, xatlas
 from ._atlas import Atlas, SceneAtlases
 from ._atlas_checks import AtlasCheck, Triangulation, check_atlas, triangulate
+from ._bake import Baked, bake
 from ._batch import batch
 from ._checks import Distortion, check_boundary, check_injective, check_triangles, distortion
 from ._errors import (
@@ -64,6 +65,7 @@ __all__ = [
     "AtlasCertificate",
     "AtlasCheck",
     "AtlasReport",
+    "Baked",
     "BatchRecord",
     "BeltramiError",
     "Cancelled",
@@ -96,6 +98,7 @@ __all__ = [
     "UnsupportedError",
     "UnwrapOptions",
     "UvMesh",
+    "bake",
     "batch",
     "build_info",
     "check_atlas",

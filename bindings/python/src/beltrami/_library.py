@@ -59,6 +59,7 @@ _KINDS = {
 }
 #: What takes an option.
 RUN, UNWRAP, PACK = lib.BELTRAMI_CALL_RUN, lib.BELTRAMI_CALL_UNWRAP, lib.BELTRAMI_CALL_PACK
+BAKE = lib.BELTRAMI_CALL_BAKE
 
 
 def text(chars: Any) -> str:

@@ -348,6 +348,8 @@ pub const BELTRAMI_CALL_RUN: _bindgen_ty_16 = 1;
 pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_16 = 2;
 /// beltrami_pack
 pub const BELTRAMI_CALL_PACK: _bindgen_ty_16 = 4;
+/// beltrami_bake
+pub const BELTRAMI_CALL_BAKE: _bindgen_ty_16 = 8;
 /// What an option is for.
 pub type _bindgen_ty_16 = ::core::ffi::c_int;
 #[repr(C)]
@@ -474,6 +476,9 @@ pub const BELTRAMI_F32: _bindgen_ty_17 = 0;
 pub const BELTRAMI_F64: _bindgen_ty_17 = 1;
 pub const BELTRAMI_U32: _bindgen_ty_17 = 2;
 pub const BELTRAMI_U64: _bindgen_ty_17 = 3;
+/// of pixels alone, as is the next
+pub const BELTRAMI_U8: _bindgen_ty_17 = 4;
+pub const BELTRAMI_U16: _bindgen_ty_17 = 5;
 /// Element types of buffers.
 pub type _bindgen_ty_17 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
@@ -1963,6 +1968,316 @@ extern "C" {
         out: *mut ::core::ffi::c_void,
         type_: i32,
         stride: u64,
+    ) -> beltrami_status;
+}
+pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_19 = -1;
+pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_19 = 0;
+/// its outermost texels
+pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_19 = 1;
+/// itself, mirrored at every other time
+pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_19 = 2;
+/// What an image shows beyond [0,1]^2.
+pub type _bindgen_ty_19 = ::core::ffi::c_int;
+pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_20 = -1;
+/// between texels; a mean where many are shown by one
+pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_20 = 0;
+/// each place shows its texel; means of 4 x 4 places in a new one
+pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_20 = 1;
+/// How texels are read.
+pub type _bindgen_ty_20 = ::core::ffi::c_int;
+pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+/// as they are: roughness, heights, linear light
+pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_21 = 0;
+/// colours, in linear light; a second or fourth channel is linear
+pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_21 = 1;
+/// the same, and a colour counts by that channel, its alpha
+pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_21 = 2;
+/** of tangent space, with 3 or 4 channels: x and y of normals,
+ 0 at the middle of the type's range (F32: 0.5), are turned from
+ the axes of the old UVs to those of the new ones*/
+pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_21 = 3;
+/// What the channels of an image are, which says how a mean of them is taken.
+pub type _bindgen_ty_21 = ::core::ffi::c_int;
+/** An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
+ F32 as it is.*/
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_image {
+    pub pixels: *const ::core::ffi::c_void,
+    /// 1 to 65536
+    pub width: u64,
+    pub height: u64,
+    /// bytes from one row to the next (0: packed)
+    pub stride: u64,
+    /// BELTRAMI_U8, BELTRAMI_U16 or BELTRAMI_F32
+    pub type_: i32,
+    /// 1 to 4
+    pub channels: u32,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_image"][::core::mem::size_of::<beltrami_image>() - 40usize];
+    ["Alignment of beltrami_image"][::core::mem::align_of::<beltrami_image>() - 8usize];
+    [
+        "Offset of field: beltrami_image::pixels",
+    ][::core::mem::offset_of!(beltrami_image, pixels) - 0usize];
+    [
+        "Offset of field: beltrami_image::width",
+    ][::core::mem::offset_of!(beltrami_image, width) - 8usize];
+    [
+        "Offset of field: beltrami_image::height",
+    ][::core::mem::offset_of!(beltrami_image, height) - 16usize];
+    [
+        "Offset of field: beltrami_image::stride",
+    ][::core::mem::offset_of!(beltrami_image, stride) - 24usize];
+    [
+        "Offset of field: beltrami_image::type_",
+    ][::core::mem::offset_of!(beltrami_image, type_) - 32usize];
+    [
+        "Offset of field: beltrami_image::channels",
+    ][::core::mem::offset_of!(beltrami_image, channels) - 36usize];
+};
+impl Default for beltrami_image {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+/** Triangles with two layouts of UVs, and the images of the old one. A corner is one of 3 of each
+ face, one after another. Buffers said to be optional are left out by data NULL.*/
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_bake_job {
+    pub struct_size: u32,
+    /// 0
+    pub flags: u32,
+    /// one for each old page, of one type and as many channels
+    pub images: *const beltrami_image,
+    pub image_count: u64,
+    /// BELTRAMI_PIXELS_
+    pub pixels: i32,
+    /// BELTRAMI_FILTER_
+    pub filter: i32,
+    /// BELTRAMI_WRAP_
+    pub wrap_u: i32,
+    pub wrap_v: i32,
+    /// at most 700,000,000
+    pub face_count: u64,
+    /** an item of 2 per corner, F32 or F64, on the page of the face:
+ [0,1]^2*/
+    pub new_uvs: beltrami_buffer,
+    /** optional: face_count items of 1, U32 or U64, counted from 0; all
+ bits set: the face is on none. Left out: all are on page 0*/
+    pub new_pages: beltrami_buffer,
+    /** an item of 2 per corner, F32 or F64, in units of the image of the
+ page. A face with one that is not finite has no source*/
+    pub old_uvs: beltrami_buffer,
+    /// optional: as new_pages, of images; all bits set: no source
+    pub old_pages: beltrami_buffer,
+    /** an item of 3 per corner, F32 or F64; optional but for NORMALS
+ and with source_positions*/
+    pub positions: beltrami_buffer,
+    /** optional, for NORMALS: an item of 3 per corner, F32 or F64; NaN
+ or left out: that of the face*/
+    pub normals: beltrami_buffer,
+    /** optional, for NORMALS: an item of 4 per corner, F32 or F64: the
+ axis of the old u, and -1 where UVs are mirrored, else 1. Left
+ out: as MikkTSpace has them*/
+    pub tangents: beltrami_buffer,
+    /// with source_positions
+    pub source_face_count: u64,
+    /** optional: an item of 3 per corner of another surface of the
+ same shape in the same place, F32 or F64. old_uvs and
+ old_pages are then of its source_face_count faces, and each
+ texel shows the nearest place of it, of a face that looks the
+ same way. Not for NORMALS*/
+    pub source_positions: beltrami_buffer,
+    /// texels to the side of a new page, 1 to 32768
+    pub resolution: u64,
+    /** texels around charts that continue them; all bits set: the whole
+ page*/
+    pub gutter: u64,
+    /// new pages, 1 to 1000
+    pub page_count: u64,
+    /// as in beltrami_mesh
+    pub cancel: *const i32,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    [
+        "Size of beltrami_bake_job",
+    ][::core::mem::size_of::<beltrami_bake_job>() - 280usize];
+    [
+        "Alignment of beltrami_bake_job",
+    ][::core::mem::align_of::<beltrami_bake_job>() - 8usize];
+    [
+        "Offset of field: beltrami_bake_job::struct_size",
+    ][::core::mem::offset_of!(beltrami_bake_job, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_bake_job::flags",
+    ][::core::mem::offset_of!(beltrami_bake_job, flags) - 4usize];
+    [
+        "Offset of field: beltrami_bake_job::images",
+    ][::core::mem::offset_of!(beltrami_bake_job, images) - 8usize];
+    [
+        "Offset of field: beltrami_bake_job::image_count",
+    ][::core::mem::offset_of!(beltrami_bake_job, image_count) - 16usize];
+    [
+        "Offset of field: beltrami_bake_job::pixels",
+    ][::core::mem::offset_of!(beltrami_bake_job, pixels) - 24usize];
+    [
+        "Offset of field: beltrami_bake_job::filter",
+    ][::core::mem::offset_of!(beltrami_bake_job, filter) - 28usize];
+    [
+        "Offset of field: beltrami_bake_job::wrap_u",
+    ][::core::mem::offset_of!(beltrami_bake_job, wrap_u) - 32usize];
+    [
+        "Offset of field: beltrami_bake_job::wrap_v",
+    ][::core::mem::offset_of!(beltrami_bake_job, wrap_v) - 36usize];
+    [
+        "Offset of field: beltrami_bake_job::face_count",
+    ][::core::mem::offset_of!(beltrami_bake_job, face_count) - 40usize];
+    [
+        "Offset of field: beltrami_bake_job::new_uvs",
+    ][::core::mem::offset_of!(beltrami_bake_job, new_uvs) - 48usize];
+    [
+        "Offset of field: beltrami_bake_job::new_pages",
+    ][::core::mem::offset_of!(beltrami_bake_job, new_pages) - 72usize];
+    [
+        "Offset of field: beltrami_bake_job::old_uvs",
+    ][::core::mem::offset_of!(beltrami_bake_job, old_uvs) - 96usize];
+    [
+        "Offset of field: beltrami_bake_job::old_pages",
+    ][::core::mem::offset_of!(beltrami_bake_job, old_pages) - 120usize];
+    [
+        "Offset of field: beltrami_bake_job::positions",
+    ][::core::mem::offset_of!(beltrami_bake_job, positions) - 144usize];
+    [
+        "Offset of field: beltrami_bake_job::normals",
+    ][::core::mem::offset_of!(beltrami_bake_job, normals) - 168usize];
+    [
+        "Offset of field: beltrami_bake_job::tangents",
+    ][::core::mem::offset_of!(beltrami_bake_job, tangents) - 192usize];
+    [
+        "Offset of field: beltrami_bake_job::source_face_count",
+    ][::core::mem::offset_of!(beltrami_bake_job, source_face_count) - 216usize];
+    [
+        "Offset of field: beltrami_bake_job::source_positions",
+    ][::core::mem::offset_of!(beltrami_bake_job, source_positions) - 224usize];
+    [
+        "Offset of field: beltrami_bake_job::resolution",
+    ][::core::mem::offset_of!(beltrami_bake_job, resolution) - 248usize];
+    [
+        "Offset of field: beltrami_bake_job::gutter",
+    ][::core::mem::offset_of!(beltrami_bake_job, gutter) - 256usize];
+    [
+        "Offset of field: beltrami_bake_job::page_count",
+    ][::core::mem::offset_of!(beltrami_bake_job, page_count) - 264usize];
+    [
+        "Offset of field: beltrami_bake_job::cancel",
+    ][::core::mem::offset_of!(beltrami_bake_job, cancel) - 272usize];
+};
+impl Default for beltrami_bake_job {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+/// Room for what is baked, and what is told of it.
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_baked {
+    pub struct_size: u32,
+    /// 0
+    pub reserved: u32,
+    /** given: room for page_count pages of resolution rows from the top, one
+ page after another, of the images' type and channels; 0 where nothing
+ is baked*/
+    pub pixels: *mut ::core::ffi::c_void,
+    /// given: bytes from one row to the next (0: packed)
+    pub stride: u64,
+    /** given: NULL, or room for a byte per texel of each page, a
+ BELTRAMI_TEXEL_ number*/
+    pub masks: *mut u8,
+    /// that a face covers, at least in part
+    pub texels: u64,
+    /// of these: nothing was baked there
+    pub without_source: u64,
+    /** of the images along the side of a new texel, in the mean: above 1 is
+ coarser than before; 0 with source_positions*/
+    pub old_texels: f64,
+    /// wall time of the call
+    pub seconds: f64,
+    /// of the whole process during the call
+    pub cpu_seconds: f64,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_baked"][::core::mem::size_of::<beltrami_baked>() - 72usize];
+    ["Alignment of beltrami_baked"][::core::mem::align_of::<beltrami_baked>() - 8usize];
+    [
+        "Offset of field: beltrami_baked::struct_size",
+    ][::core::mem::offset_of!(beltrami_baked, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_baked::reserved",
+    ][::core::mem::offset_of!(beltrami_baked, reserved) - 4usize];
+    [
+        "Offset of field: beltrami_baked::pixels",
+    ][::core::mem::offset_of!(beltrami_baked, pixels) - 8usize];
+    [
+        "Offset of field: beltrami_baked::stride",
+    ][::core::mem::offset_of!(beltrami_baked, stride) - 16usize];
+    [
+        "Offset of field: beltrami_baked::masks",
+    ][::core::mem::offset_of!(beltrami_baked, masks) - 24usize];
+    [
+        "Offset of field: beltrami_baked::texels",
+    ][::core::mem::offset_of!(beltrami_baked, texels) - 32usize];
+    [
+        "Offset of field: beltrami_baked::without_source",
+    ][::core::mem::offset_of!(beltrami_baked, without_source) - 40usize];
+    [
+        "Offset of field: beltrami_baked::old_texels",
+    ][::core::mem::offset_of!(beltrami_baked, old_texels) - 48usize];
+    [
+        "Offset of field: beltrami_baked::seconds",
+    ][::core::mem::offset_of!(beltrami_baked, seconds) - 56usize];
+    [
+        "Offset of field: beltrami_baked::cpu_seconds",
+    ][::core::mem::offset_of!(beltrami_baked, cpu_seconds) - 64usize];
+};
+impl Default for beltrami_baked {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+extern "C" {
+    /** Reads images through the old UVs of faces, and writes them for the new ones: one bilinear reading
+ where densities agree, else the mean of up to 4 x 4 places of a texel, of a smaller image where
+ these are too few. Where faces overlap the first is shown. It takes the option threads, on which
+ the bits do not depend; the context's mesh and results stay. Returns OK, or errors:
+ INVALID_ARGUMENT, also where most texels have no source (`out` has all numbers then, and the
+ pixels), EMPTY (no faces), NON_FINITE (corner: a new UV or a position), CANCELLED, OUT_OF_MEMORY,
+ INVALID_STATE (during a run). After an error pixels and masks hold anything.*/
+    pub fn beltrami_bake(
+        context: *mut beltrami_context,
+        job: *const beltrami_bake_job,
+        out: *mut beltrami_baked,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
     ) -> beltrami_status;
 }
 extern "C" {

@@ -3,6 +3,7 @@
 mod atlas;
 mod atlas_check;
 mod atlas_report;
+mod bake;
 mod check;
 mod context;
 mod control;
@@ -28,6 +29,7 @@ pub use atlas_check::{
     check_atlas, check_atlas_with, triangulate, AtlasCheck, AtlasRules, Triangulation,
 };
 pub use atlas_report::{AtlasCertificate, AtlasSummary, Chart};
+pub use bake::{Bake, Baked, Filter, Image, Pixel, PixelKind, Wrap};
 pub use check::{
     check_boundary, check_boundary_with, check_injective, check_injective_with, check_triangles,
     check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,

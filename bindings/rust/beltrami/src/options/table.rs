@@ -254,7 +254,7 @@ options! {
     /// Default: 1.
     threads(u32) of [Options UnwrapOptions PackOptions] = 5 "threads"
         "Threads to use, the calling one included; the result does not depend on it."
-        Int(&[]), 1..=1024, default 1, calls 7;
+        Int(&[]), 1..=1024, default 1, calls 15;
 
     /// `true` scales and shifts the UVs into the unit square, where those of pages are in any case;
     /// `false` keeps them in the mesh's unit of length.

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace beltrami::cli {
+namespace beltrami {
 
 /// A point or a direction in space.
 using Place = std::array<double, 3>;
@@ -59,4 +59,4 @@ class NearestFace {
   double size_ = 0;
 };
 
-}  // namespace beltrami::cli
+}  // namespace beltrami

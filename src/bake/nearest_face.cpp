@@ -1,13 +1,13 @@
-#include "picture/nearest_face.h"
+#include "bake/nearest_face.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "process/interrupt.h"
+#include "base/interrupt.h"
 
-namespace beltrami::cli {
+namespace beltrami {
 namespace {
 
 constexpr std::size_t kFacesOfLeaf = 4;
@@ -121,7 +121,7 @@ void NearestFace::build(std::size_t node, std::size_t begin, std::size_t end,
     nodes_[node].count = static_cast<std::uint32_t>(end - begin);
     return;
   }
-  throw_if_interrupted();
+  poll_interrupt();
   const Place extents = minus(last, first);
   const auto axis =
       static_cast<std::size_t>(std::max_element(extents.begin(), extents.end()) - extents.begin());
@@ -185,4 +185,4 @@ std::optional<OnFace> NearestFace::find(const Place& point, const Place& normal,
   return best.place;
 }
 
-}  // namespace beltrami::cli
+}  // namespace beltrami

@@ -4,11 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "picture/resample.h"
+#include "bake/page.h"
+#include "base/work.h"
 
-namespace beltrami::cli {
+namespace beltrami {
 
-/// Corners of triangles, three for each, in the winding of the file.
+/// Corners of triangles, three for each, in the winding of the mesh.
 struct AxesOfCorners {
   std::span<const double> positions;  ///< x y z
   std::span<const double> normals;    ///< x y z; NaN for that of the triangle; or empty
@@ -19,6 +20,6 @@ struct AxesOfCorners {
 /// The turn of each triangle. The axis of u at a corner is the mean over the triangles that meet
 /// there with one normal and one UV, by their angles, as MikkTSpace has it, which glTF asks viewers
 /// for; so is the side, by the orientation of the UVs. Corners without such an axis do not turn.
-std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners);
+std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners, const Work& work);
 
-}  // namespace beltrami::cli
+}  // namespace beltrami

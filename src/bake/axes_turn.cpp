@@ -1,18 +1,22 @@
-#include "picture/axes_turn.h"
+#include "bake/axes_turn.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 
-#include "files/point_numbers.h"
-#include "process/interrupt.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
+#include "base/portable_math.h"
 
-namespace beltrami::cli {
+namespace beltrami {
 namespace {
 
 using Vector = std::array<double, 3>;
+
+constexpr std::int64_t kTriangles = 4096;  ///< that a thread takes at once
 
 Vector vector_at(std::span<const double> values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
@@ -75,31 +79,62 @@ double angle_at(std::span<const double> positions, std::size_t corner) {
   const Vector p = vector_at(positions, corner);
   const Vector a = unit(combined(1, vector_at(positions, first + (k + 1) % 3), -1, p));
   const Vector b = unit(combined(1, vector_at(positions, first + (k + 2) % 3), -1, p));
-  return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+  const Vector c = cross(a, b);
+  return portable::atan2(std::sqrt(dot(c, c)), dot(a, b));
 }
 
+/// An order of numbers in which those that are none come last: sorting needs one.
+bool is_before(const std::array<double, 9>& a, const std::array<double, 9>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] < b[i] || (std::isnan(b[i]) && !std::isnan(a[i]))) return true;
+    if (b[i] < a[i] || std::isnan(a[i]) != std::isnan(b[i])) return false;
+  }
+  return false;
+}
+
+/// What corners have in common whose axes are one: place, normal, UV and side.
+using CornerKey = std::array<double, 9>;
+
 /// Per corner, for one layout.
-std::vector<FaceAxis> corner_axes(const AxesOfCorners& of, std::span<const double> uvs) {
+std::vector<FaceAxis> corner_axes(const AxesOfCorners& of, std::span<const double> uvs,
+                                  const Work& work) {
   const std::size_t corners = of.positions.size() / 3;
-  PointNumbers<9> numbers;  // place, normal, UV and side
-  std::vector<std::uint32_t> number(corners);
-  std::vector<Vector> sums;
   std::vector<FaceAxis> axes(corners);
-  for (std::size_t c = 0; c < corners; ++c) {
-    if (c % 3 == 0) throw_if_interrupted();
-    axes[c] = c % 3 == 0 ? face_axis(of.positions, uvs, c / 3) : axes[c - 1];
-    const Vector p = vector_at(of.positions, c), n = normal_at(of, c);
-    number[c] = numbers.number(
-        {p[0], p[1], p[2], n[0], n[1], n[2], uvs[2 * c], uvs[2 * c + 1], axes[c].side});
-    sums.resize(numbers.size());
-    Vector& sum = sums[number[c]];
-    sum = combined(1, sum, angle_at(of.positions, c), across(axes[c].along, n));
+  std::vector<CornerKey> keys(corners);
+  parallel_for(
+      work, static_cast<std::int64_t>(corners), 3 * kTriangles,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
+          axes[c] = c % 3 == 0 ? face_axis(of.positions, uvs, c / 3) : axes[c - 1];
+          const Vector p = vector_at(of.positions, c), n = normal_at(of, c);
+          keys[c] = {p[0], p[1], p[2], n[0], n[1], n[2], uvs[2 * c], uvs[2 * c + 1], axes[c].side};
+          // 0 and -0 are the same coordinate: exporters give both for one point.
+          for (double& coordinate : keys[c]) coordinate += 0.0;
+        }
+      });
+  std::vector<std::uint32_t> order(corners);
+  std::iota(order.begin(), order.end(), 0u);
+  sort_interruptibly(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return keys[a] != keys[b] ? is_before(keys[a], keys[b]) : a < b;
+  });
+  std::vector<FaceAxis> means = axes;
+  for (std::size_t first = 0; first < corners;) {
+    std::size_t end = first;
+    Vector sum{};
+    for (; end < corners && keys[order[end]] == keys[order[first]]; ++end) {
+      const std::uint32_t c = order[end];
+      const Vector n = {keys[c][3], keys[c][4], keys[c][5]};
+      sum = combined(1, sum, angle_at(of.positions, c), across(axes[c].along, n));
+    }
+    end = std::max(end, first + 1);  // a coordinate that is no number is like none
+    for (; first < end; ++first) {
+      const std::uint32_t c = order[first];
+      const Vector n = {keys[c][3], keys[c][4], keys[c][5]};
+      const Vector mean = across(sum, n);
+      means[c].along = dot(mean, mean) > 0 ? mean : across(axes[c].along, n);
+    }
   }
-  for (std::size_t c = 0; c < corners; ++c) {
-    const Vector mean = across(sums[number[c]], normal_at(of, c));
-    axes[c].along = dot(mean, mean) > 0 ? mean : across(axes[c].along, normal_at(of, c));
-  }
-  return axes;
+  return means;
 }
 
 void take_given(const AxesOfCorners& of, std::vector<FaceAxis>& axes) {
@@ -113,10 +148,10 @@ void take_given(const AxesOfCorners& of, std::vector<FaceAxis>& axes) {
 
 }  // namespace
 
-std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners) {
-  std::vector<FaceAxis> before = corner_axes(corners, corners.old_uvs);
+std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners, const Work& work) {
+  std::vector<FaceAxis> before = corner_axes(corners, corners.old_uvs, work);
   take_given(corners, before);
-  const std::vector<FaceAxis> after = corner_axes(corners, corners.new_uvs);
+  const std::vector<FaceAxis> after = corner_axes(corners, corners.new_uvs, work);
   std::vector<AxesTurn> turns(before.size() / 3);
   for (std::size_t c = 0; c < before.size(); ++c) {
     AxesTurn& turn = turns[c / 3];
@@ -130,4 +165,4 @@ std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners) {
   return turns;
 }
 
-}  // namespace beltrami::cli
+}  // namespace beltrami

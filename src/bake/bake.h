@@ -1,0 +1,47 @@
+// Images of one layout of UVs, baked anew for another.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/image.h"
+#include "bake/nearest_face.h"
+#include "bake/page.h"
+#include "base/work.h"
+
+namespace beltrami {
+
+/// Triangles with two layouts of UVs, and the images of the old one.
+struct BakeProblem {
+  std::vector<ImageView> images;  ///< one for each old page; of one type, with as many components
+  ImageKind kind = ImageKind::kNumbers;
+  ImageReading reading;
+  int side = 0;                          ///< texels of a new page
+  int rings = 0;                         ///< of gutters, or kWholePage
+  std::vector<UvTriangle> new_uvs;       ///< in the unit square of their pages
+  std::vector<std::uint32_t> new_pages;  ///< of each triangle; kNoPage for those that show nothing
+  std::vector<SourceTriangle> sources;   ///< of the triangles, or of those of another surface
+  /// Of the corners, x y z; for directions, and where there is another surface.
+  std::vector<double> positions;
+  std::vector<double> normals;   ///< of the corners, for directions: x y z; or empty
+  std::vector<double> tangents;  ///< of the corners in the old layout: x y z and side; or empty
+  /// Another surface of the same shape, by the nearest places of which the image is read; or empty.
+  /// Not for directions.
+  std::vector<PlacedTriangle> source_places;
+};
+
+struct BakeReport {
+  BakedTexels texels;
+  /// Texels of the old images along the side of a new texel, in the mean over the area of what has
+  /// a source; 0 where that is another surface.
+  double old_texels = 0;
+};
+
+/// Bakes all pages into `rooms`, which are as many. `masks` has a number for each texel of each
+/// page, one page after another; or it is empty.
+BakeReport bake(const BakeProblem& problem, std::span<const PageRoom> rooms,
+                std::span<Filled> masks, const Work& work);
+
+}  // namespace beltrami
