@@ -136,6 +136,22 @@ def run_shapes(program: Path, seconds: int, out: Path, seed: int) -> Turn:
     return turn
 
 
+def run_faults(program: Path, seconds: int, out: Path, seed: int) -> Turn:
+    """Disturb whole runs of the program until its time is over."""
+    turn = Turn("faults")
+    command = [sys.executable, "-B", str(ROOT / "tools" / "soak_faults.py"), str(program)]
+    command += ["--seconds", str(seconds), "--seed", str(seed)]
+    began = time.monotonic()
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=out)
+    turn.seconds = time.monotonic() - began
+    rounds = re.findall(r"^(\d+) rounds", done.stdout, re.M)
+    turn.executions = int(rounds[-1]) if rounds else 0
+    turn.findings = re.findall(r"^BROKEN: (.*)", done.stdout, re.M)
+    if done.returncode and not turn.findings:
+        turn.findings = [done.stderr.strip().splitlines()[-1]]
+    return turn
+
+
 def row(turn: Turn) -> str:
     """Return a line of the table of the report."""
     slow = max(turn.slowest, key=lambda pair: pair[1], default=None)
@@ -171,23 +187,29 @@ def main() -> int:
     parser.add_argument("--data", type=Path, help="a folder whose small meshes are read as well")
     parser.add_argument("--target", action="append", help="only this run, or these")
     parser.add_argument("--shapes", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--program", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     programs = sorted(arguments.build.glob("fuzz_*"))
     names = [program.name.removeprefix("fuzz_") for program in programs]
     if arguments.shapes:
         names.append("shapes")
+    if arguments.program:
+        names.append("faults")
     wanted = arguments.target or names
     for name in wanted:
         if name not in names:
             parser.error(f"there is no run '{name}': {', '.join(names)}")
     seconds = max(1, int(60 * arguments.minutes / len(wanted)))
     out = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
     data = arguments.data.resolve() if arguments.data else None
     turns = []
     for name in wanted:
         print(f"dev: soak: {name} for {seconds} s", flush=True)
         if name == "shapes":
             turns.append(run_shapes(arguments.shapes, seconds, out, int(time.time())))
+        elif name == "faults":
+            turns.append(run_faults(arguments.program.resolve(), seconds, out, int(time.time())))
         else:
             program = arguments.build.resolve() / f"fuzz_{name}"
             turns.append(run_fuzzer(program, seconds, out, data))
