@@ -145,7 +145,7 @@ struct Input {
 
   beltrami_uv_mesh uv_mesh(Provider& data) const {
     auto out = sized<beltrami_uv_mesh>(data);
-    out.uv_count = uvs.bytes.empty() ? 0 : vertices; // indices are below it, or refused
+    out.uv_count = uvs.bytes.empty() ? 0 : vertices;  // indices are below it, or refused
     out.uv_count = std::min(out.uv_count, 3 * faces);
     out.face_count = faces;
     out.uvs = uvs.buffer;
@@ -236,8 +236,8 @@ class Host {
     const bool real = data_.ConsumeBool() || (known && info.type == BELTRAMI_TYPE_FLOAT);
     const double value = data_.ConsumeBool() ? data_.ConsumeFloatingPointInRange(0.0, 10.0)
                                              : data_.ConsumeFloatingPoint<double>();
-    const beltrami_status status = real ? beltrami_set_float(context, key, value)
-                                        : beltrami_set_int(context, key, number);
+    const beltrami_status status =
+        real ? beltrami_set_float(context, key, value) : beltrami_set_int(context, key, number);
     judged(context, status);
     double back = 0;
     if (status != BELTRAMI_OK) return;
@@ -315,9 +315,10 @@ class Host {
     beltrami_result result{};
     result.struct_size = sizeof result;
     if (beltrami_get_result(context, &result) != BELTRAMI_OK) return;
-    read(context, result.vertices, 2, true, [&](void* out, std::int32_t type, std::uint64_t stride) {
-      return beltrami_get_uvs(context, out, type, stride);
-    });
+    read(context, result.vertices, 2, true,
+         [&](void* out, std::int32_t type, std::uint64_t stride) {
+           return beltrami_get_uvs(context, out, type, stride);
+         });
     read(context, result.faces, 3, false, [&](void* out, std::int32_t type, std::uint64_t stride) {
       return beltrami_get_faces(context, out, type, stride);
     });
@@ -330,9 +331,10 @@ class Host {
     read(context, packing.pages, 1, true, [&](void* out, std::int32_t type, std::uint64_t stride) {
       return beltrami_get_page_utilisations(context, out, type, stride);
     });
-    read(context, packing.charts, 1, false, [&](void* out, std::int32_t type, std::uint64_t stride) {
-      return beltrami_get_chart_pages(context, out, type, stride);
-    });
+    read(context, packing.charts, 1, false,
+         [&](void* out, std::int32_t type, std::uint64_t stride) {
+           return beltrami_get_chart_pages(context, out, type, stride);
+         });
     std::vector<std::uint8_t> texels(packing.resolution * packing.resolution);
     const std::uint64_t page = data_.ConsumeIntegralInRange(0u, 2u);
     judged(context, beltrami_get_page_mask(context, page, texels.data(), 0));

@@ -105,11 +105,11 @@ void mutate(Json& json, std::mt19937& random) {
           "SCALAR", [], {}, [0], {"bufferView": 0}, "data:application/octet-stream;base64,AAAA",
           "../a", "/etc/passwd", "data:,", [0, 0, 0, 1]])");
   static const std::vector<std::string> keys = {
-      "bufferView", "byteOffset", "byteLength", "byteStride", "sparse",     "count",
-      "normalized", "mode",       "indices",    "material",   "targets",    "children",
-      "matrix",     "extensions", "min",        "buffers",    "uri",        "texCoord",
-      "NORMAL",     "TEXCOORD_0", "extras",     "TEXCOORD_1", "images",     "source",
-      "mesh",       "skin",       "scale",      "rotation",   "mappings",   "TANGENT"};
+      "bufferView", "byteOffset", "byteLength", "byteStride", "sparse",   "count",
+      "normalized", "mode",       "indices",    "material",   "targets",  "children",
+      "matrix",     "extensions", "min",        "buffers",    "uri",      "texCoord",
+      "NORMAL",     "TEXCOORD_0", "extras",     "TEXCOORD_1", "images",   "source",
+      "mesh",       "skin",       "scale",      "rotation",   "mappings", "TANGENT"};
   std::vector<Json*> all;
   collect(json, all);
   Json& at = *all[random() % all.size()];

@@ -226,7 +226,8 @@ std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle
   parallel_assign(work, twin, 3 * faces.size());
   std::atomic<bool> sound{true};
   parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::int64_t first = 0, last = face_count;  // the first place whose least vertex is in the range
+    std::int64_t first = 0,
+                 last = face_count;  // the first place whose least vertex is in the range
     while (first < last) {
       const std::int64_t middle = first + (last - first) / 2;
       if (least_at(middle) < begin) {

@@ -74,8 +74,8 @@ class LongRun {
 
  private:
   void try_one(const Shape& shape, Way way) {
-    const Report report = check_isolated(shape, way, arguments_.cpu_limit,
-                                         arguments_.again ? check_again : check);
+    const Report report =
+        check_isolated(shape, way, arguments_.cpu_limit, arguments_.again ? check_again : check);
     ++tried_[shape.kind];
     const std::string name(name_of(way));
     const auto seed = static_cast<unsigned long long>(shape.seed);

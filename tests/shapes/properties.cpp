@@ -29,9 +29,8 @@ std::string_view name_of(Way way) {
 
 std::string_view name_of(Fault fault) {
   constexpr std::array<std::string_view, kFaults> kNames = {
-      "crash",        "time",     "refused", "lost",   "not_injective", "single",
-      "disagreement", "off_page", "margin",  "energy", "bent",          "status",
-      "threads",      "scale"};
+      "crash",    "time",   "refused", "lost", "not_injective", "single",  "disagreement",
+      "off_page", "margin", "energy",  "bent", "status",        "threads", "scale"};
   return kNames[static_cast<std::size_t>(fault)];
 }
 

@@ -27,11 +27,11 @@ enum class Fault {
   kDisagreement,  ///< the library's verdict is another than ours
   kOffPage,
   kMargin,
-  kEnergy,  ///< a component is above the target, and above what the minimal cut gives it
-  kBent,    ///< a flat component is above kFlatEnergy
-  kStatus,  ///< a reservation, e.g. NOT_CONVERGED, where nothing is wrong
-  kThreads, ///< two threads give other UVs than one
-  kScale    ///< the same in another unit of length, by a power of two, has other UVs
+  kEnergy,   ///< a component is above the target, and above what the minimal cut gives it
+  kBent,     ///< a flat component is above kFlatEnergy
+  kStatus,   ///< a reservation, e.g. NOT_CONVERGED, where nothing is wrong
+  kThreads,  ///< two threads give other UVs than one
+  kScale     ///< the same in another unit of length, by a power of two, has other UVs
 };
 inline constexpr int kFaults = 14;
 std::string_view name_of(Fault fault);
