@@ -35,6 +35,11 @@ PackChart chart(Provider& data) {
     for (Index& v : face) v = data.ConsumeIntegralInRange<Index>(0, points - 1);
     out.faces.push_back(face);
   }
+  // The callers of the packer leave out what has no area at all.
+  const Vec2 side(20, tiny ? 1e-9 : 1);
+  const auto last = static_cast<Index>(points);
+  out.points.insert(out.points.end(), {Vec2(0, 0), Vec2(side.x(), 0), Vec2(0, side.y())});
+  out.faces.push_back({last, last + 1, last + 2});
   if (data.ConsumeIntegralInRange(0, 3) == 0) {
     out.scale = data.ConsumeFloatingPointInRange(0.01, 10.0);
   }

@@ -81,8 +81,10 @@ def run_fuzzer(program: Path, seconds: int, out: Path, data: Path | None) -> Tur
         f"-rss_limit_mb={MEMORY_MIB}",
         f"-artifact_prefix={found}/",
         "-print_final_stats=1",
+        "-print_funcs=0",
         f"-max_len={MOST_INPUT.get(name, 4096)}",
         "-reload=0",
+        "-report_slow_units=1000000",
     ]
     own = ROOT / "fuzz" / "corpus" / name
     if own.is_dir():
