@@ -48,9 +48,8 @@ void judge_output(MeshFile file) {
   for (const char* path : {"b.glb", "b.gltf"}) {
     try {
       std::string bytes;
-      for (const std::string& piece : cli::write_gltf(file, 0, path).files.back().pieces) {
-        bytes += piece;
-      }
+      const cli::GltfOutput output = cli::write_gltf(file, 0, path);
+      for (const std::string& piece : output.files.back().pieces) bytes += piece;
       const MeshFile back = cli::read_gltf(bytes, path, cli::Content::kAll);
       promise(back.polygons.corners().size() == corners.size(), "corners are read back");
       for (std::size_t c = 0; c < corners.size(); ++c) {
