@@ -33,9 +33,11 @@ PackChart chart(Provider& data) {
   for (int f = 0; f < faces; ++f) {
     Triangle face{};
     for (Index& v : face) v = data.ConsumeIntegralInRange<Index>(0, points - 1);
-    out.faces.push_back(face);
+    const auto at = [&](Index v) { return Uv{out.points[v].x(), out.points[v].y()}; };
+    // The callers of the packer leave out what has no area.
+    if (shapes::orientation(at(face[0]), at(face[1]), at(face[2])) != 0) out.faces.push_back(face);
   }
-  // The callers of the packer leave out what has no area at all.
+  // Nor do they have charts without a face.
   const Vec2 side(20, tiny ? 1e-9 : 1);
   const auto last = static_cast<Index>(points);
   out.points.insert(out.points.end(), {Vec2(0, 0), Vec2(side.x(), 0), Vec2(0, side.y())});
