@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <span>
 #include <string>
 
@@ -227,8 +226,16 @@ std::vector<Index> pair_halfedges(Index vertex_count, const std::vector<Triangle
   parallel_assign(work, twin, 3 * faces.size());
   std::atomic<bool> sound{true};
   parallel_for(work, vertex_count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    const auto places = std::views::iota(std::int64_t{0}, face_count);
-    std::int64_t first = *std::ranges::lower_bound(places, begin, {}, least_at), last = first;
+    std::int64_t first = 0,
+                 last = face_count;  // the first place whose least vertex is in the range
+    while (first < last) {
+      const std::int64_t middle = first + (last - first) / 2;
+      if (least_at(middle) < begin) {
+        first = middle + 1;
+      } else {
+        last = middle;
+      }
+    }
     Matcher matcher;
     std::vector<Spoke> many;
     bool all_sound = true;

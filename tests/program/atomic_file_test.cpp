@@ -108,6 +108,27 @@ TEST(AtomicFile, TellsThePipesReaderNothingBeforeTheWrite) {
   EXPECT_TRUE(fs::is_fifo(path));
 }
 
+TEST(AtomicFile, OfSeveralWritersHasTheWholeOfOne) {
+  constexpr int kRounds = 200;
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt", std::string(10000, '0'));
+  const auto write = [&](char letter) {
+    for (int i = 0; i < kRounds; ++i) {
+      AtomicFile file(path);
+      for (int part = 0; part < 10; ++part) file.write(std::string(1000, letter));
+      file.commit();
+    }
+  };
+  std::thread first(write, '1'), second(write, '2');
+  for (int i = 0; i < kRounds; ++i) {
+    const std::string seen = directory.read("a.txt");
+    EXPECT_EQ(seen, std::string(10000, seen.empty() ? '?' : seen[0]));
+  }
+  first.join();
+  second.join();
+  EXPECT_EQ(directory.names().size(), 1u) << "a temporary is left";
+}
+
 TEST(Commit, ReplacesAllOrNone) {
   const TemporaryDirectory directory;
   directory.file("a.txt", "old");

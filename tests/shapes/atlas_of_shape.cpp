@@ -84,13 +84,13 @@ beltrami_surface view(const Shape& shape) {
   return surface;
 }
 
-ShapeAtlas unwrap(const Shape& shape, Way way) {
+ShapeAtlas unwrap(const Shape& shape, Way way, int threads) {
   ShapeAtlas atlas;
   beltrami_context* made = nullptr;
   atlas.status = beltrami_create(&made);
   if (atlas.status != BELTRAMI_OK) return atlas;
   const Context context(made);
-  beltrami_set_int(made, BELTRAMI_OPTION_THREADS, 1);
+  beltrami_set_int(made, BELTRAMI_OPTION_THREADS, threads);
   beltrami_set_int(made, BELTRAMI_OPTION_RESOLUTION, shape.resolution);
   beltrami_set_float(made, BELTRAMI_OPTION_MARGIN, shape.margin);
   set_way(made, way);

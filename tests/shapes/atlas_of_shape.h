@@ -30,7 +30,7 @@ struct ShapeAtlas {
 /// A view of a shape, which must outlive it.
 beltrami_surface view(const Shape& shape);
 
-ShapeAtlas unwrap(const Shape& shape, Way way);
+ShapeAtlas unwrap(const Shape& shape, Way way, int threads = 1);
 
 /// Area of the triangles of a shape as the library cuts it; of all, before any of them is left out.
 std::vector<double> areas(const Shape& shape, const std::vector<std::array<std::size_t, 3>>& faces);

@@ -50,11 +50,11 @@ void limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &value);
 }
 
-[[noreturn]] void run_child(const Shape& shape, Way way, int cpu_limit, int pipe_end) {
+[[noreturn]] void run_child(const Shape& shape, Way way, int cpu_limit, Check how, int pipe_end) {
   limit(RLIMIT_CPU, static_cast<rlim_t>(cpu_limit));
   limit(RLIMIT_AS, rlim_t{4} << 30);
   limit(RLIMIT_CORE, 0);
-  std::string text = to_text(check(shape, way));
+  std::string text = to_text(how(shape, way));
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = write(pipe_end, text.data() + at, text.size() - at);
     if (written <= 0) break;
@@ -78,7 +78,7 @@ double seconds(const timeval& time) {
 
 }  // namespace
 
-Report check_isolated(const Shape& shape, Way way, int cpu_limit) {
+Report check_isolated(const Shape& shape, Way way, int cpu_limit, Check how) {
   Report report;
   int ends[2];
   std::fflush(nullptr);
@@ -87,7 +87,7 @@ Report check_isolated(const Shape& shape, Way way, int cpu_limit) {
   if (child < 0) std::abort();
   if (child == 0) {
     close(ends[0]);
-    run_child(shape, way, cpu_limit, ends[1]);
+    run_child(shape, way, cpu_limit, how, ends[1]);
   }
   close(ends[1]);
   const std::string text = read_all(ends[0]);

@@ -6,8 +6,11 @@
 
 namespace beltrami::shapes {
 
-/// check() in a child that may use `cpu_limit` seconds of processor time, and 4 GiB of memory.
-Report check_isolated(const Shape& shape, Way way, int cpu_limit);
+using Check = Report (*)(const Shape&, Way);
+
+/// check() in a child that may use `cpu_limit` seconds of processor time, and 4 GiB of memory; or
+/// another check.
+Report check_isolated(const Shape& shape, Way way, int cpu_limit, Check how = check);
 
 /// A smaller shape with the same fault: faces are left out while it stays, then digits. It takes
 /// at most `runs` checks.

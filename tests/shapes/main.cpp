@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -27,6 +28,8 @@ struct Arguments {
   int cpu_limit = 60;
   double slow = 5;
   int minimise = 0;
+  double seconds = 0;
+  bool again = false;
 };
 
 void write_obj(const Shape& shape, const std::string& path) {
@@ -54,7 +57,10 @@ class LongRun {
 
   /// Returns whether nothing broke.
   bool run() {
+    const std::time_t begin = std::time(nullptr);
     for (std::uint64_t i = 0; i < arguments_.count; ++i) {
+      const double elapsed = std::difftime(std::time(nullptr), begin);
+      if (arguments_.seconds > 0 && elapsed >= arguments_.seconds) break;
       const std::uint64_t seed = arguments_.seed + i;
       const std::string kind = arguments_.kinds.empty()
                                    ? std::string(kind_of(seed))
@@ -68,7 +74,8 @@ class LongRun {
 
  private:
   void try_one(const Shape& shape, Way way) {
-    const Report report = check_isolated(shape, way, arguments_.cpu_limit);
+    const Report report =
+        check_isolated(shape, way, arguments_.cpu_limit, arguments_.again ? check_again : check);
     ++tried_[shape.kind];
     const std::string name(name_of(way));
     const auto seed = static_cast<unsigned long long>(shape.seed);
@@ -141,6 +148,10 @@ int main(int argc, char** argv) {
   app.add_option("--minimise", arguments.minimise,
                  "Also writes smaller shapes with the same fault, after so many checks at most")
       ->capture_default_str();
+  app.add_option("--seconds", arguments.seconds, "Ends after so much time; 0: after the count")
+      ->capture_default_str();
+  app.add_flag("--again", arguments.again,
+               "Also on two threads, at other scales and turned in space");
   CLI11_PARSE(app, argc, argv);
   return LongRun(arguments).run() ? 0 : 1;
 }

@@ -10,6 +10,7 @@
 
 #include "shapes/atlas_of_shape.h"
 #include "shapes/exact_triangles.h"
+#include "shapes/random.h"
 
 namespace beltrami::shapes {
 
@@ -28,8 +29,8 @@ std::string_view name_of(Way way) {
 
 std::string_view name_of(Fault fault) {
   constexpr std::array<std::string_view, kFaults> kNames = {
-      "crash",        "time",     "refused", "lost",   "not_injective", "single",
-      "disagreement", "off_page", "margin",  "energy", "bent",          "status"};
+      "crash",    "time",   "refused", "lost", "not_injective", "single",  "disagreement",
+      "off_page", "margin", "energy",  "bent", "status",        "threads", "scale"};
   return kNames[static_cast<std::size_t>(fault)];
 }
 
@@ -301,6 +302,29 @@ Report judge(const Shape& shape, const ShapeAtlas& atlas) {
 
 Report check(const Shape& shape, Way way) {
   return judge(shape, unwrap(shape, way));
+}
+
+Report check_again(const Shape& shape, Way way) {
+  const ShapeAtlas atlas = unwrap(shape, way);
+  Report report = judge(shape, atlas);
+  if (unwrap(shape, way, 2).uvs != atlas.uvs) {
+    report.findings.push_back({Fault::kThreads, "two threads give other UVs"});
+  }
+  for (const double factor : {0.5, 2.0}) {
+    Shape scaled = shape;
+    scale(scaled, {factor, factor, factor});
+    if (unwrap(scaled, way).uvs != atlas.uvs) {
+      report.findings.push_back({Fault::kScale, text("at %g times the size: other UVs", factor)});
+    }
+  }
+  Shape turned = shape;
+  Random random(shape.seed);
+  turn(turned, random);
+  const Report after = check(turned, way);
+  for (const Finding& finding : after.findings) {
+    report.findings.push_back({finding.fault, "turned: " + finding.what});
+  }
+  return report;
 }
 
 }  // namespace beltrami::shapes

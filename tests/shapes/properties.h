@@ -27,11 +27,13 @@ enum class Fault {
   kDisagreement,  ///< the library's verdict is another than ours
   kOffPage,
   kMargin,
-  kEnergy,  ///< a component is above the target, and above what the minimal cut gives it
-  kBent,    ///< a flat component is above kFlatEnergy
-  kStatus   ///< a reservation, e.g. NOT_CONVERGED, where nothing is wrong
+  kEnergy,   ///< a component is above the target, and above what the minimal cut gives it
+  kBent,     ///< a flat component is above kFlatEnergy
+  kStatus,   ///< a reservation, e.g. NOT_CONVERGED, where nothing is wrong
+  kThreads,  ///< two threads give other UVs than one
+  kScale     ///< the same in another unit of length, by a power of two, has other UVs
 };
-inline constexpr int kFaults = 12;
+inline constexpr int kFaults = 14;
 std::string_view name_of(Fault fault);
 
 /// Mean energy that a flat component may have: twice 1, and half a percent for what rounds.
@@ -56,5 +58,8 @@ Report judge(const Shape& shape, const ShapeAtlas& atlas);
 
 /// Unwraps a shape on one thread, and judges the result.
 Report check(const Shape& shape, Way way);
+
+/// The same; then also on two threads, in twice and half the unit of length, and turned in space.
+Report check_again(const Shape& shape, Way way);
 
 }  // namespace beltrami::shapes
