@@ -4,25 +4,13 @@
 #include <array>
 #include <cstdio>
 
-#if defined(_WIN32)
-#include <io.h>
-#else
-#include <unistd.h>
-#endif
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {
 
 constexpr int kBarWidth = 30;  // the whole line fits a terminal of 60 columns
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
-
-bool stderr_is_terminal() {
-#if defined(_WIN32)
-  return _isatty(2) != 0;
-#else
-  return isatty(2) != 0;
-#endif
-}
 
 }  // namespace
 

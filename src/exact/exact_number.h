@@ -4,11 +4,20 @@
 // GMP, or our own: both have the same signs.
 #pragma once
 
-#ifdef BELTRAMI_EXACT_CGAL
-
+#ifdef BELTRAMI_EXACT_OWN
+#include "exact/big_float.h"
+#else
 #include <CGAL/MP_Float.h>
+#endif
 
 namespace beltrami {
+
+#ifdef BELTRAMI_EXACT_OWN
+
+inline constexpr const char* kExactNumberName = "own";
+using ExactNumber = BigFloat;
+
+#else
 
 inline constexpr const char* kExactNumberName = "cgal";
 using ExactNumber = CGAL::MP_Float;
@@ -17,17 +26,6 @@ inline int sign_of(const ExactNumber& x) {
   return static_cast<int>(CGAL::sign(x));
 }
 
-}  // namespace beltrami
-
-#else
-
-#include "exact/big_float.h"
-
-namespace beltrami {
-
-inline constexpr const char* kExactNumberName = "own";
-using ExactNumber = BigFloat;
-
-}  // namespace beltrami
-
 #endif
+
+}  // namespace beltrami
