@@ -45,7 +45,7 @@ set(CMAKE_OSX_DEPLOYMENT_TARGET "" CACHE STRING "")
 set(CMAKE_INSTALL_NAME_TOOL "/bin/true" CACHE FILEPATH "")
 # An installed file is as it was linked: the linker strips, and leaves no path of this machine.
 set(CMAKE_STRIP "/bin/true" CACHE FILEPATH "")
-set(CMAKE_SKIP_BUILD_RPATH ON)
+set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
 # /usr/include itself must never be on the path: the headers of the machine's C library lie there.
 set(CMAKE_FIND_ROOT_PATH ${BELTRAMI_DIST})

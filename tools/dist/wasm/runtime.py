@@ -32,6 +32,7 @@ CONFIGURATION = {
     "_LIBCPP_DISABLE_VISIBILITY_ANNOTATIONS": "",
     "_LIBCXXABI_DISABLE_VISIBILITY_ANNOTATIONS": "",
     "_LIBCPP_HARDENING_MODE": "_LIBCPP_HARDENING_MODE_NONE",
+    "_LIBCPP_ENABLE_CXX17_REMOVED_UNEXPECTED_FUNCTIONS": "",
 }
 LIBRARY = """algorithm atomic charconv chrono condition_variable condition_variable_destructor
     error_category exception functional future hash memory mutex mutex_destructor new_handler
