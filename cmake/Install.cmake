@@ -79,9 +79,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/beltrami.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 if(TARGET beltrami_program)
-  if(UNIX AND NOT APPLE)
+  if(UNIX)
+    set(here "$ORIGIN")
+    if(APPLE)
+      set(here "@loader_path")
+    endif()
     file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "${here}/${to_libraries}")
   endif()
   install(TARGETS beltrami_program
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
