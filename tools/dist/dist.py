@@ -85,8 +85,9 @@ def pack(target: Target, folder: Path) -> Path:
     if target.static:
         library = next(stage.glob("lib*/libbeltrami.a"))
         static_library.close(target, folder, library)
-    licences = stage / "licenses"
-    shutil.move(stage / "share" / "doc" / "beltrami" / "licenses", licences)
+    (stage / "licenses").mkdir()
+    for licence in inputs.licences():
+        shutil.copy(licence, stage / "licenses")
     shutil.copy(ROOT / "LICENSE", stage / "LICENSE")
     shutil.rmtree(stage / "share")
     sbom.write_sbom(stage, target, version(), sbom.kinds_of(target))

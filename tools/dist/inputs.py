@@ -14,6 +14,8 @@ HEADERS = {
     "stb": "libstb-dev",
     "simde": "libsimde-dev",
 }
+#: Licences of what only other builds hold.
+NOT_HELD = {"GPL-3.0.txt", "LGPL-3.0.txt"}
 SOURCES = """Types: deb-src
 URIs: {uri}
 Suites: {suite}
@@ -72,6 +74,12 @@ def version_of(package: str) -> str:
         return zig.stdout.strip()
     asked = ["dpkg-query", "-W", "-f", "${Version}", package]
     return subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def licences() -> list[Path]:
+    """Return the texts that go with a binary beside LICENSE."""
+    folder = Path(__file__).resolve().parents[2] / "licenses"
+    return sorted(path for path in folder.iterdir() if path.name not in NOT_HELD)
 
 
 def zig_path() -> Path:

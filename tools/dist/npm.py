@@ -46,8 +46,8 @@ def pack(build: Path, dist: Path, out: Path, version: str) -> Path:
     for name in FILES:
         shutil.copy(PACKAGE / name, stage / name)
     shutil.copy(ROOT / "LICENSE", stage / "LICENSE")
-    shutil.copy(ROOT / "licenses" / "THIRD-PARTY.txt", stage / "THIRD-PARTY.txt")
-    shutil.copy(ROOT / "licenses" / "MPL-2.0.txt", stage / "MPL-2.0.txt")
+    for licence in inputs.licences():
+        shutil.copy(licence, stage / licence.name)
     description = json.loads((PACKAGE / "package.json").read_text()) | {"version": version}
     (stage / "package.json").write_text(json.dumps(description, indent=2) + "\n")
     sbom.write_sbom(stage, TARGETS[WASM], version, sbom.kinds_of(TARGETS[WASM]))

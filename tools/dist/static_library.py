@@ -15,23 +15,24 @@ from checks import ROOT
 from targets import Target
 
 #: zig's archives that an object needs; the C library's the reader has.
-RUNTIME = re.compile(r"\S+/lib(?:c\+\+|c\+\+abi|unwind)\.a")
+RUNTIME = re.compile(r"\S+/lib(?:c\+\+|c\+\+abi|unwind|compiler_rt)\.a")
 OBJCOPY = {"x86_64-linux": "objcopy", "aarch64-linux": "aarch64-linux-gnu-objcopy"}
+MACHINES = {"x86_64-linux": "elf_x86_64", "aarch64-linux": "aarch64linux"}
 
 
 def close(target: Target, build: Path, library: Path) -> None:
     """Replace a plain archive by one of a single object that brings its C++ library."""
     zig = str(inputs.zig_path())
-    empty = build / "empty.cpp"
-    empty.write_text("int main() {}\n")
-    asked = [zig, "c++", "-target", target.zig, "--verbose-link", str(empty), "-o", str(build / "empty")]
-    said = subprocess.run(asked, capture_output=True, text=True, check=True)
-    archives = sorted(set(RUNTIME.findall(said.stdout + said.stderr)))
-    whole = build / "beltrami.o"
-    objects = sorted(str(path) for path in (build / "src").rglob("*.o"))
-    machine = {"x86_64": "elf_x86_64", "aarch64": "aarch64linux"}[target.name.split("-")[0]]
-    words = [zig, "ld.lld", "-r", "-m", machine, "--force-group-allocation", "-o", str(whole)]
-    subprocess.run([*words, *objects, *archives], check=True)
+    empty, whole = build / "empty.cpp", build / "beltrami.o"
+    empty.write_text("int nothing;\n")
+    kind = ["-target", target.zig, "-O3", "-g0", "-fPIC", "-shared"]
+    asked = [zig, "c++", *kind, "-v", str(empty), "-o", str(build / "empty.so")]
+    said = subprocess.run(asked, capture_output=True, text=True, check=True, cwd=ROOT)
+    linking = next(line for line in reversed(said.stderr.splitlines()) if line.startswith("ld.lld"))
+    archives = RUNTIME.findall(linking)
+    words = [zig, "ld.lld", "-r", "-m", MACHINES[target.name], "--force-group-allocation"]
+    words += ["--whole-archive", str(library), "--no-whole-archive", *archives, "-o", str(whole)]
+    subprocess.run(words, check=True, cwd=ROOT)
     keep = f"--keep-global-symbols={ROOT / 'abi' / 'symbols.txt'}"
     subprocess.run([OBJCOPY[target.name], keep, "--strip-debug", str(whole)], check=True)
     library.unlink()

@@ -69,7 +69,7 @@ def pack(target: Target, dist: Path, out: Path, version: str) -> Path:
     for name, path in compiled.items():
         files[f"beltrami/{name}"] = (path.read_bytes(), 0o755)
     info = f"beltrami-{version}.dist-info"
-    for path in [ROOT / "LICENSE", *sorted((ROOT / "licenses").iterdir())]:
+    for path in [ROOT / "LICENSE", *inputs.licences()]:
         files[f"{info}/licenses/{path.name}"] = (path.read_bytes(), 0o644)
     files[f"{info}/sboms/beltrami.spdx.json"] = ((stage / "sbom.spdx.json").read_bytes(), 0o644)
     _describe(files, info, version, target.wheel)
@@ -129,7 +129,7 @@ def _describe(files: dict[str, tuple[bytes, int]], info: str, version: str, tag:
     lines = ["Metadata-Version: 2.4", "Name: beltrami", f"Version: {version}"]
     lines += [f"Summary: {project['description']}", f"License-Expression: {project['license']}"]
     lines += ["License-File: LICENSE"]
-    lines += [f"License-File: {path.name}" for path in sorted((ROOT / "licenses").iterdir())]
+    lines += [f"License-File: {path.name}" for path in inputs.licences()]
     lines += [f"Requires-Python: {project['requires-python']}"]
     lines += [f"Classifier: {classifier}" for classifier in project["classifiers"]]
     lines += [f"Requires-Dist: {need}" for need in project["dependencies"]]
