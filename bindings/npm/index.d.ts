@@ -133,7 +133,7 @@ export function load(
 ): Promise<Beltrami>;
 
 
-// What follows is written by tools/generate.py, from the C header and the table of options.
+// What follows is written by tools/generate.py: from the C header and the option table.
 
 export interface FlattenOptions extends Running {
   /** How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs (bff and uv-prolongation may flip). Default: beltrami. */

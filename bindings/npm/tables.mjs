@@ -1,4 +1,4 @@
-// Structs as WebAssembly has them, and options: from the C header and the library's table.
+// Structs as WebAssembly has them, and options: from the C header and the option table.
 // Written by tools/generate.py: change it there.
 
 export const layouts = {

@@ -3,9 +3,10 @@
 
     same_bits.py --native PROGRAM --stage FOLDER [--quick]
 
-FOLDER has bin/ and lib/ of one target, as tools/dist/dist.py leaves it below build/dist/stage. It is run here: Linux
-on another processor under qemu, Windows under wine. Where that is missing nothing is tested, which is said.
-With --quick large meshes are flattened and checked, not unwrapped: for what is emulated.
+FOLDER has bin/ and lib/ of one target, as tools/dist/dist.py leaves it below build/dist/stage. It
+is run here: Linux on another processor under qemu, Windows under wine. Where that is missing
+nothing is tested, which is said. With --quick large meshes are flattened, not unwrapped: for what
+is emulated.
 """
 
 from __future__ import annotations
@@ -41,48 +42,70 @@ def runner(program: Path) -> list[str] | None:
     return [emulator, "-L", root] if emulator and Path(root).exists() else None
 
 
-def main() -> None:
+def call(
+    words: list[str], place: Path, *arguments: str | Path
+) -> subprocess.CompletedProcess[bytes]:
+    """Run a program in a folder, with nothing to read."""
+    command = [*words, *arguments]
+    environment = os.environ | {"WINEDEBUG": "-all"}
+    return subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        env=environment,
+        cwd=place,
+        check=False,
+    )
+
+
+def written(words: list[str], place: Path, command: list[str | Path], out: str) -> bytes:
+    """Return the file that a command writes, without what its own name makes of it."""
+    verb, mesh, *options = command
+    done = call(words, place, verb, mesh, out, *options, "--quiet")
+    if done.returncode or not (place / out).exists():
+        said = done.stderr.decode(errors="replace")[-800:]
+        sys.exit(f"{words}: {command}: exit code {done.returncode}: {said}")
+    name = Path(out).stem.encode()
+    return (place / out).read_bytes().replace(name, b"NAME").replace(b"\r\n", b"\n")
+
+
+def compare(native: Path, words: list[str], place: Path, quick: bool) -> None:
     """Run the same commands with both programs."""
+    box = "öut 日本.obj"
+    (place / box).write_text(BOX, encoding="utf-8")
+    commands: list[list[str | Path]] = [["unwrap", box], ["flatten", BUST]]
+    if not quick:
+        commands.append(["unwrap", COW, "--effort", "quick", "--threads", "2"])
+    for number, command in enumerate(commands):
+        here = written([str(native)], place, command, f"here ü {number}.obj")
+        there = written(words, place, command, f"there ü {number}.obj")
+        if here != there:
+            sys.exit(f"{command}: the files differ")
+        print(f"same_bits: {command[0]} {command[1]}: {len(here)} equal bytes")
+    refused = call(words, place, "check", "none.obj")
+    if refused.returncode != 2:
+        sys.exit(f"a missing file is to give exit code 2, not {refused.returncode}")
+    told = call(words, place, "--version").stdout.decode().strip()
+    if "no LGPL code" not in told:
+        sys.exit(f"it says of itself: {told}")
+    print(f"same_bits: {told}")
+
+
+def main() -> None:
+    """Compare, where there is something that runs the program."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--native", type=Path, required=True)
     parser.add_argument("--stage", type=Path, required=True)
     parser.add_argument("--quick", action="store_true")
     arguments = parser.parse_args()
-    program = next(path for path in sorted((arguments.stage / "bin").iterdir()) if path.stem == "beltrami" and path.suffix != ".dll")
+    names = [arguments.stage / "bin" / name for name in ("beltrami", "beltrami.exe")]
+    program = next(path for path in names if path.exists()).resolve()
     words = runner(program)
     if words is None:
         print(f"same_bits: nothing here runs {program.name} of {arguments.stage.name}: skipped")
         return
-    environment = os.environ | {"WINEDEBUG": "-all"}
-    with tempfile.TemporaryDirectory() as name:
-        place = Path(name)
-        box = place / "öut 日本.obj"
-        box.write_text(BOX, encoding="utf-8")
-        commands = [["unwrap", box], ["flatten", BUST]]
-        if not arguments.quick:
-            commands.append(["unwrap", COW, "--effort", "quick", "--threads", "2"])
-        for number, command in enumerate(commands):
-            outputs = []
-            for who, start in (("here", [arguments.native]), ("there", [*words, program])):
-                out = place / f"{who} ü {number}.obj"
-                done = subprocess.run(
-                    [*start, command[0], command[1], out, *command[2:], "--quiet"],
-                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, check=False,
-                )
-                if done.returncode or not out.exists():
-                    sys.exit(f"{start}: {command}: exit code {done.returncode}: {done.stderr.decode()[-800:]}")
-                outputs.append(out.read_bytes().replace(out.with_suffix("").name.encode(), b"NAME").replace(b"\r\n", b"\n"))
-            if outputs[0] != outputs[1]:
-                sys.exit(f"{command}: the files differ")
-            print(f"same_bits: {command[0]} {command[1].name}: {len(outputs[0])} equal bytes")
-        refused = subprocess.run([*words, program, "check", place / "none.obj"], stdin=subprocess.DEVNULL, capture_output=True, env=environment, check=False)
-        if refused.returncode != 2:
-            sys.exit(f"a missing file is to give exit code 2, not {refused.returncode}")
-        told = subprocess.run([*words, program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, env=environment, check=True)
-        text = told.stdout.decode().strip()
-        if "no LGPL code" not in text:
-            sys.exit(f"it says of itself: {text}")
-        print(f"same_bits: {text}")
+    with tempfile.TemporaryDirectory() as place:
+        compare(arguments.native.resolve(), [*words, str(program)], Path(place), arguments.quick)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,11 @@ def pack(folder: Path, target: Path, top: str) -> Path:
             entry = tarfile.TarInfo(name)
             entry.mtime = SECONDS
             if path.is_symlink():
-                entry.type, entry.linkname, entry.mode = tarfile.SYMTYPE, str(path.readlink()), 0o777
+                entry.type, entry.linkname, entry.mode = (
+                    tarfile.SYMTYPE,
+                    str(path.readlink()),
+                    0o777,
+                )
                 archive.addfile(entry)
                 continue
             data = path.read_bytes()

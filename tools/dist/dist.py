@@ -3,9 +3,9 @@
 
     dist.py [--jobs N] [TARGET...]
 
-TARGET is a name of targets.py, "wheels" or "npm"; without any, everything. Below build/dist each target has a
-folder, whose build goes on where it was; build/dist/out gets archives, wheels, the npm package and SHA256SUMS.
-The same source gives the same bytes.
+TARGET is a name of targets.py, "wheels" or "npm"; without any, everything. Below build/dist each
+target has a folder, whose build goes on where it was; build/dist/out gets archives, wheels, the npm
+package and SHA256SUMS. The same source gives the same bytes.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def say(text: str) -> None:
 
 def run(*words: str | Path) -> None:
     """Run a command; its output is shown only if it fails."""
-    done = subprocess.run(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    done = subprocess.run(
+        words, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
+    )
     if done.returncode:
         sys.exit(f"{done.stdout}\ndist: failed: {' '.join(map(str, words))}")
 
@@ -93,7 +95,11 @@ def pack(target: Target, folder: Path) -> Path:
     sbom.write_sbom(stage, target, version(), sbom.kinds_of(target))
     for path in sorted(stage.rglob("*")):
         shared = path.suffix in {".dll", ".dylib"} or ".so." in path.name
-        if path.is_file() and not path.is_symlink() and (shared or path.stem == "beltrami" and path.parent.name == "bin"):
+        if (
+            path.is_file()
+            and not path.is_symlink()
+            and (shared or (path.stem == "beltrami" and path.parent.name == "bin"))
+        ):
             checks.check(path, shared)
     name = f"beltrami-{version()}-{target.name}"
     return archive.pack(stage, OUT / (name + target.archive), name)
@@ -107,7 +113,9 @@ def main() -> None:
     arguments = parser.parse_args()
     unknown = [name for name in arguments.what if name not in TARGETS and name not in EXTRAS]
     if unknown:
-        sys.exit(f"dist: there is no target '{unknown[0]}': choose of {', '.join([*TARGETS, *EXTRAS])}")
+        sys.exit(
+            f"dist: there is no target '{unknown[0]}': choose of {', '.join([*TARGETS, *EXTRAS])}"
+        )
     wanted = arguments.what or [*TARGETS, *EXTRAS]
     os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(DIST / "zig-cache")
     OUT.mkdir(parents=True, exist_ok=True)
@@ -120,7 +128,9 @@ def main() -> None:
             made.append(npm.pack(build(TARGETS[WASM], arguments.jobs), DIST, OUT, version()))
         if "wheels" in wanted:
             for target in TARGETS.values():
-                if target.wheel and (arguments.what == [] or (DIST / "stage" / target.name).exists()):
+                if target.wheel and (
+                    arguments.what == [] or (DIST / "stage" / target.name).exists()
+                ):
                     made.append(wheels.pack(target, DIST, OUT, version()))
     except checks.CheckError as error:
         sys.exit(f"dist: {error}")

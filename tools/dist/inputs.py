@@ -47,9 +47,7 @@ PARTS = (
     ),
     Part("stb", "libstb-dev", "MIT OR Unlicense", "https://github.com/nothings/stb", "program"),
     Part("zlib", "zlib1g-dev", "Zlib", "https://zlib.net", "program"),
-    Part(
-        "SIMDe", "libsimde-dev", "MIT", "https://github.com/simd-everywhere/simde", "wasm"
-    ),
+    Part("SIMDe", "libsimde-dev", "MIT", "https://github.com/simd-everywhere/simde", "wasm"),
     Part(
         "LLVM libc++, libc++abi, libunwind and compiler-rt",
         "ziglang",

@@ -14,8 +14,8 @@ from targets import WASM, Target
 def write_sbom(stage: Path, target: Target, version: str, kinds: set[str]) -> Path:
     """Write sbom.spdx.json into the folder that is packed.
 
-    `kinds` of parts are in it. The document has no date and no random name: the same files give the same
-    document.
+    `kinds` of parts are in it. The document has no date and no random name: the same files give
+    the same document.
     """
     top = "SPDXRef-beltrami"
     ours = _package(top, "beltrami", version, "Apache-2.0", "NOASSERTION")

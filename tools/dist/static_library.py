@@ -1,7 +1,7 @@
 """A static library that a program of any compiler can link.
 
-What zig compiles needs LLVM's C++ library, which the reader's compiler has not. So all objects and what they
-need of it are linked into one, in which only the names of abi/symbols.txt are global.
+What zig compiles needs LLVM's C++ library, which the reader's compiler has not. So all objects and
+what they need of it are linked into one, in which only the names of abi/symbols.txt are global.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Wheels: one for all versions of Python of a platform, with the library and the program of its archive."""
+"""Wheels: one for all Pythons of a platform, with the library and the program of its archive."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import tomllib
 from pathlib import Path
 
 import archive
 import checks
 import inputs
+import tomllib
 from targets import Target
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -97,7 +97,17 @@ def _module(target: Target, work: Path, library: Path, dist: Path) -> Path:
     writer = [sys.executable, "-B", str(PACKAGE / "tools" / "write_native.py")]
     subprocess.run([*writer, "--core", str(ROOT), str(source)], check=True)
     include = [f"-I{ROOT / 'include'}", f"-I{_headers(target, dist)}"]
-    common = [zig, "cc", "-target", target.zig, "-g0", "-O2", "-DNDEBUG", "-fno-sanitize=undefined", "-w"]
+    common = [
+        zig,
+        "cc",
+        "-target",
+        target.zig,
+        "-g0",
+        "-O2",
+        "-DNDEBUG",
+        "-fno-sanitize=undefined",
+        "-w",
+    ]
     defined = ["-DPy_LIMITED_API=0x03090000", *(["-DBELTRAMI_SHARED"] if target.windows else [])]
     pic = [] if target.windows else ["-fPIC"]
     compiling = [*common, *pic, *defined, *include, "-c", str(source), "-o", str(compiled)]
@@ -105,7 +115,10 @@ def _module(target: Target, work: Path, library: Path, dist: Path) -> Path:
     if target.windows:
         module, extra = work / "_native.pyd", [str(_python_library(zig, compiled, work))]
     else:
-        module, extra = work / "_native.abi3.so", ["-Wl,-rpath,$ORIGIN/lib", "-Wl,-soname,_native.abi3.so"]
+        module, extra = (
+            work / "_native.abi3.so",
+            ["-Wl,-rpath,$ORIGIN/lib", "-Wl,-soname,_native.abi3.so"],
+        )
     linking = [*common, "-shared", "-s", str(compiled), str(library), *extra, "-o", str(module)]
     subprocess.run(linking, check=True)
     return module
@@ -113,7 +126,9 @@ def _module(target: Target, work: Path, library: Path, dist: Path) -> Path:
 
 def _python_library(zig: str, compiled: Path, work: Path) -> Path:
     """Return an import library of python3.dll with what a module calls of it."""
-    table = subprocess.run(["objdump", "-t", str(compiled)], capture_output=True, text=True, check=True)
+    table = subprocess.run(
+        ["objdump", "-t", str(compiled)], capture_output=True, text=True, check=True
+    )
     names = sorted(set(re.findall(r"(?:__imp_)?(_?Py\w+)$", table.stdout, re.M)))
     wanted = [name for name in names if f"__imp_{name}" in table.stdout]
     definition, library = work / "python3.def", work / "libpython3.a"
@@ -139,7 +154,8 @@ def _describe(files: dict[str, tuple[bytes, int]], info: str, version: str, tag:
     readme = (PACKAGE / "README.md").read_text()
     text = "\n".join([*lines, "Description-Content-Type: text/markdown", "", readme])
     files[f"{info}/METADATA"] = (text.encode(), 0o644)
-    wheel = f"Wheel-Version: 1.0\nGenerator: beltrami-dist\nRoot-Is-Purelib: false\nTag: {OLDEST}-abi3-{tag}\n"
+    wheel = "Wheel-Version: 1.0\nGenerator: beltrami-dist\nRoot-Is-Purelib: false\n"
+    wheel += f"Tag: {OLDEST}-abi3-{tag}\n"
     files[f"{info}/WHEEL"] = (wheel.encode(), 0o644)
     scripts = "".join(f"{name} = {entry}\n" for name, entry in project["scripts"].items())
     files[f"{info}/entry_points.txt"] = (f"[console_scripts]\n{scripts}".encode(), 0o644)

@@ -3,9 +3,9 @@
 
     generate.py --library LIBRARY [--check]
 
-``tables.mjs`` has the layouts of structs as WebAssembly has them and the options; ``index.d.ts`` has
-the types of options and results, at the end of ``types.d.ts``. With --check nothing is written: the program fails
-where something would change.
+``tables.mjs`` has the layouts of structs as WebAssembly has them, and the options; ``index.d.ts``
+has the types of options and results, after ``types.d.ts``. With --check nothing is written: the
+program fails where something would change.
 """
 
 from __future__ import annotations
@@ -28,7 +28,13 @@ SIZES = {"uint32_t": 4, "int32_t": 4, "beltrami_status": 4, "uint64_t": 8, "doub
 BUFFER = ("beltrami_buffer", 24, 8)
 KINDS = {"uint32_t": "u32", "int32_t": "i32", "beltrami_status": "i32"}
 # What the package passes or reads.
-STRUCTS = ["beltrami_option_info", "beltrami_mesh", "beltrami_surface", "beltrami_uv_mesh", *python.CLASSES]
+STRUCTS = [
+    "beltrami_option_info",
+    "beltrami_mesh",
+    "beltrami_surface",
+    "beltrami_uv_mesh",
+    *python.CLASSES,
+]
 STRUCTS.remove("beltrami_stage")
 # As TypeScript has them.
 RESULTS = {
@@ -84,7 +90,7 @@ def tables(options: list[Any], header: Any) -> str:
         if option.name not in LEFT_OUT
     }
     lines = [
-        "// Structs as WebAssembly has them, and options: from the C header and the library's table.",
+        "// Structs as WebAssembly has them, and options: from the C header and the option table.",
         "// Written by tools/generate.py: change it there.",
         "",
         "export const layouts = {",
@@ -124,7 +130,9 @@ def result_lines(struct: str, declaration: str) -> list[str]:
     lines = [f"/** {python.SUMMARIES[python.CLASSES[struct]]} */", f"export interface {name} {{"]
     hidden = HIDDEN - {"status"} if struct == "beltrami_chart" else HIDDEN
     for field in python.read_fields(declaration, hidden):
-        kind = {"str": "string", "float": "number", "int": "number", "bool": "boolean"}.get(field.type)
+        kind = {"str": "string", "float": "number", "int": "number", "bool": "boolean"}.get(
+            field.type
+        )
         if kind is None and field.type.startswith("tuple[float"):
             kind = "number[]"
         if kind is None:
@@ -141,12 +149,21 @@ def types(options: list[Any], header: Any) -> str:
     declarations = {item.name: item.declaration for item in header.items}
     lines = [
         (PACKAGE / "types.d.ts").read_text(encoding="utf-8"),
-        "// What follows is written by tools/generate.py, from the C header and the table of options.",
+        "// What follows is written by tools/generate.py: from the C header and the option table.",
         "",
     ]
-    calls = {"FlattenOptions": python.RUN, "UnwrapOptions": python.UNWRAP, "PackOptions": python.PACK}
+    calls = {
+        "FlattenOptions": python.RUN,
+        "UnwrapOptions": python.UNWRAP,
+        "PackOptions": python.PACK,
+    }
     for name, call in calls.items():
-        lines += [f"export interface {name} extends Running {{", *option_lines(options, call), "}", ""]
+        lines += [
+            f"export interface {name} extends Running {{",
+            *option_lines(options, call),
+            "}",
+            "",
+        ]
     for struct in RESULTS:
         lines += result_lines(struct, declarations[struct])
     return "\n".join(lines)

@@ -1,7 +1,7 @@
 """The C++ library for WebAssembly: zig's own has neither exceptions nor locks.
 
-Compiled from the sources that zig brings, with WebAssembly's exceptions, and locks that cost nothing,
-as there is one thread.
+Compiled from the sources that zig brings, with WebAssembly's exceptions, and locks that cost
+nothing, as there is one thread.
 """
 
 from __future__ import annotations
@@ -34,21 +34,61 @@ CONFIGURATION = {
     "_LIBCPP_HARDENING_MODE": "_LIBCPP_HARDENING_MODE_NONE",
     "_LIBCPP_ENABLE_CXX17_REMOVED_UNEXPECTED_FUNCTIONS": "",
 }
-LIBRARY = """algorithm atomic charconv chrono condition_variable condition_variable_destructor
-    error_category exception functional future hash memory mutex mutex_destructor new_handler
-    new_helpers optional stdexcept string system_error thread vector verbose_abort ryu/d2fixed
-    ryu/d2s ryu/f2s""".split()
-EXCEPTIONS = """abort_message cxa_aux_runtime cxa_default_handlers cxa_exception
-    cxa_exception_storage cxa_guard cxa_handlers cxa_personality cxa_vector cxa_virtual
-    fallback_malloc private_typeinfo stdlib_exception stdlib_new_delete stdlib_stdexcept
-    stdlib_typeinfo""".split()
+LIBRARY = [
+    "algorithm",
+    "atomic",
+    "charconv",
+    "chrono",
+    "condition_variable",
+    "condition_variable_destructor",
+    "error_category",
+    "exception",
+    "functional",
+    "future",
+    "hash",
+    "memory",
+    "mutex",
+    "mutex_destructor",
+    "new_handler",
+    "new_helpers",
+    "optional",
+    "stdexcept",
+    "string",
+    "system_error",
+    "thread",
+    "vector",
+    "verbose_abort",
+    "ryu/d2fixed",
+    "ryu/d2s",
+    "ryu/f2s",
+]
+EXCEPTIONS = [
+    "abort_message",
+    "cxa_aux_runtime",
+    "cxa_default_handlers",
+    "cxa_exception",
+    "cxa_exception_storage",
+    "cxa_guard",
+    "cxa_handlers",
+    "cxa_personality",
+    "cxa_vector",
+    "cxa_virtual",
+    "fallback_malloc",
+    "private_typeinfo",
+    "stdlib_exception",
+    "stdlib_new_delete",
+    "stdlib_stdexcept",
+    "stdlib_typeinfo",
+]
 
 
 def flags(zig: Path) -> list[str]:
     """Return what a source in C++ is compiled with."""
     lib = zig.parent / "lib"
     places = [HERE / "include", lib / "libcxx/include", lib / "libcxxabi/include"]
-    defined = [f"-D{name}={value}" if value else f"-D{name}" for name, value in CONFIGURATION.items()]
+    defined = [
+        f"-D{name}={value}" if value else f"-D{name}" for name, value in CONFIGURATION.items()
+    ]
     return [
         *MACHINE,
         "-fwasm-exceptions",
