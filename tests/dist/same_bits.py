@@ -47,7 +47,8 @@ def call(
 ) -> subprocess.CompletedProcess[bytes]:
     """Run a program in a folder, with nothing to read."""
     command = [*words, *arguments]
-    environment = os.environ | {"WINEDEBUG": "-all"}
+    prefix = ROOT / "build" / "dist" / "wine"
+    environment = os.environ | {"WINEDEBUG": "-all", "WINEPREFIX": str(prefix)}
     return subprocess.run(
         command,
         stdin=subprocess.DEVNULL,
