@@ -85,7 +85,11 @@ if(TARGET beltrami_program)
       set(here "@loader_path")
     endif()
     file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "${here}/${to_libraries}")
+    set(places "${here}/${to_libraries}")
+    if(BELTRAMI_ZIG)
+      list(APPEND places "${here}/..") # in a wheel
+    endif()
+    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "${places}")
   endif()
   install(TARGETS beltrami_program
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)

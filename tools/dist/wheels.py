@@ -63,7 +63,7 @@ def pack(target: Target, dist: Path, out: Path, version: str) -> Path:
         module = _module(target, work, library, dist)
         compiled = {
             "_native.abi3.so": module,
-            "lib/libbeltrami.so.1": library,
+            "libbeltrami.so.1": library,
             "bin/beltrami": stage / "bin" / "beltrami",
         }
     for name, path in compiled.items():
@@ -117,7 +117,7 @@ def _module(target: Target, work: Path, library: Path, dist: Path) -> Path:
     else:
         module, extra = (
             work / "_native.abi3.so",
-            ["-Wl,-rpath,$ORIGIN/lib", "-Wl,-soname,_native.abi3.so"],
+            ["-Wl,-rpath,$ORIGIN", "-Wl,-soname,_native.abi3.so"],
         )
     linking = [*common, "-shared", "-s", str(compiled), str(library), *extra, "-o", str(module)]
     subprocess.run(linking, check=True)
