@@ -33,10 +33,10 @@
   BELTRAMI_TEXT(BELTRAMI_VERSION_MAJOR) \
   "." BELTRAMI_TEXT(BELTRAMI_VERSION_MINOR) "." BELTRAMI_TEXT(BELTRAMI_VERSION_PATCH)
 
-#define BELTRAMI_BUILD_TEXT                                                  \
-  "beltrami " BELTRAMI_VERSION_TEXT                                          \
-  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER     \
-                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD \
+#define BELTRAMI_BUILD_TEXT                                                      \
+  "beltrami " BELTRAMI_VERSION_TEXT                                              \
+  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER         \
+                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD     \
                                        ", simplifier " BELTRAMI_BUILD_SIMPLIFIER \
                                        ", exact numbers " BELTRAMI_BUILD_EXACT
 

@@ -89,8 +89,8 @@ std::uint32_t BigFloat::digit(std::int64_t place) const {
 
 void BigFloat::trim() {
   while (!digits_.empty() && digits_.back() == 0) digits_.pop_back();
-  const auto first = std::find_if(digits_.begin(), digits_.end(),
-                                  [](std::uint32_t digit) { return digit != 0; });
+  const auto first =
+      std::find_if(digits_.begin(), digits_.end(), [](std::uint32_t digit) { return digit != 0; });
   place_ += first - digits_.begin();
   digits_.erase(digits_.begin(), first);
 }

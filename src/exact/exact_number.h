@@ -1,7 +1,7 @@
 // The number type in which the predicates decide what doubles leave open. Sums, differences and
 // products of finite doubles are exact in it, without the change of the rounding mode that CGAL's
-// filtered kernels make, which emulated processors do not follow. It is CGAL's, headers alone and no
-// GMP, or our own: both have the same signs.
+// filtered kernels make, which emulated processors do not follow. It is CGAL's, headers alone and
+// no GMP, or our own: both have the same signs.
 #pragma once
 
 #ifdef BELTRAMI_EXACT_OWN

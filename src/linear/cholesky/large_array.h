@@ -16,9 +16,13 @@ namespace beltrami {
 
 struct FreeDeleter {
 #if defined(_WIN32)
-  void operator()(void* p) const { _aligned_free(p); }
+  void operator()(void* p) const {
+    _aligned_free(p);
+  }
 #else
-  void operator()(void* p) const { std::free(p); }
+  void operator()(void* p) const {
+    std::free(p);
+  }
 #endif
 };
 
