@@ -127,6 +127,8 @@ def main() -> None:
         if WASM in wanted or "npm" in wanted:
             made.append(npm.pack(build(TARGETS[WASM], arguments.jobs), DIST, OUT, version()))
         if "wheels" in wanted:
+            if not any((DIST / "stage" / t.name).exists() for t in TARGETS.values() if t.wheel):
+                sys.exit("dist: wheels are made of targets: name one that has some, too")
             for target in TARGETS.values():
                 if target.wheel and (
                     arguments.what == [] or (DIST / "stage" / target.name).exists()
