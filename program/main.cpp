@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -13,6 +14,7 @@
 
 #include "commands/command.h"
 #include "commands/completions.h"
+#include "commands/man_page.h"
 #include "commands/options.h"
 #include "commands/spelling.h"
 #include "files/inside_folder.h"
@@ -89,6 +91,17 @@ constexpr const char* kTransfer =
     "  beltrami unwrap painted.obj better.obj\n"
     "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
 
+constexpr const char* kReportHelp =
+    "Write a report; - prints it on standard output instead of the summary";
+
+/// Takes the name "-" of a report for standard output.
+template <class Arguments>
+void take_standard_output(Arguments& arguments) {
+  if (arguments.report != "-") return;
+  arguments.report.clear();
+  arguments.print_report = true;
+}
+
 void add_reach(CLI::App& command, Reach& reach) {
   command.add_flag_callback(
       "--allow-outside", [&reach] { reach = Reach::kAnywhere; },
@@ -139,7 +152,7 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
           "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
       ->type_name("NUMBER");
   options.add_to(*command);
-  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the pages")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
@@ -243,7 +256,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_flag("--triangulate", arguments.triangulate,
                     "Write the triangles that were computed on, in the orientation in which their\n"
                     "UVs are positive");
-  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
@@ -262,7 +275,7 @@ CLI::App* add_flatten(CLI::App& app, FlattenArguments& arguments, Options& optio
                     "Flatten vertices at one place (to the last bit) as one; every vertex of the\n"
                     "file stays in OUT");
   options.add_to(*command);
-  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
@@ -307,7 +320,7 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
       ->add_flag("--within-tiles", arguments.within_tiles,
                  "Fail where a chart is not within one of the tiles of UDIM")
       ->group("Pages");
-  command->add_option("--report", arguments.report, "Write a report")->type_name("FILE.json");
+  command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the map")
       ->type_name("FILE.png");
   add_reach(*command, arguments.reach);
@@ -423,6 +436,12 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
   return "";
 }
 
+std::string version_text() {
+  const std::uint32_t version = beltrami_version();
+  return std::to_string(version / 1000000) + "." + std::to_string(version / 1000 % 1000) + "." +
+         std::to_string(version % 1000);
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Injective, low-distortion UVs: atlases of any mesh, packed, and maps of disks",
                "beltrami");
@@ -443,6 +462,10 @@ int run(int argc, char** argv) {
   const CLI::App* transfer_app = add_transfer(app, transfer);
   std::string shell;
   const CLI::App* completions_app = add_completions(app, shell);
+  app.add_flag_callback(
+         "--man", [&app] { throw CLI::CallForVersion(man_page(app, version_text()), 0); },
+         "Print the manual page, beltrami.1")
+      ->configurable(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -457,6 +480,10 @@ int run(int argc, char** argv) {
   if (completions_app->parsed()) {
     return print(completions(shell, completed_commands(app)), "the completions", 0);
   }
+  take_standard_output(flatten);
+  take_standard_output(unwrap);
+  take_standard_output(pack);
+  take_standard_output(check);
   if (pack_app->parsed()) return pack_command(pack, of_pack);
   if (transfer_app->parsed()) return transfer_command(transfer);
   if (unwrap_app->parsed()) return unwrap_command(unwrap, of_unwrap);

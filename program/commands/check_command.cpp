@@ -83,7 +83,8 @@ class Check {
     format_of(arguments_.input);
     require_png_name(arguments_.picture);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
-    if (!arguments_.quiet) require_apart_from_stdout({arguments_.report, arguments_.picture});
+    if (!arguments_.quiet || arguments_.print_report)
+      require_apart_from_stdout({arguments_.report, arguments_.picture});
     for (const std::string& path : {arguments_.report, arguments_.picture}) {
       if (!path.empty()) require_writable(path);
     }
@@ -246,7 +247,8 @@ class Check {
       outputs.emplace_back(arguments_.report).write(to_json(report_));
       outputs.back().close();
     }
-    const std::string summary = arguments_.quiet ? std::string() : to_summary(report_, "");
+    std::string summary = arguments_.quiet ? std::string() : to_summary(report_, "");
+    if (arguments_.print_report) summary = to_json(report_);
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
@@ -269,6 +271,7 @@ class Check {
 int check_command(const CheckArguments& arguments) {
   Report report;
   report.command = "check";
+  report.printed = arguments.print_report;
   report.input_path = arguments.input;
   report.options = {{"float32", arguments.float32},
                     {"mirrored", arguments.mirrored},

@@ -21,10 +21,14 @@ const auto kProgramStart = std::chrono::steady_clock::now();
 /// Never throws: the line on stderr is taken by the first failure, which is the one to mend first.
 template <class MakeFailure>
 void report_failure(Report& report, const std::string& path, MakeFailure&& failure) {
-  if (path.empty()) return;
+  if (path.empty() && !report.printed) return;
   try {
     report.set_failure(failure());
     report.seconds = seconds_so_far();
+    if (report.printed) {
+      print(to_json(report), "the report", 0);
+      return;
+    }
     AtomicFile file(path);
     file.write(to_json(report));
     file.commit();

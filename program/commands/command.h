@@ -22,6 +22,7 @@ struct FlattenArguments {
   Reach reach = Reach::kItsFolder;  ///< of names inside the mesh
   bool weld = false;                ///< vertices at one place count as one
   bool quiet = false;
+  bool print_report = false;  ///< on standard output, instead of the summary
 };
 
 struct UnwrapArguments {
@@ -38,6 +39,7 @@ struct UnwrapArguments {
   Reach reach = Reach::kItsFolder;
   bool triangulate = false;  ///< write the triangles that were computed on
   bool quiet = false;
+  bool print_report = false;  ///< on standard output, instead of the summary
 };
 
 struct PackArguments {
@@ -51,6 +53,7 @@ struct PackArguments {
   std::uint32_t uv_set = 0;          ///< of glTF
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
+  bool print_report = false;  ///< on standard output, instead of the summary
 };
 
 struct TransferArguments {
@@ -75,6 +78,7 @@ struct CheckArguments {
   bool within_tiles = false;        ///< each chart has to be in a tile of UDIM
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
+  bool print_report = false;  ///< on standard output, instead of the summary
 };
 
 /// The commands: the exit code. They print the summary, or one line on stderr.

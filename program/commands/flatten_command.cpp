@@ -57,7 +57,7 @@ class Flattening {
     require_distinct({arguments_.output, arguments_.report, arguments_.picture});
     const std::vector<std::string> written = {arguments_.output, arguments_.report,
                                               arguments_.picture};
-    if (!arguments_.quiet) require_apart_from_stdout(written);
+    if (!arguments_.quiet || arguments_.print_report) require_apart_from_stdout(written);
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
     }
@@ -193,6 +193,7 @@ class Flattening {
       note = to_note(report_, arguments_.output);
       summary = to_summary(report_, arguments_.output);
     }
+    if (arguments_.print_report) summary = to_json(report_);
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
@@ -232,6 +233,7 @@ class Flattening {
 int flatten_command(const FlattenArguments& arguments, Options& options) {
   Report report;
   report.command = "flatten";
+  report.printed = arguments.print_report;
   report.input_path = arguments.input;
   note_options(arguments, options, report);
   return run_guarded(report, arguments.report,

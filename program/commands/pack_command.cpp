@@ -137,7 +137,7 @@ class PackRun {
       written.push_back(mesh.output);
     }
     require_distinct(written);
-    if (!arguments_.quiet) require_apart_from_stdout(written);
+    if (!arguments_.quiet || arguments_.print_report) require_apart_from_stdout(written);
     if (!arguments_.masks.empty()) written.push_back(path_of_page(arguments_.masks, 0));
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
@@ -340,6 +340,7 @@ class PackRun {
       note = to_note(report_, written);
       summary = to_summary(report_, written);
     }
+    if (arguments_.print_report) summary = to_json(report_);
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
@@ -381,6 +382,7 @@ class PackRun {
 int pack_command(const PackArguments& arguments, Options& options) {
   Report report;
   report.command = "pack";
+  report.printed = arguments.print_report;
   report.input_path = arguments.files.front();
   note_options(arguments, options, report);
   std::vector<std::string> others = arguments.files;

@@ -9,20 +9,36 @@
 namespace beltrami::cli {
 namespace {
 
-constexpr int kBarWidth = 30;  // the whole line fits a terminal of 60 columns
+constexpr int kBarWidth = 30;      // of a wide terminal: a longer bar says no more
+constexpr int kLeastBarWidth = 5;  // a shorter one says less than the number beside it
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 
 }  // namespace
 
-std::string progress_line(double fraction, const std::string& stage, double seconds) {
+std::string progress_line(double fraction, const std::string& stage, double seconds, int columns) {
   const double bounded = fraction > 0 ? std::min(fraction, 1.0) : 0.0;
-  const int filled = static_cast<int>(bounded * kBarWidth);
-  std::string bar(static_cast<std::size_t>(filled), '#');
-  bar.resize(kBarWidth, '.');
-  std::array<char, 128> line;
-  std::snprintf(line.data(), line.size(), "%-10.10s [%s] %3d%% %7.1f s", stage.c_str(), bar.c_str(),
-                static_cast<int>(bounded * 100), seconds);
-  return line.data();
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%-10.10s ", stage.c_str());
+  const std::string name = text.data();
+  std::snprintf(text.data(), text.size(), "%3d%%", static_cast<int>(bounded * 100));
+  const std::string percent = text.data();
+  std::snprintf(text.data(), text.size(), " %7.1f s", seconds);
+  const std::string time = text.data();
+
+  // The last column stays free: some terminals wrap a line that fills it.
+  const int room = std::max(columns - 1, 0);
+  const auto length = [](const std::string& part) { return static_cast<int>(part.size()); };
+  const int beside_bar = length(name) + length(percent) + length(time) + 3;
+  const int width = std::min(room - beside_bar, kBarWidth);
+  if (width >= kLeastBarWidth) {
+    std::string bar(static_cast<std::size_t>(bounded * width), '#');
+    bar.resize(static_cast<std::size_t>(width), '.');
+    return name + "[" + bar + "] " + percent + time;
+  }
+  for (const std::string& line : {name + percent + time, name + percent, percent}) {
+    if (length(line) <= room) return line;
+  }
+  return "";
 }
 
 ProgressBar::ProgressBar(bool wanted) : active_(wanted && stderr_is_terminal()) {}
@@ -38,7 +54,8 @@ void ProgressBar::show(double fraction, const char* stage) {
   last_ = now;
   stage_ = stage;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\x1b[2K%s", progress_line(fraction, stage_, seconds).c_str());
+  const std::string line = progress_line(fraction, stage_, seconds, stderr_columns());
+  std::fprintf(stderr, "\r\x1b[2K%s", line.c_str());
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -29,7 +29,8 @@ class ProgressBar {
   std::string stage_;
 };
 
-/// The line itself: "flatten   [#####     ]  50%    3.2 s".
-std::string progress_line(double fraction, const std::string& stage, double seconds);
+/// The line itself: "flatten    [#####......]  50%     3.2 s". It is shorter than `columns`: where
+/// they are few, the bar goes first, then the time, then the stage. "" where nothing fits.
+std::string progress_line(double fraction, const std::string& stage, double seconds, int columns);
 
 }  // namespace beltrami::cli

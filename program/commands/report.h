@@ -54,6 +54,7 @@ struct BakedCounts {
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
+  bool printed = false;  ///< goes to standard output, failures too
   std::string status = "BELTRAMI_OK";
   std::string message;  ///< of a failure
   std::int32_t element_kind = BELTRAMI_ELEMENT_NONE;

@@ -93,7 +93,7 @@ class Unwrapping {
     }
     const std::vector<std::string> written = {arguments_.output, arguments_.written_seams,
                                               arguments_.report, arguments_.picture};
-    if (!arguments_.quiet) require_apart_from_stdout(written);
+    if (!arguments_.quiet || arguments_.print_report) require_apart_from_stdout(written);
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
     }
@@ -313,6 +313,7 @@ class Unwrapping {
       note = to_note(report_, arguments_.output);
       summary = to_summary(report_, arguments_.output);
     }
+    if (arguments_.print_report) summary = to_json(report_);
     bar_.clear();
     throw_if_interrupted();
     // From here on nothing needs memory: with something replaced, it must not run out.
@@ -376,6 +377,7 @@ class Unwrapping {
 int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   Report report;
   report.command = "unwrap";
+  report.printed = arguments.print_report;
   report.input_path = arguments.input;
   note_options(arguments, options, report);
   return run_guarded(report, arguments.report,

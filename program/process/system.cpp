@@ -8,6 +8,7 @@
 // After it.
 #include <psapi.h>
 #else
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #endif
@@ -16,6 +17,11 @@
 #endif
 
 namespace beltrami::cli {
+namespace {
+
+constexpr int kUnknownColumns = 60;
+
+}  // namespace
 
 #if defined(_WIN32)
 
@@ -30,6 +36,13 @@ bool stderr_is_terminal() {
   DWORD mode = 0;
   if (GetConsoleMode(console, &mode) == 0) return false;  // a file, a pipe, or nothing
   return SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+int stderr_columns() {
+  CONSOLE_SCREEN_BUFFER_INFO info{};
+  if (GetConsoleScreenBufferInfo(GetStdHandle(STD_ERROR_HANDLE), &info) == 0)
+    return kUnknownColumns;
+  return info.srWindow.Right - info.srWindow.Left + 1;
 }
 
 void prepare_console() {
@@ -50,6 +63,12 @@ std::uint64_t peak_memory_bytes() {
 
 bool stderr_is_terminal() {
   return isatty(STDERR_FILENO) != 0;
+}
+
+int stderr_columns() {
+  winsize size{};
+  const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return told ? size.ws_col : kUnknownColumns;
 }
 
 void prepare_console() {}

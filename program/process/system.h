@@ -15,6 +15,10 @@ std::int64_t usable_cores();
 /// Whether standard error is a terminal that takes escape sequences.
 bool stderr_is_terminal();
 
+/// Columns of the terminal of standard error at this moment: it may be resized. A guess where it
+/// does not say.
+int stderr_columns();
+
 /// Text is UTF-8, whatever the console takes it for. Call it first.
 void prepare_console();
 

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -131,6 +133,58 @@ TEST(Arguments, NamesFromFilesReachNoTerminalRaw) {
   EXPECT_EQ(missing.exit_code, kExitUnusable);
   EXPECT_EQ(missing.err.find('\x1b'), std::string::npos);
   EXPECT_EQ(missing.err_lines(), 1);
+}
+
+TEST(ReportOnStandardOutput, IsAllThatIsPrintedThere) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", grid(4));
+  const std::string out = directory.path("out.obj");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"flatten", in, out},
+                                                  {"unwrap", in, out},
+                                                  {"pack", out, directory.path("packed.obj")},
+                                                  {"check", out}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--report", "-", "--quiet"});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["command"], command[0]);
+    EXPECT_EQ(report["injective"]["result"], true);
+    arguments.pop_back();
+    EXPECT_TRUE(nlohmann::json::accept(run(arguments).out));
+  }
+}
+
+TEST(ReportOnStandardOutput, TellsAFailure) {
+  const TemporaryDirectory directory;
+  const Outcome outcome = run({"check", directory.path("none.obj"), "--report", "-"});
+  EXPECT_EQ(outcome.exit_code, kExitUnusable);
+  EXPECT_EQ(outcome.err_lines(), 1);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["status"], "FILE_ERROR");
+}
+
+TEST(ManPage, HasEveryOptionOfEveryCommandAndOneTitle) {
+  const Outcome page = run({"--man"});
+  EXPECT_EQ(page.exit_code, 0);
+  EXPECT_EQ(page.err, "");
+  EXPECT_EQ(page.out.rfind(".TH BELTRAMI 1 ", 0), 0u);
+  for (const char* name : {"UNWRAP", "FLATTEN", "CHECK", "PACK", "TRANSFER", "COMPLETIONS"}) {
+    EXPECT_NE(page.out.find(std::string(".SH BELTRAMI ") + name + "\n"), std::string::npos);
+  }
+  for (const char* option : {"\\-\\-target\\-energy", "\\-\\-report", "\\-q, \\-\\-quiet"}) {
+    EXPECT_NE(page.out.find(std::string("\\fB") + option + "\\fR"), std::string::npos) << option;
+  }
+  EXPECT_EQ(page.out, run({"--man"}).out);
+}
+
+TEST(ManPage, IsWellFormed) {
+  if (std::system("command -v groff > /dev/null 2>&1") != 0) GTEST_SKIP() << "there is no groff";
+  const TemporaryDirectory directory;
+  const std::string page = directory.file("beltrami.1", run({"--man"}).out);
+  const std::string said = directory.path("said");
+  ASSERT_EQ(std::system(("groff -man -Tascii -ww -z '" + page + "' > '" + said + "' 2>&1").c_str()),
+            0);
+  EXPECT_EQ(std::filesystem::file_size(said), 0u);
 }
 
 /// What a shell says to a script, of which "$1" is the file of completions.

@@ -107,11 +107,21 @@ TEST(Report, NeverHoldsNumbersThatJsonHasNot) {
 }
 
 TEST(ProgressLine, IsShortAndBounded) {
-  EXPECT_EQ(progress_line(0.5, "flatten", 3.2),
+  EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 200),
             "flatten    [###############...............]  50%     3.2 s");
   for (const double fraction : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(progress_line(fraction, "a stage with a long name", 1).size(), 58u);
+    EXPECT_EQ(progress_line(fraction, "a stage with a long name", 1, 200).size(), 58u);
   }
+}
+
+TEST(ProgressLine, FitsTheTerminal) {
+  for (int columns = 0; columns < 100; ++columns) {
+    const std::string line = progress_line(0.5, "flatten", 3.2, columns);
+    EXPECT_LT(line.size(), static_cast<std::size_t>(columns) + (columns == 0 ? 1 : 0));
+    EXPECT_EQ(line.find("50%") != std::string::npos, columns > 4) << columns;
+  }
+  EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 40), "flatten    [#####......]  50%     3.2 s");
+  EXPECT_EQ(progress_line(0.5, "flatten", 3.2, 30), "flatten     50%     3.2 s");
 }
 
 TEST(OneLine, HasNoControlCharacters) {

@@ -130,6 +130,8 @@ class Option:
     summary: str
     calls: int  # sum of the CALL_ numbers of those that take it
     of_presets: bool  # whether the option "preset" sets it
+    minimum: float
+    maximum: float
 
     @property
     def annotated(self) -> str:
@@ -217,7 +219,8 @@ def _option(info: Any, choices: list[str], of_presets: bool) -> Option:
         kind = "float" if info.type == FLOAT else "int"
         default = info.default_value if info.type == FLOAT else int(info.default_value)
         span = f"from {info.minimum:,.10g} to {info.maximum:,.10g}"
-    return Option(name, kind, default, span, choices, summary, info.calls, of_presets)
+    span_of = (info.minimum, info.maximum)
+    return Option(name, kind, default, span, choices, summary, info.calls, of_presets, *span_of)
 
 
 def _camel(name: str) -> str:
