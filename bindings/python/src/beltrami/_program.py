@@ -19,6 +19,6 @@ def become(arguments: list[str]) -> None:
     """Run the program in place of this process, with these arguments."""
     sys.stdout.flush()
     sys.stderr.flush()
-    if os.name == "nt":  # whose processes cannot be replaced: the caller would not wait for the new one
+    if os.name == "nt":  # where the caller would not wait for a process that replaces this one
         raise SystemExit(subprocess.run([path(), *arguments], check=False).returncode)
     os.execv(path(), [str(path()), *arguments])
