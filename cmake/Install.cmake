@@ -79,9 +79,17 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/beltrami.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 if(TARGET beltrami_program)
-  if(UNIX AND NOT APPLE)
+  if(UNIX)
+    set(here "$ORIGIN")
+    if(APPLE)
+      set(here "@loader_path")
+    endif()
     file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+    set(places "${here}/${to_libraries}")
+    if(BELTRAMI_ZIG)
+      list(APPEND places "${here}/..") # in a wheel
+    endif()
+    set_target_properties(beltrami_program PROPERTIES INSTALL_RPATH "${places}")
   endif()
   install(TARGETS beltrami_program
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)

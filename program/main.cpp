@@ -21,6 +21,7 @@
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {
@@ -498,6 +499,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace beltrami::cli;
   reserve_standard_descriptors();
+  prepare_console();
   install_signal_handlers();
   try {
     return run(argc, argv);

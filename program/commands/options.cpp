@@ -7,13 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
-#include <thread>
-
-#if defined(__linux__)
-#include <sched.h>
-#endif
 
 #include "process/failure.h"
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {
@@ -26,15 +22,6 @@ std::string plain_number(double value) {
     std::snprintf(digits, sizeof digits, "%g", value);
   }
   return digits;
-}
-
-/// Cores that the process may use: not all that there are, under taskset or a job scheduler.
-std::int64_t usable_cores() {
-#if defined(__linux__)
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
-#endif
-  return std::max<std::int64_t>(1, std::thread::hardware_concurrency());
 }
 
 std::string default_word(const Option& option) {

@@ -4,37 +4,14 @@
 #include <array>
 #include <cstdio>
 
-#if defined(_WIN32)
-#include <io.h>
-#else
-#include <sys/ioctl.h>
-#include <unistd.h>
-#endif
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {
 
 constexpr int kBarWidth = 30;      // of a wide terminal: a longer bar says no more
 constexpr int kLeastBarWidth = 5;  // a shorter one says less than the number beside it
-constexpr int kUnknownColumns = 60;
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
-
-bool stderr_is_terminal() {
-#if defined(_WIN32)
-  return _isatty(2) != 0;
-#else
-  return isatty(2) != 0;
-#endif
-}
-
-/// Asked anew for each line, so that a terminal may be resized meanwhile.
-int stderr_columns() {
-#if !defined(_WIN32)
-  winsize size{};
-  if (ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-#endif
-  return kUnknownColumns;
-}
 
 }  // namespace
 

@@ -6,11 +6,8 @@
 #include <cstdio>
 #include <utility>
 
-#if !defined(_WIN32)
-#include <sys/resource.h>
-#endif
-
 #include "files/mesh_file.h"
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {
@@ -215,21 +212,6 @@ void append_textures(const BakedCounts& counts, std::string& text) {
 double seam_over_root_area(const beltrami_atlas& atlas) {
   // Without seams the area, which may be too small for a double, does not matter.
   return atlas.seam_length > 0 ? atlas.seam_length / std::sqrt(atlas.area) : 0;
-}
-
-/// Of the whole process so far; 0 where the system does not say.
-std::uint64_t peak_memory_bytes() {
-#if defined(_WIN32)
-  return 0;
-#else
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-#if defined(__APPLE__)
-  return static_cast<std::uint64_t>(usage.ru_maxrss);
-#else
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-#endif
-#endif
 }
 
 const char* element_name(std::int32_t kind) {

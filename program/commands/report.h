@@ -102,9 +102,6 @@ struct Report {
 /// Length of the seams of an atlas, over the root of its area.
 double seam_over_root_area(const beltrami_atlas& atlas);
 
-/// Of the whole process so far; 0 where the system does not say.
-std::uint64_t peak_memory_bytes();
-
 /// The JSON text, with a final line end.
 std::string to_json(const Report& report);
 

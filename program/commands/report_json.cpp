@@ -7,6 +7,7 @@
 
 #include "commands/page_layout.h"
 #include "commands/report.h"
+#include "process/system.h"
 
 namespace beltrami::cli {
 namespace {

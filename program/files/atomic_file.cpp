@@ -192,7 +192,7 @@ void AtomicFile::take_back() noexcept {
 void commit(std::deque<AtomicFile>& files) {
   for (AtomicFile& file : files) file.close();
   for (AtomicFile& file : files) file.keep_old();
-  const HoldSignals hold;
+  [[maybe_unused]] const HoldSignals hold;
   try {
     for (AtomicFile& file : files) file.put_in_place();
   } catch (...) {

@@ -22,6 +22,7 @@
 #include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "exact/exact_number.h"
 #include "linear/spd_solver.h"
 #include "ring/triangulate_ring.h"
 #include "simplify/simplify.h"
@@ -32,23 +33,30 @@
   BELTRAMI_TEXT(BELTRAMI_VERSION_MAJOR) \
   "." BELTRAMI_TEXT(BELTRAMI_VERSION_MINOR) "." BELTRAMI_TEXT(BELTRAMI_VERSION_PATCH)
 
-#define BELTRAMI_BUILD_TEXT                                                  \
-  "beltrami " BELTRAMI_VERSION_TEXT                                          \
-  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER     \
-                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD \
-                                       ", simplifier " BELTRAMI_BUILD_SIMPLIFIER
+#define BELTRAMI_BUILD_TEXT                                                      \
+  "beltrami " BELTRAMI_VERSION_TEXT                                              \
+  ", ABI " BELTRAMI_TEXT(BELTRAMI_ABI) ", solver " BELTRAMI_BUILD_SOLVER         \
+                                       ", scaffold " BELTRAMI_BUILD_SCAFFOLD     \
+                                       ", simplifier " BELTRAMI_BUILD_SIMPLIFIER \
+                                       ", exact numbers " BELTRAMI_BUILD_EXACT
 
 namespace beltrami {
 namespace {
 
 constexpr std::string_view kSolver = "solver:", kScaffold = "scaffold:",
-                           kSimplifier = "simplifier:";
+                           kSimplifier = "simplifier:", kExact = "exact:";
 
 /// Whether what this build links is under the GPL: CHOLMOD's Supernodal module is, and CGAL's
 /// package of triangulations.
 bool has_gpl() {
   return std::string_view(spd_solver_name()) == "cholmod" ||
          std::string_view(ring_triangulation_name()) == "cgal";
+}
+
+/// Whether it is under the LGPL: CGAL's numbers are, and CHOLMOD's other modules.
+bool has_lgpl() {
+  return std::string_view(kExactNumberName) == "cgal" ||
+         std::string_view(spd_solver_name()).starts_with("cholmod");
 }
 
 beltrami_option_info describe(const OptionEntry& option) {
@@ -132,20 +140,25 @@ uint32_t beltrami_version(void) {
 }
 
 const char* beltrami_build_info(void) {
-  return beltrami::has_gpl() ? BELTRAMI_BUILD_TEXT ", links GPL code: distribute under the GPL only"
-                             : BELTRAMI_BUILD_TEXT ", links no GPL code";
+  if (beltrami::has_gpl()) {
+    return BELTRAMI_BUILD_TEXT ", links GPL code: distribute under the GPL only";
+  }
+  return beltrami::has_lgpl() ? BELTRAMI_BUILD_TEXT ", links no GPL code, but LGPL code"
+                              : BELTRAMI_BUILD_TEXT ", links no GPL code and no LGPL code";
 }
 
 int32_t beltrami_has(const char* feature) {
   if (feature == nullptr) return 0;
   const std::string_view name(feature);
   if (name == "gpl") return beltrami::has_gpl() ? 1 : 0;
+  if (name == "lgpl") return beltrami::has_lgpl() ? 1 : 0;
   const auto is = [&](std::string_view prefix, const char* value) {
     return name.starts_with(prefix) && name.substr(prefix.size()) == value;
   };
   return is(beltrami::kSolver, beltrami::spd_solver_name()) ||
          is(beltrami::kScaffold, beltrami::ring_triangulation_name()) ||
-         is(beltrami::kSimplifier, beltrami::simplifier_name());
+         is(beltrami::kSimplifier, beltrami::simplifier_name()) ||
+         is(beltrami::kExact, beltrami::kExactNumberName);
 }
 
 const char* beltrami_status_name(beltrami_status status) {

@@ -32,6 +32,9 @@ TEST(Library, HasOneSolver) {
             1);
   EXPECT_EQ(beltrami_has("scaffold:own") + beltrami_has("scaffold:cgal"), 1);
   EXPECT_EQ(beltrami_has("simplifier:native") + beltrami_has("simplifier:openmesh"), 1);
+  EXPECT_EQ(beltrami_has("exact:own") + beltrami_has("exact:cgal"), 1);
+  EXPECT_EQ(beltrami_has("lgpl"), beltrami_has("exact:cgal") || beltrami_has("solver:cholmod") ||
+                                      beltrami_has("solver:cholmod-simplicial"));
   EXPECT_EQ(beltrami_has("gpl"), beltrami_has("solver:cholmod") || beltrami_has("scaffold:cgal"));
   EXPECT_EQ(beltrami_has("solver:"), 0);
   EXPECT_EQ(beltrami_has(""), 0);

@@ -2,6 +2,7 @@
 // rational numbers: pair by pair, and without the predicates of the library.
 #pragma once
 
+#include <CGAL/MP_Float.h>
 #include <CGAL/Quotient.h>
 
 #include <Eigen/Geometry>
@@ -12,7 +13,6 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "exact/exact_number.h"
 
 namespace beltrami {
 
@@ -54,7 +54,7 @@ struct UvFaces {
 };
 
 using Pair = std::array<Index, 2>;
-using Rational = CGAL::Quotient<ExactNumber>;
+using Rational = CGAL::Quotient<CGAL::MP_Float>;
 using RationalPoint = std::array<Rational, 2>;
 
 inline Rational twice_area(const RationalPoint& a, const RationalPoint& b, const RationalPoint& c) {

@@ -6,7 +6,7 @@
 Looks at every header that an object of the library was compiled from, as ninja recorded them, at
 the shared libraries that the library needs, and at the first line of PROGRAM, which prints
 beltrami_build_info(). Without GPL code the line must say "links no GPL code", with it "links GPL
-code".
+code"; without CGAL's numbers and CHOLMOD, which are under the LGPL, "no LGPL code".
 """
 import argparse
 import pathlib
@@ -54,8 +54,9 @@ def main():
     arguments = parser.parse_args()
 
     headers = headers_of(arguments.build)
-    if not any("CGAL" in header.parts for header in headers):
-        sys.exit("ninja names no CGAL header of the library: nothing was looked at")
+    if not any("Eigen" in header.parts for header in headers):
+        sys.exit("ninja names no header of Eigen: nothing was looked at")
+    lgpl = any("CGAL" in header.parts or header.name.startswith("cholmod") for header in headers)
     dynamic = subprocess.run(["readelf", "-d", arguments.library], capture_output=True, text=True,
                              check=True).stdout
     needed = re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic)
@@ -70,6 +71,8 @@ def main():
     if says == ("links no GPL code" in line):
         sys.exit(f"beltrami_build_info() says neither or both: {line}")
     print(f"{line}\n{len(headers)} headers, needs {', '.join(needed)}")
+    if not says and lgpl == ("no LGPL code" in line):
+        sys.exit("the library has LGPL code and does not say so, or says so and has none")
     if says and not found:
         sys.exit("the library says that it links GPL code, but there is none")
     if not says and found:

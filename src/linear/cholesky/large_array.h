@@ -8,12 +8,22 @@
 
 #ifdef __linux__
 #include <sys/mman.h>
+#elif defined(_WIN32)
+#include <malloc.h>
 #endif
 
 namespace beltrami {
 
 struct FreeDeleter {
-  void operator()(void* p) const { std::free(p); }
+#if defined(_WIN32)
+  void operator()(void* p) const {
+    _aligned_free(p);
+  }
+#else
+  void operator()(void* p) const {
+    std::free(p);
+  }
+#endif
 };
 
 /// Uninitialised numbers.
@@ -31,7 +41,11 @@ LargeArray<T> allocate_large(std::int64_t count) {
   const bool large = bytes >= 4 * kLargePage;
   const std::size_t alignment = large ? kLargePage : 64;
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+#if defined(_WIN32)
+  void* const memory = _aligned_malloc(rounded, alignment);
+#else
   void* const memory = std::aligned_alloc(alignment, rounded);
+#endif
   if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   if (large) madvise(memory, rounded, MADV_HUGEPAGE);  // a hint: failure changes nothing

@@ -119,8 +119,8 @@ BELTRAMI_API uint32_t beltrami_version(void);
 BELTRAMI_API const char* beltrami_build_info(void);
 
 /* 1 if this build has `feature`, else 0: "solver:native", "solver:eigen", "solver:cholmod",
- * "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "gpl". NULL and
- * unknown names give 0. Cannot fail. */
+ * "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "exact:own",
+ * "exact:cgal", "gpl", "lgpl". NULL and unknown names give 0. Cannot fail. */
 BELTRAMI_API int32_t beltrami_has(const char* feature);
 
 /* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static,

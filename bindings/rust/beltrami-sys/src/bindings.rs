@@ -77,8 +77,8 @@ extern "C" {
 }
 extern "C" {
     /** 1 if this build has `feature`, else 0: "solver:native", "solver:eigen", "solver:cholmod",
- "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "gpl". NULL and
- unknown names give 0. Cannot fail.*/
+ "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "exact:own",
+ "exact:cgal", "gpl", "lgpl". NULL and unknown names give 0. Cannot fail.*/
     pub fn beltrami_has(feature: *const ::core::ffi::c_char) -> i32;
 }
 extern "C" {

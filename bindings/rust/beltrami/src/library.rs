@@ -21,7 +21,7 @@ pub fn build_info() -> &'static str {
 
 /// Whether the library at run time has a feature: `"solver:native"`, `"solver:eigen"`,
 /// `"solver:cholmod"`, `"scaffold:own"`, `"scaffold:cgal"`, `"simplifier:native"`,
-/// `"simplifier:openmesh"`, `"gpl"`.
+/// `"simplifier:openmesh"`, `"exact:own"`, `"exact:cgal"`, `"gpl"`, `"lgpl"`.
 pub fn has(feature: &str) -> bool {
     // SAFETY: the text is NUL-terminated and lasts for the call.
     CString::new(feature).is_ok_and(|name| unsafe { sys::beltrami_has(name.as_ptr()) } != 0)

@@ -1,0 +1,57 @@
+"""The npm package: the library as WebAssembly, with what JavaScript needs to call it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import archive
+import checks
+import inputs
+import sbom
+from targets import TARGETS, WASM
+from wasm import runtime
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "bindings" / "npm"
+FILES = ["index.mjs", "index.d.ts", "tables.mjs", "README.md"]
+STACK = 8 << 20  # bytes: as threads of Linux have
+MOST_BYTES = 1_500_000  # of the package
+
+
+def link(build: Path, runtime_library: Path, target: Path) -> Path:
+    """Link the static library of a build into a module that exports the C interface."""
+    zig = str(inputs.zig_path())
+    glue = build / "glue.o"
+    common = ["-target", runtime.TARGET, *runtime.MACHINE, "-g0", "-O2"]
+    include = f"-I{ROOT / 'include'}"
+    compiling = [zig, "cc", *common, include, "-c", str(PACKAGE / "glue.c"), "-o", str(glue)]
+    subprocess.run(compiling, check=True)
+    exports = [f"-Wl,--export={name}" for name in sorted(checks.symbols() | {"malloc", "free"})]
+    libraries = [str(build / "src" / "libbeltrami.a"), str(runtime_library)]
+    words = [zig, "c++", *common, "-s", "-mexec-model=reactor", "-nostdlib++", *exports]
+    words += [f"-Wl,-z,stack-size={STACK}", str(glue), *libraries, "-o", str(target)]
+    subprocess.run(words, check=True)
+    return target
+
+
+def pack(build: Path, dist: Path, out: Path, version: str) -> Path:
+    """Assemble the package below `dist` and pack it as `npm pack` does; return the file."""
+    stage = dist / "stage" / WASM
+    shutil.rmtree(stage, ignore_errors=True)
+    stage.mkdir(parents=True)
+    link(build, dist / "runtime" / "libc++.a", stage / "beltrami.wasm")
+    for name in FILES:
+        shutil.copy(PACKAGE / name, stage / name)
+    shutil.copy(ROOT / "LICENSE", stage / "LICENSE")
+    for licence in inputs.licences():
+        shutil.copy(licence, stage / licence.name)
+    description = json.loads((PACKAGE / "package.json").read_text()) | {"version": version}
+    (stage / "package.json").write_text(json.dumps(description, indent=2) + "\n")
+    sbom.write_sbom(stage, TARGETS[WASM], version, sbom.kinds_of(TARGETS[WASM]))
+    packed = archive.pack(stage, out / f"beltrami-{version}.tgz", "package")
+    if packed.stat().st_size > MOST_BYTES:
+        raise checks.CheckError(f"{packed.name} has {packed.stat().st_size} bytes")
+    return packed
