@@ -32,7 +32,7 @@ namespace {
 
 using Uv = std::array<double, 2>;
 using TriangleUvs = std::array<Uv, 3>;
-using Place = std::array<double, 3>;
+using SpacePoint = std::array<double, 3>;
 
 constexpr std::uint64_t kNoPage = BakeCall::kNoPage;
 
@@ -77,7 +77,7 @@ Pixels read_texture(const std::string& path) {
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
 struct Textured {
-  std::vector<Place> places;         ///< of the corners
+  std::vector<SpacePoint> places;    ///< of the corners
   std::vector<TriangleUvs> uvs;      ///< on their pages
   std::vector<std::uint64_t> pages;  ///< kNoPage for a triangle that no texture is on
   bool tiled = false;                ///< a triangle is in another tile of the plane than [0,1]^2
@@ -161,8 +161,8 @@ bool same_places(const MeshFile& from, const MeshFile& to, double tolerance) {
 
 /// The diagonal of the box around a mesh.
 double size_of(const Textured& mesh) {
-  Place low = mesh.places.empty() ? Place{} : mesh.places.front(), high = low;
-  for (const Place& place : mesh.places) {
+  SpacePoint low = mesh.places.empty() ? SpacePoint{} : mesh.places.front(), high = low;
+  for (const SpacePoint& place : mesh.places) {
     for (std::size_t d = 0; d < 3; ++d) {
       low[d] = std::min(low[d], place[d]);
       high[d] = std::max(high[d], place[d]);
@@ -172,10 +172,10 @@ double size_of(const Textured& mesh) {
 }
 
 /// x y z of each corner.
-std::vector<double> numbers_of(const std::vector<Place>& places) {
+std::vector<double> numbers_of(const std::vector<SpacePoint>& places) {
   std::vector<double> numbers;
   numbers.reserve(3 * places.size());
-  for (const Place& place : places) numbers.insert(numbers.end(), place.begin(), place.end());
+  for (const SpacePoint& place : places) numbers.insert(numbers.end(), place.begin(), place.end());
   return numbers;
 }
 

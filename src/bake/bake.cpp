@@ -118,8 +118,8 @@ class Bake {
   /// surface.
   std::optional<TexelSource> source(std::size_t triangle, const std::array<double, 3>& weights,
                                     std::size_t& hint) const {
-    PlacedTriangle place;
-    Place point{0, 0, 0};
+    SpaceTriangle place;
+    SpacePoint point{0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t d = 0; d < 3; ++d) {
         place[k][d] = problem_.positions[9 * triangle + 3 * k + d];

@@ -29,7 +29,7 @@ struct BakeProblem {
   std::vector<double> tangents;  ///< of the corners in the old layout: x y z and side; or empty
   /// Another surface of the same shape, by the nearest places of which the image is read; or empty.
   /// Not for directions.
-  std::vector<PlacedTriangle> source_places;
+  std::vector<SpaceTriangle> source_places;
 };
 
 struct BakeReport {

@@ -12,16 +12,16 @@ namespace {
 
 constexpr std::size_t kFacesOfLeaf = 4;
 
-Place minus(const Place& a, const Place& b) {
+SpacePoint minus(const SpacePoint& a, const SpacePoint& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-double dot(const Place& a, const Place& b) {
+double dot(const SpacePoint& a, const SpacePoint& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-bool is_finite(const PlacedTriangle& triangle) {
-  return std::all_of(triangle.begin(), triangle.end(), [](const Place& p) {
+bool is_finite(const SpaceTriangle& triangle) {
+  return std::all_of(triangle.begin(), triangle.end(), [](const SpacePoint& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   });
 }
@@ -33,12 +33,12 @@ double share(double a, double b) {
 
 /// The weights of the point of a triangle that is nearest (Ericson, "Real-Time Collision
 /// Detection", 5.1.5).
-std::array<double, 3> nearest_weights(const Place& p, const PlacedTriangle& triangle) {
+std::array<double, 3> nearest_weights(const SpacePoint& p, const SpaceTriangle& triangle) {
   const auto& [a, b, c] = triangle;
-  const Place ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
+  const SpacePoint ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  const Place bp = minus(p, b);
+  const SpacePoint bp = minus(p, b);
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   const double vc = d1 * d4 - d3 * d2;
@@ -46,7 +46,7 @@ std::array<double, 3> nearest_weights(const Place& p, const PlacedTriangle& tria
     const double t = share(d1, -d3);
     return {1 - t, t, 0};
   }
-  const Place cp = minus(p, c);
+  const SpacePoint cp = minus(p, c);
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
   const double vb = d5 * d2 - d1 * d6;
@@ -64,7 +64,7 @@ std::array<double, 3> nearest_weights(const Place& p, const PlacedTriangle& tria
   return {1 - vb / sum - vc / sum, vb / sum, vc / sum};
 }
 
-double distance_sq_to_box(const Place& point, const Place& low, const Place& high) {
+double distance_sq_to_box(const SpacePoint& point, const SpacePoint& low, const SpacePoint& high) {
   double sum = 0;
   for (std::size_t d = 0; d < 3; ++d) {
     const double beside = std::max({low[d] - point[d], point[d] - high[d], 0.0});
@@ -75,14 +75,14 @@ double distance_sq_to_box(const Place& point, const Place& low, const Place& hig
 
 }  // namespace
 
-Place normal_of(const PlacedTriangle& triangle) {
-  const Place u = minus(triangle[1], triangle[0]), v = minus(triangle[2], triangle[0]);
+SpacePoint normal_of(const SpaceTriangle& triangle) {
+  const SpacePoint u = minus(triangle[1], triangle[0]), v = minus(triangle[2], triangle[0]);
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-NearestFace::NearestFace(std::vector<PlacedTriangle> triangles)
+NearestFace::NearestFace(std::vector<SpaceTriangle> triangles)
     : triangles_(std::move(triangles)), normals_(triangles_.size()) {
-  std::vector<Place> middles(triangles_.size());
+  std::vector<SpacePoint> middles(triangles_.size());
   for (std::size_t f = 0; f < triangles_.size(); ++f) {
     const auto& [a, b, c] = triangles_[f];
     normals_[f] = normal_of(triangles_[f]);
@@ -95,18 +95,18 @@ NearestFace::NearestFace(std::vector<PlacedTriangle> triangles)
   nodes_.reserve(2 * order_.size());
   nodes_.emplace_back();
   build(0, 0, order_.size(), middles);
-  const Place across = minus(nodes_[0].high, nodes_[0].low);
+  const SpacePoint across = minus(nodes_[0].high, nodes_[0].low);
   size_ = std::sqrt(dot(across, across));
 }
 
 void NearestFace::build(std::size_t node, std::size_t begin, std::size_t end,
-                        const std::vector<Place>& middles) {
+                        const std::vector<SpacePoint>& middles) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Place low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-  Place first = low, last = high;  // of the middles
+  SpacePoint low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+  SpacePoint first = low, last = high;  // of the middles
   for (std::size_t i = begin; i < end; ++i) {
     for (std::size_t d = 0; d < 3; ++d) {
-      for (const Place& corner : triangles_[order_[i]]) {
+      for (const SpacePoint& corner : triangles_[order_[i]]) {
         low[d] = std::min(low[d], corner[d]);
         high[d] = std::max(high[d], corner[d]);
       }
@@ -122,7 +122,7 @@ void NearestFace::build(std::size_t node, std::size_t begin, std::size_t end,
     return;
   }
   poll_interrupt();
-  const Place extents = minus(last, first);
+  const SpacePoint extents = minus(last, first);
   const auto axis =
       static_cast<std::size_t>(std::max_element(extents.begin(), extents.end()) - extents.begin());
   const std::size_t middle = begin + (end - begin) / 2;
@@ -138,11 +138,11 @@ void NearestFace::build(std::size_t node, std::size_t begin, std::size_t end,
   build(left + 1, middle, end, middles);
 }
 
-void NearestFace::consider(const Place& point, const Place& normal, std::size_t face,
+void NearestFace::consider(const SpacePoint& point, const SpacePoint& normal, std::size_t face,
                            Best& best) const {
   if (!(dot(normals_[face], normal) > 0)) return;
   const std::array<double, 3> weights = nearest_weights(point, triangles_[face]);
-  Place away = point;
+  SpacePoint away = point;
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t d = 0; d < 3; ++d) away[d] -= weights[k] * triangles_[face][k][d];
   }
@@ -153,8 +153,8 @@ void NearestFace::consider(const Place& point, const Place& normal, std::size_t 
   }
 }
 
-std::optional<OnFace> NearestFace::find(const Place& point, const Place& normal, double reach,
-                                        std::size_t hint) const {
+std::optional<OnFace> NearestFace::find(const SpacePoint& point, const SpacePoint& normal,
+                                        double reach, std::size_t hint) const {
   Best best{std::nullopt, reach * reach};
   if (nodes_.empty()) return best.place;
   if (hint < triangles_.size()) consider(point, normal, hint, best);

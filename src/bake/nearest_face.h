@@ -10,11 +10,11 @@
 namespace beltrami {
 
 /// A point or a direction in space.
-using Place = std::array<double, 3>;
-using PlacedTriangle = std::array<Place, 3>;
+using SpacePoint = std::array<double, 3>;
+using SpaceTriangle = std::array<SpacePoint, 3>;
 
 /// The direction in which a triangle looks, its corners counter-clockwise; not of length one.
-Place normal_of(const PlacedTriangle& triangle);
+SpacePoint normal_of(const SpaceTriangle& triangle);
 
 /// A place on a triangle of a surface.
 struct OnFace {
@@ -26,7 +26,7 @@ struct OnFace {
 /// that is not finite, or without area, are never found.
 class NearestFace {
  public:
-  explicit NearestFace(std::vector<PlacedTriangle> triangles);
+  explicit NearestFace(std::vector<SpaceTriangle> triangles);
 
   /// The diagonal of the box around all that can be found.
   double size() const { return size_; }
@@ -34,12 +34,12 @@ class NearestFace {
   /// The place nearest to a point, no further than `reach` from it, on the triangles that look to
   /// the same side as `normal`: the other side of a thin wall is not taken. Of equally near ones
   /// that with the smaller number. `hint`, a triangle, makes the search shorter and no different.
-  std::optional<OnFace> find(const Place& point, const Place& normal, double reach,
+  std::optional<OnFace> find(const SpacePoint& point, const SpacePoint& normal, double reach,
                              std::size_t hint) const;
 
  private:
   struct Node {
-    Place low, high;
+    SpacePoint low, high;
     std::uint32_t first = 0;  ///< of a leaf in order_; the left child of others, the right is next
     std::uint32_t count = 0;  ///< triangles of a leaf; 0 for others
   };
@@ -49,11 +49,12 @@ class NearestFace {
   };
 
   void build(std::size_t node, std::size_t begin, std::size_t end,
-             const std::vector<Place>& middles);
-  void consider(const Place& point, const Place& normal, std::size_t face, Best& best) const;
+             const std::vector<SpacePoint>& middles);
+  void consider(const SpacePoint& point, const SpacePoint& normal, std::size_t face,
+                Best& best) const;
 
-  std::vector<PlacedTriangle> triangles_;
-  std::vector<Place> normals_;
+  std::vector<SpaceTriangle> triangles_;
+  std::vector<SpacePoint> normals_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
   double size_ = 0;
