@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "commands/command.h"
 #include "commands/completions.h"
+#include "commands/help_format.h"
 #include "commands/man_page.h"
 #include "commands/options.h"
 #include "commands/spelling.h"
@@ -162,8 +164,7 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
 }
 
 CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
-  CLI::App* command = app.add_subcommand(
-      "transfer", "Bake a texture of a mesh for other UVs or another mesh of it");
+  CLI::App* command = app.add_subcommand("transfer", "Bake a texture for other UVs of a mesh");
   command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
   command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
       ->required();
@@ -443,6 +444,9 @@ std::string version_text() {
 int run(int argc, char** argv) {
   CLI::App app("Injective, low-distortion UVs: atlases of any mesh, packed, and maps of disks",
                "beltrami");
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  app.formatter(std::make_shared<HelpFormat>(asks_briefly(words)));
+  app.set_help_flag("-h,--help", "Print help, -h the most of it, and exit");
   app.set_version_flag("--version", beltrami_build_info());
   app.require_subcommand(1);
   app.footer(kExitCodes);
@@ -471,7 +475,7 @@ int run(int argc, char** argv) {
     const int code = app.exit(help, text, none);
     return print(text.str(), "the text", code);
   } catch (const CLI::ParseError& error) {
-    const std::string unknown = unknown_word(app, {argv + std::min(argc, 1), argv + argc});
+    const std::string unknown = unknown_word(app, words);
     if (!unknown.empty()) return tell(kExitUnusable, {"beltrami: ", unknown});
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }

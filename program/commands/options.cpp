@@ -41,26 +41,14 @@ std::string range_of(const Option& option) {
   return plain_number(option.info.minimum) + " to " + plain_number(option.info.maximum);
 }
 
-/// Breaks lines at blanks: CLI11 indents them, but breaks none itself.
-std::string wrapped(std::string text) {
-  constexpr std::size_t kColumns = 68;
-  for (std::size_t begin = 0; text.size() - begin > kColumns;) {
-    const std::size_t blank = text.rfind(' ', begin + kColumns);
-    if (blank == std::string::npos || blank <= begin) break;
-    text[blank] = '\n';
-    begin = blank + 1;
-  }
-  return text;
-}
-
 std::string help_text(const Option& option) {
   std::string text = option.info.summary;
-  if (option.is_flag()) return wrapped(text);
+  if (option.is_flag()) return text;
   if (option.is_byte_count())
     text += " K, M and G behind the number multiply it by powers of 1024.";
   text += " [";
   if (option.info.type != BELTRAMI_TYPE_CHOICE) text += range_of(option) + "; ";
-  return wrapped(text + "default " + default_word(option) + "]");
+  return text + "default " + default_word(option) + "]";
 }
 
 template <class Number>

@@ -10,6 +10,7 @@
 #include "abi/reports.h"
 #include "abi/surface.h"
 #include "abi/unwrapped.h"
+#include "bake/bake.h"
 #include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"

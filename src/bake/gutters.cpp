@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/image.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bake/image.h"
 #include "bake/page.h"
 #include "base/interrupt.h"
 

@@ -1,11 +1,13 @@
 // What is misspelt, or could not be meant: said, and not taken in silence.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,43 @@
 
 namespace beltrami::cli {
 namespace {
+
+/// The lines of a text that are wider than a terminal.
+std::vector<std::string> wide_lines(const std::string& text) {
+  std::vector<std::string> wide;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() > 80) wide.push_back(line);
+  }
+  return wide;
+}
+
+TEST(Help, FitsATerminalAndIsShortOnRequest) {
+  const std::string page = run({"--man"}).out;
+  for (const std::string command :
+       {"", "unwrap", "flatten", "check", "pack", "transfer", "completions"}) {
+    std::vector<std::string> words = {"--help"};
+    if (!command.empty()) words.insert(words.begin(), command);
+    const Outcome all = run(words);
+    words.back() = "-h";
+    const Outcome brief = run(words);
+    EXPECT_EQ(all.exit_code, 0);
+    EXPECT_EQ(brief.exit_code, 0);
+    EXPECT_EQ(wide_lines(all.out), std::vector<std::string>()) << command;
+    EXPECT_EQ(wide_lines(brief.out), std::vector<std::string>()) << command;
+    EXPECT_LE(std::count(brief.out.begin(), brief.out.end(), '\n'), 40) << "a screen";
+    EXPECT_NE(brief.out.find(command + " --help has all options"), std::string::npos);
+    EXPECT_EQ(all.out.find("\n\n\n"), std::string::npos) << command;
+    if (command.empty()) continue;
+    std::istringstream text(all.out);
+    for (std::string word; text >> word;) {
+      if (!word.starts_with("--") || word.find_first_of("=,.;:") != std::string::npos) continue;
+      std::string dashes;
+      for (const char c : word) dashes += c == '-' ? "\\-" : std::string(1, c);
+      EXPECT_NE(page.find(dashes), std::string::npos) << word << " is in the manual";
+    }
+  }
+}
 
 TEST(NearestSpelling, IsFoundUpToAThirdOfTheLetters) {
   const std::vector<std::string> known = {"unwrap", "flatten", "check", "pack", "transfer"};

@@ -33,6 +33,8 @@ class Project:
 
     def __init__(self, root: Path) -> None:
         self.root = root
+        # Files with headers that they include under a condition, which may not hold here.
+        self.conditional: set[tuple[Path, Path]] = set()
         self._includes: dict[Path, dict[Path, int]] = {}
         self._macros: dict[Path, set[str]] = {}
         self._inside: dict[str, Path | None] = {}
@@ -51,10 +53,14 @@ class Project:
         if path not in self._includes:
             found = self._includes[path] = {}
             lines = (self.root / path).read_text().splitlines()
+            depth = 0
             for number, line in enumerate(lines, 1):
+                depth += bool(re.match(r"\s*#\s*if", line)) - bool(re.match(r"\s*#\s*endif", line))
                 match = re.match(r'\s*#\s*include\s*["<]([^">]+)', line)
                 if match and (header := self._look_up(path.parent, match[1])):
                     found[header] = number
+                    if depth > 0:
+                        self.conditional.add((path, header))
         return self._includes[path]
 
     def macros(self, header: Path) -> set[str]:
@@ -145,6 +151,8 @@ def judge(path: Path, here: Uses, project: Project) -> Iterator[str]:
         macros = (
             re.search(rf"^(?!\s*#\s*include).*\b{m}\b", text, re.M) for m in project.macros(header)
         )
+        if (path, header) in project.conditional:
+            continue
         if header != own and header not in touched and not any(macros):
             yield f"{path}:{line}: nothing of {header} is used"
 
