@@ -51,11 +51,11 @@ constexpr const char* kSeams =
     "stretch less lower it towards 2. --preset sets what suits a purpose, and options beside it\n"
     "count more. Paint draws seams and drives them off, but forces nothing; --seams, --labels and\n"
     "--hard-angle force.\n\n"
-    "  beltrami unwrap bust.obj out.obj                        an energy of 2.05\n"
-    "  beltrami unwrap bust.obj out.obj --target-energy 2.2    more stretch, shorter seams\n"
-    "  beltrami unwrap bust.obj out.obj --preset one-chart     no more charts than pieces\n"
-    "  beltrami unwrap bust.obj out.obj --write-seams cut.txt  and, once that is edited:\n"
-    "  beltrami unwrap bust.obj out.obj --seams cut.txt --cut given";
+    "  beltrami unwrap a.obj b.obj                       an energy of 2.05\n"
+    "  beltrami unwrap a.obj b.obj --target-energy 2.2   more stretch, shorter seams\n"
+    "  beltrami unwrap a.obj b.obj --preset one-chart    no more charts than pieces\n"
+    "  beltrami unwrap a.obj b.obj --write-seams cut.txt and, once that is edited:\n"
+    "  beltrami unwrap a.obj b.obj --seams cut.txt --cut given";
 
 constexpr const char* kPages =
     "Charts are packed onto square pages of a texture, as large as they fit and all at one scale;\n"
@@ -71,9 +71,9 @@ constexpr const char* kPack =
     "their sizes to each other). Charts that fold or overlap themselves stay so, and the summary\n"
     "says it.\n\n"
     "  beltrami pack bust.obj out.obj --resolution 2048 --margin 4\n"
-    "  beltrami pack a.obj b.ply --output a2.obj b2.ply        one atlas for two meshes\n"
+    "  beltrami pack a.obj b.ply --output a2.obj b2.ply     one atlas for two meshes\n"
     "  beltrami pack old.obj new.obj --output old2.obj new2.obj --kept 1\n"
-    "                                    old.obj stays where it is, new.obj goes beside it\n"
+    "                          old.obj stays where it is, new.obj goes beside it\n"
     "  beltrami pack town.obj out.obj --texels-per-unit 64 --masks masks/town";
 
 constexpr const char* kTransfer =
@@ -336,8 +336,9 @@ CLI::App* add_completions(CLI::App& app, std::string& shell) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
-      "  beltrami completions bash > ~/.local/share/bash-completion/completions/beltrami\n"
-      "  beltrami completions zsh > ~/.zfunc/_beltrami      where fpath names that folder\n"
+      "  beltrami completions bash \\\n"
+      "    > ~/.local/share/bash-completion/completions/beltrami\n"
+      "  beltrami completions zsh > ~/.zfunc/_beltrami   where fpath names that folder\n"
       "  beltrami completions fish > ~/.config/fish/completions/beltrami.fish");
   return command;
 }
