@@ -1,14 +1,21 @@
 #include "bake/bake.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "bake/axes_turn.h"
 #include "bake/gutters.h"
 #include "bake/texture.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "mesh/closest_point.h"
 
 namespace beltrami {
 namespace {
@@ -39,7 +46,7 @@ class Bake {
       textures_.emplace_back(image, problem.kind, tables_, work);
     }
     if (problem.kind == ImageKind::kDirections) find_turns(work);
-    if (!problem.source_places.empty()) surface_.emplace(problem.source_places);
+    if (reads_surface()) find_surface();
   }
 
   BakedTexels bake_one(std::uint32_t page, const PageRoom& room, std::span<Filled> filled,
@@ -48,7 +55,7 @@ class Bake {
     std::vector<std::uint8_t> seams;
     PageBake job;
     job.triangles = of.triangles;
-    if (surface_) {
+    if (reads_surface()) {
       job.source_of = [&](std::size_t t, const std::array<double, 3>& weights, std::size_t& hint) {
         return source(of.numbers[t], weights, hint);
       };
@@ -67,7 +74,7 @@ class Bake {
   }
 
   double old_texels() const {
-    if (surface_) return 0;
+    if (reads_surface()) return 0;
     double before = 0, after = 0;
     for (std::size_t t = 0; t < problem_.new_uvs.size(); ++t) {
       const SourceTriangle& source = problem_.sources[t];
@@ -80,6 +87,23 @@ class Bake {
   }
 
  private:
+  /// Whether texels are read by the nearest places of another surface.
+  bool reads_surface() const { return !problem_.source_places.empty(); }
+
+  /// Its triangles that are finite: of others no place is the nearest.
+  void find_surface() {
+    for (std::size_t t = 0; t < problem_.source_places.size(); ++t) {
+      const std::array<Vec3, 3>& places = problem_.source_places[t];
+      const auto is_finite = [](const Vec3& place) { return place.allFinite(); };
+      if (!std::all_of(places.begin(), places.end(), is_finite)) continue;
+      const Index first = size_of(positions_);
+      positions_.insert(positions_.end(), places.begin(), places.end());
+      faces_.push_back({first, first + 1, first + 2});
+      numbers_.push_back(t);
+    }
+    if (!faces_.empty()) surface_.emplace(positions_, faces_);
+  }
+
   void find_turns(const Work& work) {
     std::vector<double> old_uvs, new_uvs;
     for (std::size_t t = 0; t < problem_.new_uvs.size(); ++t) {
@@ -104,7 +128,7 @@ class Bake {
       for (auto& corner : triangle) {
         for (double& x : corner) x *= problem_.side;
       }
-      if (surface_) {
+      if (reads_surface()) {
         of.numbers.push_back(t);
       } else {
         of.sources.push_back(problem_.sources[t]);
@@ -118,24 +142,24 @@ class Bake {
   /// surface.
   std::optional<TexelSource> source(std::size_t triangle, const std::array<double, 3>& weights,
                                     std::size_t& hint) const {
-    SpaceTriangle place;
-    SpacePoint point{0, 0, 0};
+    if (!surface_) return std::nullopt;
+    std::array<Vec3, 3> place;
+    Vec3 point(0, 0, 0);
     for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t d = 0; d < 3; ++d) {
-        place[k][d] = problem_.positions[9 * triangle + 3 * k + d];
-        point[d] += weights[k] * place[k][d];
-      }
+      place[k] = Vec3(&problem_.positions[9 * triangle + 3 * k]);
+      point += weights[k] * place[k];
     }
-    const std::optional<OnFace> at =
-        surface_->find(point, normal_of(place), kReach * surface_->size(), hint);
-    if (!at) return std::nullopt;
-    hint = at->face;
-    const SourceTriangle& shown = problem_.sources[at->face];
+    const Vec3 normal = (place[1] - place[0]).cross(place[2] - place[0]);
+    const Index seed = hint < faces_.size() ? static_cast<Index>(hint) : kNone;
+    const SurfacePoint at = surface_->find_within(point, normal, kReach * surface_->size(), seed);
+    if (at.face == kNone) return std::nullopt;
+    hint = static_cast<std::size_t>(at.face);
+    const SourceTriangle& shown = problem_.sources[numbers_[hint]];
     if (shown.page == kNoPage) return std::nullopt;
     TexelSource source{shown.page, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      source.u += at->weights[k] * shown.uvs[k][0];
-      source.v += at->weights[k] * shown.uvs[k][1];
+      source.u += at.barycentric[k] * shown.uvs[k][0];
+      source.v += at.barycentric[k] * shown.uvs[k][1];
     }
     return source;
   }
@@ -144,7 +168,10 @@ class Bake {
   const ColourTables tables_;
   std::vector<Texture> textures_;
   std::vector<AxesTurn> turns_;
-  std::optional<NearestFace> surface_;
+  std::vector<Vec3> positions_;  // of the other surface, three for each triangle
+  std::vector<Triangle> faces_;
+  std::vector<std::size_t> numbers_;  // of these triangles among all of it
+  std::optional<ClosestPoint> surface_;
 };
 
 }  // namespace

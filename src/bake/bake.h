@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bake/image.h"
-#include "bake/nearest_face.h"
 #include "bake/page.h"
+#include "base/vectors.h"
 #include "base/work.h"
 
 namespace beltrami {
@@ -29,7 +29,7 @@ struct BakeProblem {
   std::vector<double> tangents;  ///< of the corners in the old layout: x y z and side; or empty
   /// Another surface of the same shape, by the nearest places of which the image is read; or empty.
   /// Not for directions.
-  std::vector<SpaceTriangle> source_places;
+  std::vector<std::array<Vec3, 3>> source_places;
 };
 
 struct BakeReport {

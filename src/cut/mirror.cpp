@@ -11,7 +11,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 
 namespace beltrami {
 namespace {

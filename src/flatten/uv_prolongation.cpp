@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/types.h"
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 
 namespace beltrami {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/vectors.h"
 #include "mesh/boundary.h"
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 #include "prolong/surface_walk.h"
 
 namespace beltrami {

@@ -6,7 +6,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 #include "prolong/frame.h"
 #include "prolong/surface_walk.h"
 

@@ -6,8 +6,8 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "mesh/closest_point.h"
 #include "mesh/disk_mesh.h"
-#include "prolong/closest_point.h"
 
 namespace beltrami {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "descend/tutte.h"
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 #include "prolong/frame.h"
 #include "prolong/prolongation.h"
 #include "prolong/surface_walk.h"

@@ -16,8 +16,8 @@ struct SurfacePoint {
   double distance_sq = 0;
 };
 
-/// Answers closest-point queries on a mesh that it keeps references to. Queries are const and may
-/// come from several threads.
+/// Answers closest-point queries on a mesh of one face or more, finite, that it keeps references
+/// to. Queries are const and may come from several threads.
 class ClosestPoint {
  public:
   ClosestPoint(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces);
@@ -27,6 +27,13 @@ class ClosestPoint {
   /// smaller face. `seed` (a face, or kNone) bounds the search and does not change its result.
   SurfacePoint find(const Vec3& point, const Vec3& normal, Index seed) const;
 
+  /// The same, but only on those faces and no further than `reach`; its face is kNone if there is
+  /// none.
+  SurfacePoint find_within(const Vec3& point, const Vec3& normal, double reach, Index seed) const;
+
+  /// The diagonal of the box around the faces.
+  double size() const { return nodes_[0].box.diagonal().norm(); }
+
  private:
   struct Node {
     Eigen::AlignedBox3d box;
@@ -35,7 +42,7 @@ class ClosestPoint {
   };
 
   void build(Index node, Index begin, Index end, std::vector<Vec3>& centroids);
-  SurfacePoint search(const Vec3& point, const Vec3* normal, Index seed) const;
+  SurfacePoint search(const Vec3& point, const Vec3* normal, double reach_sq, Index seed) const;
   void consider(const Vec3& point, const Vec3* normal, Index face, SurfacePoint& best) const;
 
   const std::vector<Vec3>& positions_;

@@ -1,13 +1,16 @@
-#include "prolong/closest_point.h"
+#include "mesh/closest_point.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
+#include "base/interrupt.h"
+
 namespace beltrami {
 namespace {
 
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr Index kLeafFaces = 4;
 
 /// a / (a + b) for non-negative a and b, of which one at least should not be zero.
@@ -75,6 +78,7 @@ void ClosestPoint::build(Index node, Index begin, Index end, std::vector<Vec3>& 
     nodes_[node].count = end - begin;
     return;
   }
+  poll_interrupt();
   Eigen::Index axis;
   centres.sizes().maxCoeff(&axis);
   const Index middle = begin + (end - begin) / 2;
@@ -102,9 +106,10 @@ void ClosestPoint::consider(const Vec3& point, const Vec3* normal, Index face,
   }
 }
 
-SurfacePoint ClosestPoint::search(const Vec3& point, const Vec3* normal, Index seed) const {
+SurfacePoint ClosestPoint::search(const Vec3& point, const Vec3* normal, double reach_sq,
+                                  Index seed) const {
   SurfacePoint best;
-  best.distance_sq = std::numeric_limits<double>::infinity();
+  best.distance_sq = reach_sq;
   if (seed != kNone) consider(point, normal, seed, best);
   struct Entry {
     Index node;
@@ -134,8 +139,13 @@ SurfacePoint ClosestPoint::search(const Vec3& point, const Vec3* normal, Index s
 }
 
 SurfacePoint ClosestPoint::find(const Vec3& point, const Vec3& normal, Index seed) const {
-  const SurfacePoint best = search(point, &normal, seed);
-  return best.face != kNone ? best : search(point, nullptr, seed);
+  const SurfacePoint best = search(point, &normal, kAnywhere, seed);
+  return best.face != kNone ? best : search(point, nullptr, kAnywhere, seed);
+}
+
+SurfacePoint ClosestPoint::find_within(const Vec3& point, const Vec3& normal, double reach,
+                                       Index seed) const {
+  return search(point, &normal, reach * reach, seed);
 }
 
 }  // namespace beltrami
