@@ -110,9 +110,8 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   input.pins = read_pins(header, surface, options, reading);
   input.hints = read_hints(header, surface, options, reading);
   AtlasOptions with_polygons = options;
-  with_polygons.admit.polygons = surface.face_of_triangle;
   const std::vector<std::uint8_t> diagonals = diagonals_of(surface);
-  with_polygons.diagonals = diagonals;
+  with_polygons.admit.polygons = {surface.face_of_triangle, diagonals};
 
   Unwrapped result;
   result.atlas = unwrap(input, with_polygons, work);

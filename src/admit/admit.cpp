@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -119,15 +120,16 @@ std::vector<Triangle> faces_with_area(const std::vector<Vec3>& positions,
   return kept;
 }
 
-/// Per face, how many of the faces before it have the same vertices; notes these.
-std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& faces,
+/// Per face, the first one with the same vertices; notes the others.
+std::vector<Index> firsts_of(Index vertex_count, const std::vector<Triangle>& faces,
                              const Work& work, Admitted& admitted) {
   struct Entry {
     Triangle corners;  // in increasing order
     Index face;
   };
   const std::vector<Index> order = by_least_vertex(vertex_count, faces, work);
-  std::vector<Index> layers(faces.size(), 0);
+  std::vector<Index> firsts(faces.size());
+  std::iota(firsts.begin(), firsts.end(), 0);
   std::vector<Entry> entries;
   PollSometimes poll;
   for (Index i = 0; i < size_of(order);) {
@@ -147,7 +149,7 @@ std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& fa
         first = e;
         continue;
       }
-      layers[entries[e].face] = static_cast<Index>(e - first);
+      firsts[entries[e].face] = entries[first].face;
       admitted.copies.push_back(
           {admitted.input_face[entries[e].face], admitted.input_face[entries[first].face]});
     }
@@ -155,15 +157,15 @@ std::vector<Index> layers_of(Index vertex_count, const std::vector<Triangle>& fa
   std::sort(admitted.copies.begin(), admitted.copies.end(),
             [](const auto& a, const auto& b) { return a.face < b.face; });
   admitted.counts.copies = size_of(admitted.copies);
-  return layers;
+  return firsts;
 }
 
 /// Of the faces that are left.
 std::vector<Index> polygons_of(const Admitted& admitted, const AdmitOptions& options) {
   std::vector<Index> polygons;
-  if (options.polygons.empty()) return polygons;
+  if (options.polygons.polygon.empty()) return polygons;
   polygons.reserve(admitted.input_face.size());
-  for (const Index face : admitted.input_face) polygons.push_back(options.polygons[face]);
+  for (const Index face : admitted.input_face) polygons.push_back(options.polygons.polygon[face]);
   return polygons;
 }
 
@@ -175,39 +177,81 @@ bool has_twins(const std::vector<Triangle>& faces, Index begin, Index end) {
   return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
-/// Puts every polygon into one layer, the last of its faces', so that it stays in one piece; but
-/// one that lies on itself. Returns per face whether its whole polygon is made of copies.
-std::vector<bool> layer_polygons(const std::vector<Triangle>& faces,
-                                 const std::vector<Index>& polygons, std::vector<Index>& layers) {
-  std::vector<bool> is_copy(faces.size(), false);
+/// Every face lies above those before it that have its vertices.
+struct Layers {
+  std::vector<Index> of_face;
+  std::vector<bool> is_copy;  ///< per face, whether its whole polygon is made of copies
+};
+
+/// Puts every polygon into one layer, so that it stays in one piece. Of one that lies on itself
+/// each face gets a layer of its own, below 0, for its sides would be glued to each other.
+/// `firsts`: per face, the first with its vertices.
+Layers layer_polygons(const std::vector<Triangle>& faces, const std::vector<Index>& polygons,
+                      const std::vector<Index>& firsts) {
+  Layers layers{std::vector<Index>(faces.size(), 0), std::vector<bool>(faces.size(), false)};
+  std::vector<Index> next(faces.size(), 0);  // per first face, the layer above all that lie there
   for (Index begin = 0, end = 0; begin < size_of(faces); begin = end) {
     end = begin + 1;
     while (!polygons.empty() && end < size_of(faces) && polygons[end] == polygons[begin]) ++end;
-    const auto [least, most] = std::minmax_element(layers.begin() + begin, layers.begin() + end);
-    const Index last = *most;
-    if (last == 0) continue;
-    std::fill(is_copy.begin() + begin, is_copy.begin() + end, *least > 0);
-    if (!has_twins(faces, begin, end)) {
-      std::fill(layers.begin() + begin, layers.begin() + end, last);
+    Index layer = 0, copies = 0;
+    for (Index f = begin; f < end; ++f) {
+      layer = std::max(layer, next[firsts[f]]);
+      copies += firsts[f] != f ? 1 : 0;
+    }
+    const bool is_folded = copies > 0 && has_twins(faces, begin, end);
+    for (Index f = begin; f < end; ++f) {
+      layers.of_face[f] = is_folded ? -1 - f : layer;
+      layers.is_copy[f] = copies == end - begin;
+      next[firsts[f]] = layer + 1;
     }
   }
-  return is_copy;
+  return layers;
+}
+
+/// Glues the faces of polygons that lie on themselves where these were cut. `faces`: the input's,
+/// whose vertices are not welded.
+void glue_folded_polygons(const std::vector<Triangle>& faces, const PolygonParts& polygons,
+                          const Admitted& admitted, const std::vector<Index>& layers,
+                          std::vector<Index>& twin) {
+  struct Side {
+    Index polygon, from, to, halfedge;
+    auto key() const { return std::tie(polygon, from, to); }
+  };
+  std::vector<Side> sides;
+  for (Index f = 0; f < size_of(layers); ++f) {
+    if (layers[f] >= 0) continue;
+    const Index input = admitted.input_face[f];
+    for (int k = 0; k < 3; ++k) {
+      if (!polygons.is_diagonal(input, k)) continue;
+      const auto [from, to] = std::minmax(faces[input][k], faces[input][next_corner(k)]);
+      sides.push_back({polygons.polygon[input], from, to, 3 * f + k});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.polygon, a.from, a.to, a.halfedge) <
+           std::tie(b.polygon, b.from, b.to, b.halfedge);
+  });
+  for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
+    while (next < sides.size() && sides[next].key() == sides[i].key()) ++next;
+    if (next - i != 2) continue;
+    twin[sides[i].halfedge] = sides[i + 1].halfedge;
+    twin[sides[i + 1].halfedge] = sides[i].halfedge;
+  }
 }
 
 /// Drops the copies.
-void drop(const std::vector<bool>& is_copy, std::vector<Triangle>& faces,
-          std::vector<Index>& layers, Admitted& admitted) {
+void drop_copies(std::vector<Triangle>& faces, Layers& layers, Admitted& admitted) {
   Index kept = 0;
   for (Index f = 0; f < size_of(faces); ++f) {
-    if (is_copy[f]) continue;
+    if (layers.is_copy[f]) continue;
     faces[kept] = faces[f];
-    layers[kept] = layers[f];
+    layers.of_face[kept] = layers.of_face[f];
     admitted.input_face[kept] = admitted.input_face[f];
     ++kept;
   }
   faces.resize(kept);
   admitted.input_face.resize(kept);
-  layers.resize(kept);
+  layers.of_face.resize(kept);
 }
 
 void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
@@ -249,16 +293,17 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
   counts.unused_vertices = unused_vertices(vertex_count, faces);
   std::vector<Triangle> kept =
       faces_with_area(positions, welded(positions, faces, options, work, admitted), work, admitted);
-  std::vector<Index> layers = layers_of(vertex_count, kept, work, admitted);
+  const std::vector<Index> firsts = firsts_of(vertex_count, kept, work, admitted);
   std::vector<Index> polygons = polygons_of(admitted, options);
-  if (counts.copies > 0) {
-    const std::vector<bool> is_copy = layer_polygons(kept, polygons, layers);
-    if (options.share_copies) {
-      drop(is_copy, kept, layers, admitted);
-      polygons = polygons_of(admitted, options);
-    }
+  Layers layers = layer_polygons(kept, polygons, firsts);
+  if (options.share_copies && counts.copies > 0) {
+    drop_copies(kept, layers, admitted);
+    polygons = polygons_of(admitted, options);
   }
-  Gluing gluing = glue(positions, kept, layers, polygons, work);
+  Gluing gluing = glue(positions, kept, layers.of_face, polygons, work);
+  if (counts.copies > 0) {
+    glue_folded_polygons(faces, options.polygons, admitted, layers.of_face, gluing.twin);
+  }
   counts.crowded_edges = gluing.crowded_edges;
   Orientation orientation = orient(kept, gluing.twin, polygons, work);
   counts.one_sided_edges = orientation.one_sided_edges;

@@ -1,6 +1,7 @@
 // Any list of triangles as oriented manifold pieces: what every later stage works on.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,13 +13,24 @@
 
 namespace beltrami {
 
+/// Which faces of the input are parts of polygons, and where.
+struct PolygonParts {
+  std::span<const Index> polygon = {};  ///< per face, those of one polygon on end; or none
+  /// Per face, bit k: its edge from corner k is inside its polygon; none: all are that lie between
+  /// two of its faces.
+  std::span<const std::uint8_t> diagonals = {};
+
+  bool is_diagonal(Index face, int corner) const {
+    return diagonals.empty() || (diagonals[face] >> corner & 1) != 0;
+  }
+};
+
 struct AdmitOptions {
   /// Vertices no further apart become one, see weld; 0: those at one place; nothing: none.
   std::optional<double> weld_distance = 0;
   /// Copies are no faces of the surface: they are to share what the first of them gets.
   bool share_copies = false;
-  /// Per face the polygon that it is a part of; none: each is one. Polygons stay in one piece.
-  std::span<const Index> polygons = {};
+  PolygonParts polygons = {};  ///< they stay in one piece
 };
 
 /// What was done to the input. Faces and vertices are the input's.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "atlas/chart_parts.h"
@@ -76,8 +77,9 @@ void arrange_surface(Admitted& admitted, const Work& work) {
 /// The maps as UVs of the input's corners.
 class Collector {
  public:
-  Collector(const std::vector<Triangle>& faces, const Admitted& admitted, Atlas& atlas)
-      : faces_(faces), admitted_(admitted), atlas_(atlas) {
+  Collector(const std::vector<Triangle>& faces, const PolygonParts& polygons,
+            const Admitted& admitted, Atlas& atlas)
+      : faces_(faces), polygons_(polygons), admitted_(admitted), atlas_(atlas) {
     atlas.faces.resize(faces.size());
     atlas.chart_of_face.assign(faces.size(), kNone);
     atlas.reversed.assign(faces.size(), false);
@@ -93,7 +95,11 @@ class Collector {
   void stack(const std::vector<StackedFace>& stacked);
 
  private:
+  /// The UV vertices of the polygon that a face is a part of, by the input's vertices.
+  std::map<Index, Index> corners_of_polygon(Index face) const;
+
   const std::vector<Triangle>& faces_;
+  const PolygonParts& polygons_;
   const Admitted& admitted_;
   Atlas& atlas_;
   std::vector<Index> uv_of_;  ///< per vertex of the input, one of its UV vertices, or kNone
@@ -138,16 +144,39 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
   atlas_.charts.push_back(info);
 }
 
+std::map<Index, Index> Collector::corners_of_polygon(Index face) const {
+  std::map<Index, Index> corners;
+  const std::span<const Index> polygon = polygons_.polygon;
+  if (polygon.empty()) return corners;
+  Index f = face;
+  while (f > 0 && polygon[f - 1] == polygon[face]) --f;
+  for (; f < size_of(faces_) && polygon[f] == polygon[face]; ++f) {
+    if (atlas_.chart_of_face[f] == kNone) continue;
+    for (int k = 0; k < 3; ++k) corners.try_emplace(faces_[f][k], atlas_.faces[f][k]);
+  }
+  return corners;
+}
+
 /// UV vertices for the faces that were set aside: each a point, where another face has a corner of
-/// theirs, if one has, but for corners with pins.
+/// theirs, if one has, and one of their polygon before others; but for corners with pins.
 void Collector::put_aside(const std::vector<PinAside>& pins) {
   std::map<std::pair<Index, int>, Vec2> pinned;
   for (const PinAside& pin : pins) pinned[{pin.face, pin.corner}] = pin.place;
+  std::map<Index, Index> corners;
+  Index polygon = kNone;
   for (const Index f : admitted_.set_aside) {
     const Triangle& face = faces_[f];
-    const auto met =
-        std::find_if(face.begin(), face.end(), [&](Index v) { return uv_of_[v] != kNone; });
-    const Index beside = met != face.end() ? uv_of_[*met] : 0;
+    if (!polygons_.polygon.empty() && polygons_.polygon[f] != polygon) {
+      polygon = polygons_.polygon[f];
+      corners = corners_of_polygon(f);
+    }
+    Index beside = 0;
+    for (const Index v : {face[2], face[1], face[0]}) {
+      if (uv_of_[v] != kNone) beside = uv_of_[v];
+    }
+    for (const Index v : face) {
+      if (const auto known = corners.find(v); known != corners.end()) beside = known->second;
+    }
     const Vec2 place = atlas_.uvs[beside];
     atlas_.excepted[f] = true;
     for (int k = 0; k < 3; ++k) {
@@ -262,14 +291,15 @@ void deliver(const Numbers& numbers, int exponent, Atlas& atlas) {
 
 /// The charts' outcomes, energies and counts, and the UVs of all corners. `maps`: as they lie on
 /// their pages, scaled by `scales` and `page_scale`.
-void assemble(const AtlasInput& input, const Admitted& admitted, const MappedSurface& mapped,
+void assemble(const AtlasInput& input, const PolygonParts& polygons, const Admitted& admitted,
+              const MappedSurface& mapped,
               const std::vector<MappedChart>& maps, const std::vector<double>& scales,
               double page_scale, const Work& work, Atlas& atlas) {
   atlas.admitted = admitted.counts;
   atlas.filled_holes = mapped.filled_holes;
   atlas.missed = mapped.missed;
   atlas.stacked_parts = mapped.stacked_parts;
-  Collector collector(input.faces, admitted, atlas);
+  Collector collector(input.faces, polygons, admitted, atlas);
   for (std::size_t c = 0; c < maps.size(); ++c) {
     collector.add(mapped.charts[c], maps[c].uvs);
     ChartInfo& chart = atlas.charts.back();
@@ -319,7 +349,7 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
   }
   SplitRules rules{.price = options.split_price,
                    .most_charts = most_charts(options, admitted),
-                   .polygons = {options.admit.polygons, options.diagonals}};
+                   .polygons = options.admit.polygons};
   if (options.target) rules.seam_budget = options.target->seam_budget;
   Pages& pages = atlas.pages.emplace(
       rules.price > 0 ? pack_split_maps(admitted, rules, pack, options.float32, charts, work)
@@ -341,7 +371,7 @@ bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOption
     const bool is_sound = placed[c].outcome <= Outcome::kNotConverged && placed[c].fits_single;
     if (!is_sound) which.push_back(c);
   }
-  return split_charts(admitted, {options.admit.polygons, options.diagonals}, which, options.chart,
+  return split_charts(admitted, options.admit.polygons, which, options.chart,
                       work.untimed(), mapped.charts, mapped.maps);
 }
 
@@ -403,7 +433,7 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
       }
       if (round == kMostRescues || !rescue(input, admitted, options, placed, inner, mapped)) break;
     }
-    assemble(input, admitted, mapped, placed, scales, page_scale, inner, atlas);
+    assemble(input, options.admit.polygons, admitted, mapped, placed, scales, page_scale, inner, atlas);
   });
   stage("certify", kPlaced, 1,
         [&](const Work& inner) { judge_atlas(numbers.exponent, options.float32, inner, atlas); });

@@ -43,9 +43,6 @@ enum class Stack { kNone, kCopies, kMirrored };
 
 struct AtlasOptions {
   AdmitOptions admit = {};
-  /// With polygons: per face, bit k says whether its edge from corner k is inside its polygon;
-  /// none: every edge between two faces of one polygon is.
-  std::span<const std::uint8_t> diagonals = {};
   /// A mesh that is one disk as it stands is not welded: its seams may run between vertices at one
   /// place.
   bool keep_disk = true;

@@ -320,7 +320,7 @@ void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& st
   const AtlasOptions& options = task.options;
   if (!promises(options.chart)) return;  // a baseline is shown as it is
   if (!task.input.pins.empty() || (options.target && options.target->max_charts > 0)) return;
-  const PolygonParts polygons{options.admit.polygons, options.diagonals};
+  const PolygonParts& polygons = options.admit.polygons;
   run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
     bool is_any = false;
     while (split_hopeless(task.admitted, polygons, options.chart, inner.untimed(),

@@ -221,10 +221,9 @@ class Numbering {
 bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h,
                        Index twin) {
   const auto is_diagonal = [&](Index of) {
-    if (polygons.diagonals.empty()) return true;
     const Index face = of / 3;
     const int k = admitted.reversed[face] ? 2 - of % 3 : of % 3;
-    return (polygons.diagonals[admitted.input_face[face]] >> k & 1) != 0;
+    return polygons.is_diagonal(admitted.input_face[face], k);
   };
   const auto polygon = [&](Index of) { return polygons.polygon[admitted.input_face[of / 3]]; };
   return polygon(h) == polygon(twin) && is_diagonal(h) && is_diagonal(twin);

@@ -45,13 +45,6 @@ struct InputHints {
 /// The least of its faces, of the input.
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted);
 
-/// Which faces of the input are parts of polygons, and where.
-struct PolygonParts {
-  std::span<const Index> polygon;           ///< per face, or none
-  std::span<const std::uint8_t> diagonals;  ///< per face, bit k: its edge from corner k is inside;
-                                            ///< none: all are that lie between two of its faces
-};
-
 /// Whether an edge of the surface, by its half-edges, lies inside a polygon: not where a side of it
 /// meets another side of the same. Precondition: polygons are given.
 bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin);

@@ -315,7 +315,7 @@ TEST(Unwrap, APolygonWithACopyStaysInOnePiece) {
       {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 4}, {1, 5, 6}, {1, 6, 2}}};
   const std::vector<Index> polygons = {0, 0, 1, 1, 2, 2};
   AtlasOptions options;
-  options.admit.polygons = polygons;
+  options.admit.polygons.polygon = polygons;
   for (const bool share : {false, true}) {
     options.admit.share_copies = share;
     const Atlas atlas = unwrapped(mesh, options);
@@ -327,6 +327,43 @@ TEST(Unwrap, APolygonWithACopyStaysInOnePiece) {
       EXPECT_FALSE(atlas.excepted[f + 1]);
     }
   }
+}
+
+/// Unwraps faces 2 i and 2 i + 1 as one polygon each, and expects them to share two places.
+void expect_polygons_whole(const TriangleList& mesh) {
+  std::vector<Index> polygons;
+  for (Index f = 0; f < size_of(mesh.faces); ++f) polygons.push_back(f / 2);
+  AtlasOptions options;
+  options.admit.polygons.polygon = polygons;
+  const Atlas atlas = unwrapped(mesh, options);
+  EXPECT_EQ(atlas.outcome, Outcome::kOk);
+  EXPECT_TRUE(atlas.certificate.injective());
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 2) {
+    int common = 0;
+    for (const Index a : atlas.faces[f]) {
+      for (const Index b : atlas.faces[f + 1]) common += atlas.uvs[a] == atlas.uvs[b] ? 1 : 0;
+    }
+    EXPECT_GE(common, 2) << f;
+  }
+}
+
+TEST(Unwrap, APolygonThatLiesOnItselfIsUnfolded) {
+  // A quad whose last corner is welded to its second one, beside another that meets its sides.
+  expect_polygons_whole({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}},
+                         {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}});
+}
+
+TEST(Unwrap, PolygonsThatCopyEachOtherInTurnStayInOnePiece) {
+  // The first and the last one have a corner twice; the second has the triangles of both.
+  expect_polygons_whole({{{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {0, 1, 0}},
+                         {{0, 0, 1}, {0, 1, 2}, {3, 0, 1}, {0, 2, 1}, {3, 1, 0}, {3, 1, 1}}});
+}
+
+TEST(Unwrap, ACornerOfNoAreaLiesWithItsPolygon) {
+  // The corner on the second quad's side is one of the first quad, which is another chart.
+  expect_polygons_whole(
+      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {-1, 0, 0}, {1, 9, 0}, {-1, 9, 0}},
+       {{0, 1, 2}, {0, 2, 3}, {4, 0, 1}, {4, 1, 5}, {4, 1, 5}, {4, 5, 6}}});
 }
 
 TEST(Unwrap, FitsTheUnitSquareByAPowerOfTwo) {
@@ -352,7 +389,7 @@ TEST(Unwrap, NoSeamRunsThroughAPolygon) {
     std::vector<Index> polygons;
     for (Index f = 0; f < size_of(mesh.faces); ++f) polygons.push_back(f / 2);
     AtlasOptions options;
-    options.admit.polygons = polygons;
+    options.admit.polygons.polygon = polygons;
     const Atlas atlas = unwrapped(mesh, options);
     expect_sound(mesh, atlas);
     for (std::size_t f = 0; f + 1 < mesh.faces.size(); f += 2) {

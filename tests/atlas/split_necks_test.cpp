@@ -159,7 +159,7 @@ TEST(SplitNecks, NoSeamRunsInsideAPolygon) {
   std::vector<Index> polygon;
   for (Index f = 0; f < size_of(mesh.faces); ++f) polygon.push_back(f / 2);
   AtlasOptions options = priced(20);
-  options.admit.polygons = polygon;
+  options.admit.polygons.polygon = polygon;
   const Atlas atlas = unwrapped(mesh, options);
   EXPECT_GT(atlas.pages->split->count, 0);
   for (std::size_t f = 0; f < atlas.faces.size(); f += 2) {

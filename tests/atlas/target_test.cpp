@@ -136,7 +136,7 @@ TEST(UnwrapToATarget, HolesCostNoSeamAndPolygonsStayWhole) {
   std::vector<Index> polygons;
   for (Index f = 0; f < size_of(mesh.faces); ++f) polygons.push_back(f / 2);
   AtlasOptions options = aiming_at(2.05);
-  options.admit.polygons = polygons;
+  options.admit.polygons.polygon = polygons;
   const Atlas quads = unwrapped(mesh, options);
   expect_sound(mesh, quads);
   for (std::size_t f = 0; f < mesh.faces.size(); f += 2) {
