@@ -97,6 +97,9 @@ Shape sliver(Random& random) {
 Shape needle(Random& random) {
   Shape shape;
   const double thin = random.spread(1e-8, 0.3);
+  // Some thirty steps of single precision across what is as long as the page.
+  constexpr double kLeastThickness = 2e-6;
+  shape.fits_single = thin >= kLeastThickness;
   switch (random.count(0, 4)) {
     case 0:  // lone ones
       for (int i = random.count(1, 12); i > 0; --i) {
@@ -120,21 +123,22 @@ Shape needle(Random& random) {
       return shape;
     }
     case 2:  // a long strip
-      shape = grid({random.count(1, 60), random.count(1, 2)}, [&](double u, double v) {
+      shape.append(grid({random.count(1, 60), random.count(1, 2)}, [&](double u, double v) {
         return Point3{u, thin * v, 0};
-      });
+      }));
       shape.flat = true;
       return shape;
     case 3: {  // a spike on a plate
-      shape = grid({4, 4}, [](double u, double v) { return Point3{u, v, 0}; });
+      shape.append(grid({4, 4}, [](double u, double v) { return Point3{u, v, 0}; }));
+      shape.fits_single = true;
       shape.positions[12][2] = random.spread(0.1, 1e4);
       return shape;
     }
     default: {  // a rod with a point
       const int n = random.count(3, 12);
-      shape = grid({random.count(1, 4), n, false, true}, [&](double u, double v) {
+      shape.append(grid({random.count(1, 4), n, false, true}, [&](double u, double v) {
         return Point3{thin * portable::cos(kTurn * v), thin * portable::sin(kTurn * v), u};
-      });
+      }));
       const Vertex tip = shape.add({0, 0, random.between(1, 2)});
       const auto ring = static_cast<Vertex>(n), last = tip - ring;
       for (Vertex j = 0; j < ring; ++j) shape.face({last + j, last + (j + 1) % ring, tip});

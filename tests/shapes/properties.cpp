@@ -247,6 +247,7 @@ void judge_energy(const Shape& shape, const ShapeAtlas& atlas, Report& report) {
     sum += one.area * one.energy;
   }
   report.energy = area > 0 ? sum / area : 2;
+  if (!shape.fits_single) return;
   std::vector<ComponentEnergy> least;
   for (std::size_t i = 0; i < energies.size(); ++i) {
     const auto& [part, energy] = energies[i];

@@ -71,10 +71,24 @@ Shape fans(const Shape& shape) {
   Shape out = like(shape);
   out.positions = shape.positions;
   const auto firsts = shape.first_corners();
+  const auto normal = [&](const Vertex* corner, std::uint32_t k) {
+    const Point3 &a = shape.positions[corner[0]], &b = shape.positions[corner[k - 1]],
+                 &c = shape.positions[corner[k]];
+    Point3 n;
+    for (int d = 0; d < 3; ++d) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      n[d] = (b[e] - a[e]) * (c[f] - a[f]) - (b[f] - a[f]) * (c[e] - a[e]);
+    }
+    return n;
+  };
   for (std::size_t f = 0; f < shape.faces(); ++f) {
     const Vertex* corner = &shape.corners[firsts[f]];
+    const Point3 first = normal(corner, 2);
     for (std::uint32_t k = 2; k < shape.sizes[f]; ++k) {
       out.face({corner[0], corner[k - 1], corner[k]});
+      // The fan of a polygon that is not convex lies on itself.
+      const Point3 other = normal(corner, k);
+      if (first[0] * other[0] + first[1] * other[1] + first[2] * other[2] < 0) out.flat = false;
     }
   }
   return out;

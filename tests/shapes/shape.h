@@ -23,6 +23,8 @@ struct Shape {
   std::vector<std::uint32_t> sizes;  ///< corners of each face, 3 or more
   /// Whether every component lies in a plane of its own, so that it is its own best map.
   bool flat = false;
+  /// Whether a single precision page holds its shape: energies of one that is too thin say nothing.
+  bool fits_single = true;
   int resolution = 1024;  ///< texels to the side of the page that it is to be packed on
   double margin = 2;      ///< texels to be kept between charts
 
@@ -44,7 +46,7 @@ struct GridSize {
 };
 Shape grid(const GridSize& size, const std::function<Point3(double, double)>& place);
 
-/// Every polygon as a fan of triangles.
+/// Every polygon as a fan of triangles; no longer flat where one is not convex.
 Shape fans(const Shape& shape);
 /// Every face with vertices of its own, as in STL.
 Shape exploded(const Shape& shape);
