@@ -21,7 +21,7 @@
 #include "base/loop_trace.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 #include "chart/options.h"
 #include "records.h"
 #include "refine.h"

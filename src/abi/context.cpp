@@ -7,6 +7,7 @@
 
 #include "abi/bake_job.h"
 #include "abi/buffers.h"
+#include "abi/core_options.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
 #include "abi/unwrapped.h"
@@ -16,6 +17,7 @@
 #include "base/interrupt.h"
 #include "base/resources.h"
 #include "base/work.h"
+#include "chart/flatten_disk.h"
 #include "chart/memory_estimate.h"
 #include "mesh/rest_shape.h"
 

@@ -1,16 +1,12 @@
-// The options of a context in their public values, and what the rooms below know them as.
+// The options of a context in their public values.
 #pragma once
 
 #include <beltrami/beltrami.h>
 
 #include <cstdint>
 
-#include "atlas/atlas.h"
-#include "base/work.h"
-#include "chart/options.h"
 #include "cut/seam_costs.h"
-#include "cut/search.h"
-#include "pack/pack.h"
+#include "cut/seam_target.h"
 
 namespace beltrami {
 
@@ -51,31 +47,6 @@ struct Options {
   double pack_splits = 0;
   std::int32_t effort = BELTRAMI_EFFORT_NORMAL;
 };
-
-/// How a disk is to be flattened.
-ChartOptions chart_options(const Options& options);
-
-/// How charts are to be packed. Throws Error INVALID_ARGUMENT where the margin or the blocks are
-/// too large for the pages.
-PackOptions pack_options(const Options& options);
-
-/// How a surface is to be unwrapped.
-AtlasOptions atlas_options(const Options& options);
-
-/// What a run may use.
-Limits limits(const Options& options);
-
-/// Throws Error INVALID_ARGUMENT, with a sentence that says what to do, where flatten, delaunay,
-/// injectivity or refine-iterations is set to another value than its default and another option
-/// leaves it without effect. Asked at the start of a run: options are set in any order. The numbers
-/// coarse-faces, tolerance and max-iterations go with any method: those without such a stage have
-/// nothing to bound.
-void require_effect(const Options& options);
-
-/// The same for what an atlas takes no notice of: delaunay, weld-distance where nothing is welded,
-/// what a search for seams is told where none is made, and what is said of pages where nothing is
-/// packed, as with `pins`.
-void require_effect_on_atlas(const Options& options, bool pins);
 
 /// Sets the preset, and the options of the search for seams as it has them.
 void apply_preset(Options& options, std::int32_t preset);

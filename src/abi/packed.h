@@ -14,7 +14,7 @@
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "abi/buffers.h"
+#include "abi/core_options.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"

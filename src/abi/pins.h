@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "abi/surface.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "atlas/pins.h"
 #include "base/work.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "admit/triangulate.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"

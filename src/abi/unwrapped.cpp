@@ -9,6 +9,8 @@
 #include "abi/pins.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
+#include "atlas/assemble.h"
+#include "atlas/atlas.h"
 #include "atlas/pages.h"
 #include "atlas/seams.h"
 #include "base/resources.h"

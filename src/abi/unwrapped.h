@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"

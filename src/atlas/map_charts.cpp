@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "chart/flatten_disk.h"
 #include "chart/hold.h"
 #include "chart/inherited.h"
 #include "chart/memory_estimate.h"

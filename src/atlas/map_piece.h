@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "admit/admit.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/pins.h"

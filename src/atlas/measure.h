@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "base/types.h"

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "chart/fine_problem.h"
+#include "chart/policy.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"

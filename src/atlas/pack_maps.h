@@ -8,7 +8,7 @@
 #include "atlas/pages.h"
 #include "base/vectors.h"
 #include "base/work.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 

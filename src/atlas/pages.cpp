@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 namespace {

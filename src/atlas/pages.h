@@ -9,7 +9,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 

@@ -6,7 +6,7 @@
 #include <queue>
 #include <utility>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "atlas/chart_parts.h"
 #include "atlas/measure.h"
 #include "base/interrupt.h"

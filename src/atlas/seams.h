@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "cut/search.h"
 

@@ -18,6 +18,7 @@
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "pack/outline.h"
+#include "pack/pack.h"
 
 namespace beltrami {
 namespace {

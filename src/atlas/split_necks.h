@@ -10,7 +10,7 @@
 #include "atlas/pages.h"
 #include "base/types.h"
 #include "base/work.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 

@@ -1,3 +1,4 @@
+#include "chart/composite_majorization.h"
 #include "chart/attempts.h"
 
 #include <optional>
@@ -6,11 +7,11 @@
 #include "base/error.h"
 #include "base/resources.h"
 #include "base/types.h"
-#include "chart/coarser_start.h"
 #include "chart/descent.h"
 #include "chart/fine_problem.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
+#include "chart/policy.h"
 #include "chart/refine.h"
 #include "descend/grid_drawing.h"
 #include "mesh/rest_shape.h"

@@ -4,13 +4,15 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/composite_majorization.h"
+#include "chart/descent.h"
 #include "chart/chart_map.h"
-#include "chart/coarser_start.h"
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "chart/options.h"
+#include "chart/policy.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

@@ -1,4 +1,5 @@
-// Composite majorization on a whole mesh: the method cm, and the coarse map of the others.
+#include "chart/composite_majorization.h"
+
 #include <optional>
 #include <utility>
 #include <vector>
@@ -7,12 +8,10 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
-#include "chart/coarser_start.h"
-#include "chart/descent.h"
+#include "chart/flat_map.h"
 #include "chart/memory.h"
-#include "chart/modes.h"
+#include "chart/mode_bytes.h"
 #include "chart/options.h"
-#include "chart/starts.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
 #include "energy/energy.h"

@@ -1,9 +1,10 @@
-// Composite majorization as the modes use it: with a lead, and with contact where the boundary
-// would cross itself.
+// Composite majorization as the modes use it: with a lead, with contact where the boundary would
+// cross itself, and from a start that may come from the minimum of a coarser mesh.
 #pragma once
 
 #include <vector>
 
+#include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/options.h"
@@ -41,5 +42,23 @@ Descent descend_led(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 std::vector<Vec2> start, NewtonOptions newton, bool simple,
                 const ChartOptions& options, const Work& work);
+
+/// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
+/// coarser mesh; where that fails too, a drawing that cannot fold but for the rounding of its
+/// numbers. One UV per vertex. Throws Error SOLVER.
+std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                            const ChartOptions& options, const Work& work);
+
+/// Simplification may get stuck far above its target: a coarse mesh that keeps more of the faces
+/// than this saves nothing.
+inline constexpr double kLeastReduction = 0.7;
+
+/// Coarse faces with which a run that broke its promise is tried again (paper section 3.2).
+inline constexpr Index kFallbacks[] = {1000, 100};
+
+/// A mesh of a tenth of the faces, or 1,000, or 100, is flattened and its metric prolonged. One UV
+/// per vertex, every face positive; empty if every size leaves faces flipped. Throws Error SOLVER.
+std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                                     const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -4,6 +4,7 @@
 #include "chart/chart_map.h"
 #include "chart/fine_problem.h"
 #include "chart/memory.h"
+#include "chart/mode_bytes.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "flatten/dirichlet.h"

@@ -1,3 +1,4 @@
+#include "chart/composite_majorization.h"
 #include "chart/fine_problem.h"
 
 #include <algorithm>
@@ -5,7 +6,8 @@
 
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
-#include "chart/modes.h"
+#include "chart/policy.h"
+#include "chart/mode_bytes.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "repair/outliers.h"
 #include "simplify/replay.h"
@@ -13,8 +15,6 @@
 namespace beltrami {
 namespace {
 
-constexpr std::int64_t kLeastCoarseFaces = 10000;
-constexpr double kCoarseShare = 0.01;
 /// Times the tolerance, for the coarse mesh: steps are cheap there, and how a map spreads its
 /// distortion over the whole is what polishing the fine one hardly changes.
 constexpr double kCoarseTolerance = 0.1;
@@ -42,13 +42,6 @@ MeshCounts coarse_counts(const MeshCounts& n, std::int64_t asked) {
 }
 
 }  // namespace
-
-Index coarse_faces(Index faces, std::int64_t asked) {
-  const double share = kCoarseShare * faces;
-  const auto target =
-      asked > 0 ? asked : std::max(kLeastCoarseFaces, static_cast<std::int64_t>(share));
-  return static_cast<Index>(std::min<std::int64_t>(target, faces));
-}
 
 void simplify_fine(Index target, const std::optional<CoarseDisk>& level, const Work& work,
                    FineProblem& fine) {

@@ -11,7 +11,6 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
-#include "chart/memory.h"
 #include "chart/options.h"
 #include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"
@@ -34,10 +33,6 @@ struct FineProblem {
   bool converged = true;                    ///< the coarse map
   ChartStatistics statistics = {};          ///< of what led here
 };
-
-/// Faces that a mesh of so many is simplified to: the number `asked` for, or (0) max(1%, 10,000),
-/// and no more than it has.
-Index coarse_faces(Index faces, std::int64_t asked);
 
 /// The stage "simplify", to `target` faces; from a `level` of the mesh, if there is one that is
 /// finer than that.
@@ -64,11 +59,5 @@ RepairOptions whole_repair(const FineProblem& fine, bool simple_boundary,
 
 /// The whole: `map` after what led to its problem.
 ChartMap joined(FineProblem fine, ChartMap map);
-
-/// Bytes of what is known from the prolongation on, the map with it.
-double fine_bytes(const MeshCounts& n);
-
-/// Bytes at the peak of everything up to the coarse map, for `asked` coarse faces.
-double coarse_bytes(const MeshCounts& n, std::int64_t asked, int threads);
 
 }  // namespace beltrami

@@ -1,5 +1,4 @@
-// One disk -> one map: the only place that the ABI knows of this room, but for the estimate of
-// memory.
+// What flattening a disk leaves behind.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +7,9 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "base/work.h"
 #include "chart/chart_map.h"
-#include "chart/inherited.h"
-#include "chart/options.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
-#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 
@@ -38,15 +33,5 @@ struct Flattening {
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process so far
 };
-
-/// Flattens a disk that `normalise` has brought to about unit area; `frame` is what it returned.
-/// Where the time of `work` is up, iterations end with the best map so far, NOT_CONVERGED. Throws
-/// Cancelled, Error SOLVER or std::bad_alloc.
-Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const ChartOptions& options,
-                   const Work& work);
-
-/// The same with what is known of the disk, in its numbers and its unit.
-Flattening flatten(const DiskMesh& disk, const Normalisation& frame, const Inherited& inherited,
-                   const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

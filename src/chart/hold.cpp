@@ -10,7 +10,6 @@
 
 #include "chart/descent.h"
 #include "chart/pin_field.h"
-#include "chart/starts.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"

@@ -9,9 +9,9 @@
 
 #include "base/error.h"
 #include "base/types.h"
-#include "chart/fine_problem.h"
 #include "chart/memory.h"
-#include "chart/modes.h"
+#include "chart/mode_bytes.h"
+#include "chart/policy.h"
 #include "flatten/laplacian.h"
 
 namespace beltrami {

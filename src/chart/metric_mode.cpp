@@ -10,6 +10,7 @@
 #include "chart/fine_problem.h"
 #include "chart/memory.h"
 #include "chart/memory_estimate.h"
+#include "chart/mode_bytes.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "chart/polish_schedule.h"

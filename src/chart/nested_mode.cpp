@@ -9,14 +9,17 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "chart/composite_majorization.h"
 #include "chart/anchors.h"
 #include "chart/chart_map.h"
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
 #include "chart/memory.h"
 #include "chart/memory_estimate.h"
+#include "chart/mode_bytes.h"
 #include "chart/modes.h"
 #include "chart/options.h"
+#include "chart/policy.h"
 #include "chart/polish_schedule.h"
 #include "descend/contact.h"
 #include "descend/tutte.h"
@@ -43,15 +46,6 @@
 namespace beltrami {
 namespace {
 
-/// From so many faces on: fewer cost less than a level.
-constexpr Index kLeastFaces = 4000;
-/// From so many on, few steps on the finest level are worth their time; and beside coarse faces
-/// that are asked for levels are worth it, if there are so many times as many.
-constexpr Index kManyFaces = 100'000, kLeastRatio = 8;
-/// The coarsest level has a quarter of the faces, within bounds: with fewer it is another shape.
-/// From twenty times the second on it has a twentieth, up to the third.
-constexpr Index kQuarter = 4, kTwentieth = 20;
-constexpr Index kLeastCoarsest = 1000, kFairCoarsest = 2500, kMostCoarsest = 5000;
 /// On levels of up to so many composite majorization costs little beside the run.
 constexpr Index kFewFaces = 25000;
 /// Up to so many a factor of a level costs little beside the run.
@@ -468,19 +462,10 @@ double nested_bytes(const MeshCounts& n, int threads) {
   return std::max({climb, coarse_bytes(coarsest, 0, threads), metric_bytes(coarsest, threads)});
 }
 
-bool is_nested(Index faces, Index coarse, const ChartOptions& options) {
-  if (options.flatten != Flatten::kMetric || options.delaunay) return false;
-  if (coarse != coarse_faces(faces, options.coarse_faces)) return false;
-  if (options.coarse_faces == 0) return faces >= kLeastFaces;
-  return faces >= kManyFaces && coarse <= faces / kLeastRatio;
-}
-
 ChartMap nested_mode(const DiskMesh& mesh, const Inherited& inherited, const ChartOptions& options,
                      const Work& work) {
-  const Index faces = mesh.face_count();
-  const Index most = std::clamp(faces / kTwentieth, kFairCoarsest, kMostCoarsest);
-  const Index usual = std::clamp(faces / kQuarter, kLeastCoarsest, most);
-  const Index coarsest = std::max(usual, static_cast<Index>(options.coarse_faces));
+  const Index coarsest =
+      std::max(coarsest_faces(mesh.face_count()), static_cast<Index>(options.coarse_faces));
   ChartMap map;
   std::vector<CoarseDisk> levels;
   run_stage("simplify", work.part(0, kSimplified), map.statistics.stages,

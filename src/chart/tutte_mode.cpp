@@ -4,6 +4,7 @@
 #include "chart/chart_map.h"
 #include "chart/memory.h"
 #include "chart/memory_estimate.h"
+#include "chart/mode_bytes.h"
 #include "chart/modes.h"
 #include "chart/options.h"
 #include "descend/tutte.h"

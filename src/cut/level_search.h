@@ -9,7 +9,7 @@
 #include "cut/local_maps.h"
 #include "cut/mirror.h"
 #include "cut/seam_search.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 #include "cut/search_effort.h"
 #include "cut/search_level.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "chart/composite_majorization.h"
 #include "chart/descent.h"
 #include "chart/modes.h"
 #include "chart/options.h"

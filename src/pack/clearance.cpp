@@ -7,7 +7,6 @@
 #include "base/disjoint_sets.h"
 #include "base/interrupt.h"
 #include "pack/edge_grid.h"
-#include "pack/pack.h"
 
 namespace beltrami {
 namespace {
@@ -92,13 +91,6 @@ bool any_on_another(const std::vector<PlacedOutline>& charts) {
 }
 
 }  // namespace
-
-PlacedOutline placed(const Outline& outline, const Placement& placement, double density) {
-  PlacedOutline chart{placement.page, {}, outline.edges};
-  chart.points.reserve(outline.points.size());
-  for (const Vec2& p : outline.points) chart.points.push_back(placement.place(p, density));
-  return chart;
-}
 
 Clearance clearance(const std::vector<PlacedOutline>& charts, double side, double reach) {
   Clearance least{reach, reach};

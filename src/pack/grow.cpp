@@ -14,7 +14,7 @@
 #include "pack/clearance.h"
 #include "pack/edge_grid.h"
 #include "pack/outline.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 namespace {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "pack/problem.h"
-#include "pack/search.h"
 
 namespace beltrami {
 

@@ -7,7 +7,7 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "pack/greedy.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "pack/page.h"
 
 namespace beltrami {

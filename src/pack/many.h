@@ -2,7 +2,6 @@
 #pragma once
 
 #include "pack/problem.h"
-#include "pack/search.h"
 
 namespace beltrami {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/types.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 namespace {

@@ -115,6 +115,13 @@ Vec2 nearest_on(const Vec2& p, const Vec2& q, const Vec2& place) {
   return p + along * std::clamp((place - p).dot(along) / squared, 0.0, 1.0);
 }
 
+PlacedOutline placed(const Outline& outline, const Placement& placement, double density) {
+  PlacedOutline chart{placement.page, {}, outline.edges};
+  chart.points.reserve(outline.points.size());
+  for (const Vec2& p : outline.points) chart.points.push_back(placement.place(p, density));
+  return chart;
+}
+
 void thin(Outline& outline, double width) {
   const Index count = size_of(outline.points);
   std::vector<Index> next(count, kNone), in(count, 0), out(count, 0);

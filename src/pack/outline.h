@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 
@@ -22,6 +22,16 @@ struct Outline {
 
 /// Takes linear time but for vertices of many edges. Precondition: finite points, indices in range.
 Outline outline_of(const PackChart& chart);
+
+/// The border of a chart where it lies.
+struct PlacedOutline {
+  Index page = 0;
+  std::vector<Vec2> points;                 ///< in texels
+  std::vector<std::array<Index, 2>> edges;  ///< as of an Outline
+  bool stays = false;                       ///< it lies where it has to
+};
+
+PlacedOutline placed(const Outline& outline, const Placement& placement, double density);
 
 /// Leaves vertices out that lie within `width` of the edge that replaces theirs, so that no point
 /// of the border is further from what is left of it. The hull stays what it is.

@@ -10,7 +10,7 @@
 #include "pack/greedy.h"
 #include "pack/mask.h"
 #include "pack/outline.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "pack/page.h"
 
 namespace beltrami {
@@ -102,5 +102,14 @@ class Problem {
   int cells_ = 0, turns_ = 1;
   double cell_ = 1;
 };
+
+/// Where charts lie, and at which density.
+struct Packed {
+  std::vector<Placement> placements;
+  double texels_per_unit = 0;
+};
+
+/// Densities that are tried, each lower than the one before, until margins are all that counts.
+inline constexpr int kMostStepsDown = 60;
 
 }  // namespace beltrami

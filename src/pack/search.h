@@ -1,18 +1,9 @@
 // The density at which charts fill their pages, and the order in which they do.
 #pragma once
 
-#include "pack/pack.h"
 #include "pack/problem.h"
 
 namespace beltrami {
-
-struct Packed {
-  std::vector<Placement> placements;
-  double texels_per_unit = 0;
-};
-
-/// Densities that are tried, each lower than the one before, until margins are all that counts.
-inline constexpr int kMostStepsDown = 60;
 
 /// The largest density that is found at which all charts fit into the pages that there may be.
 /// Throws Error INVALID_ARGUMENT where the margins alone take more than these. Precondition: no

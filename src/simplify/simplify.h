@@ -2,22 +2,13 @@
 // Heckbert 1997; paper section 3.1).
 #pragma once
 
-#include <vector>
-
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
-#include "simplify/history.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
-
-/// A coarse disk whose vertices are a subset of the fine ones, the boundary loop in the same order.
-struct CoarseDisk {
-  DiskMesh mesh;
-  std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
-  std::vector<Index> nearby;  ///< per fine vertex: the coarse vertex that it was collapsed into
-};
 
 /// Collapses half-edges until at most `target_faces` faces are left or no collapse is
 /// allowed; with `target_faces` >= the face count it returns the mesh itself. The result is a disk
@@ -25,14 +16,6 @@ struct CoarseDisk {
 /// tips of ears, both ends of every bridge and one boundary vertex between successive bridge ends,
 /// since what lies on one coarse boundary edge becomes collinear in the plane. Deterministic.
 CoarseDisk simplify(const DiskMesh& fine, Index target_faces, const Work& work);
-
-/// A coarse surface whose vertices are a subset of the fine ones, and the way back.
-struct CoarseSurface {
-  Surface mesh;
-  std::vector<Index> fine_vertex;  ///< per coarse vertex: the fine vertex that it is
-  std::vector<Index> fine_face;    ///< per coarse face: the fine face that it was, increasing
-  CollapseHistory history;
-};
 
 /// The same on any surface, in our sweeps (sweep.h) as long as it is large, and then our passes:
 /// components, handles and boundary loops stay, each loop with at least 8 vertices (or all).

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Refuses an include that goes up or leads out, and circles of files, in C++, Python and Rust.
+"""Refuses an include that goes up or leads out, and circles, in C++, Python and Rust.
 
     layers.py [ROOT]
 
-ROOT is a checkout. docs/design/architecture.md draws the rooms; LIBRARY and PROGRAM are that drawing in few words.
+ROOT is a checkout. docs/design/architecture.md draws the rooms; LIBRARY and PROGRAM are that drawing in few words. In the
+library a source and its header are one in a circle: whoever reads one has to read the other.
 """
 from __future__ import annotations
 
@@ -130,6 +131,20 @@ def past_the_door(root: pathlib.Path) -> list[str]:
     return found
 
 
+def units_of(graph: Graph) -> Graph:
+    """Return the same with a source of the library and its header as one."""
+
+    def unit(file: str) -> str:
+        path = pathlib.PurePath(file)
+        return str(path.with_suffix("") if path.parts[0] == "src" else path)
+
+    units: Graph = {}
+    for file, edges in graph.items():
+        others = [(unit(other), line) for other, line in edges]
+        units.setdefault(unit(file), []).extend(edge for edge in others if edge[0] != unit(file))
+    return units
+
+
 def circles(graph: Graph) -> list[str]:
     """Return a sentence for a circle, found depth first, or nothing."""
     done: set[str] = set()
@@ -160,7 +175,7 @@ def main() -> int:
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     sources = cpp_graph(root)
     found = upward(sources) + past_the_door(root)
-    for graph in (sources, python_graph(root), rust_graph(root)):
+    for graph in (units_of(sources), python_graph(root), rust_graph(root)):
         if not graph:
             found.append(f"{root}: no sources here")
         found += circles(graph)

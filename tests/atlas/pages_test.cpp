@@ -1,5 +1,6 @@
 // Atlases on pages of a texture: apart by the margin, never mirrored, whatever the unit of the
 // surface and the number of threads.
+#include "atlas/assemble.h"
 #include "atlas/pages.h"
 
 #include <gtest/gtest.h>

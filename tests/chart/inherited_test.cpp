@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/work.h"
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/simplify.h"

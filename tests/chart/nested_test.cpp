@@ -13,6 +13,7 @@
 #include "chart/flattening.h"
 #include "chart/modes.h"
 #include "chart/options.h"
+#include "chart/policy.h"
 #include "energy/energy.h"
 #include "support/disks.h"
 #include "support/energies.h"

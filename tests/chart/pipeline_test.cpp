@@ -1,6 +1,6 @@
 // Whole runs: injective, timed, cancellable, and the same whatever the threads, the unit and the
 // order of the input.
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 
 #include <gtest/gtest.h>
 

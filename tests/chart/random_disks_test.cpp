@@ -10,7 +10,7 @@
 
 #include "support/random_disks.h"
 
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
 #include "support/meshes.h"

@@ -16,6 +16,7 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/composite_majorization.h"
 #include "chart/descent.h"
 #include "chart/modes.h"
 #include "chart/options.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/work.h"
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"

@@ -1,4 +1,4 @@
-#include "chart/flattening.h"
+#include "chart/flatten_disk.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-// Maps without a flip that descents start from.
+// Maps of what is flat already, or unfolds.
 #pragma once
 
 #include <vector>
@@ -10,12 +10,6 @@
 #include "mesh/rest_shape.h"
 
 namespace beltrami {
-
-/// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
-/// coarser mesh; where that fails too, a drawing that cannot fold but for the rounding of its
-/// numbers. One UV per vertex. Throws Error SOLVER.
-std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            const ChartOptions& options, const Work& work);
 
 /// Takes a flat start (descend/flat_start.h) instead of `uvs` where it is injective and has less
 /// energy, with that of its contact: where parts are a rounding error apart, nothing moves. Returns

@@ -1,20 +1,15 @@
-#include "chart/starts.h"
+#include "chart/flat_map.h"
 
 #include <utility>
 
 #include "base/types.h"
-#include "chart/coarser_start.h"
 #include "chart/descent.h"
-#include "chart/memory_estimate.h"
 #include "descend/contact.h"
 #include "descend/flat_start.h"
-#include "descend/grid_drawing.h"
-#include "descend/tutte.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "mesh/boundary.h"
-#include "repair/repair.h"
 #include "repair/rounding.h"
 #include "repair/touching.h"
 
@@ -60,15 +55,6 @@ bool is_final(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 }
 
 }  // namespace
-
-std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            const ChartOptions& options, const Work& work) {
-  std::vector<Vec2> uvs = tutte_embedding(mesh, work);
-  const RepairOptions mend{.global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
-  if (repair(mesh, rest, uvs, mend, work.part(0, 0)).flips_after == 0) return uvs;
-  std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
-  return other.empty() ? grid_drawing(mesh) : other;
-}
 
 bool start_flat(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                 const ChartOptions& options, std::vector<Vec2>& uvs, const Work& work) {
