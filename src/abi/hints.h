@@ -4,8 +4,8 @@
 #include <beltrami/beltrami.h>
 
 #include "abi/surface.h"
-#include "atlas/types.h"
 #include "atlas/open.h"
+#include "atlas/types.h"
 #include "base/work.h"
 
 namespace beltrami {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "abi/surface.h"
-#include "atlas/types.h"
 #include "atlas/pins.h"
+#include "atlas/types.h"
 #include "base/work.h"
 
 namespace beltrami {

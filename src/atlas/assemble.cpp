@@ -220,7 +220,8 @@ void assemble(const AtlasInput& input, const AtlasOptions& options, const Admitt
   collector.put_aside(placed.surface.pins_aside);
   collector.stack(placed.surface.stacked);
   collector.share();
-  atlas.energy = measure_charts(placed.surface.charts, placed.maps, placed.page_scale, atlas.charts, work);
+  atlas.energy =
+      measure_charts(placed.surface.charts, placed.maps, placed.page_scale, atlas.charts, work);
   atlas.seam_length = seam_length(placed.surface.charts, admitted.input_vertex);
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;

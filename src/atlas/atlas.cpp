@@ -140,8 +140,8 @@ bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOption
     const bool is_sound = placed[c].outcome <= Outcome::kNotConverged && placed[c].fits_single;
     if (!is_sound) which.push_back(c);
   }
-  return split_charts(admitted, options.admit.polygons, which, options.chart,
-                      work.untimed(), mapped.charts, mapped.maps);
+  return split_charts(admitted, options.admit.polygons, which, options.chart, work.untimed(),
+                      mapped.charts, mapped.maps);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "admit/admit.h"
-#include "atlas/types.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/pins.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/chart_map.h"

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "atlas/types.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/work.h"
 

@@ -129,9 +129,8 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   MappedSurface all;
   std::vector<SurfacePiece> pieces;
   run_stage("cut", work.part(0, kReady), stages, [&](StageStatistics&, const Work& inner) {
-    ReadySurface ready =
-        make_ready(admitted, input.cuts, options.fill_limit,
-                   options.admit.polygons, input.hints, inner);
+    ReadySurface ready = make_ready(admitted, input.cuts, options.fill_limit,
+                                    options.admit.polygons, input.hints, inner);
     all.filled_holes = ready.filled_holes;
     const bool is_one = is_asked_of_whole(input, options);
     if (is_one && (options.target || options.stack == Stack::kNone || !input.pins.empty())) {

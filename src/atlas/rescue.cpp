@@ -6,9 +6,9 @@
 #include <queue>
 #include <utility>
 
-#include "atlas/types.h"
 #include "atlas/chart_parts.h"
 #include "atlas/measure.h"
+#include "atlas/types.h"
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "base/vectors.h"

@@ -1,5 +1,5 @@
-#include "chart/composite_majorization.h"
 #include "chart/attempts.h"
+#include "chart/composite_majorization.h"
 
 #include <optional>
 #include <utility>

@@ -4,9 +4,9 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "chart/chart_map.h"
 #include "chart/composite_majorization.h"
 #include "chart/descent.h"
-#include "chart/chart_map.h"
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
 #include "chart/memory_estimate.h"

@@ -1,13 +1,13 @@
-#include "chart/composite_majorization.h"
 #include "chart/fine_problem.h"
+#include "chart/composite_majorization.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "chart/descent.h"
 #include "chart/memory_estimate.h"
-#include "chart/policy.h"
 #include "chart/mode_bytes.h"
+#include "chart/policy.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "repair/outliers.h"
 #include "simplify/replay.h"

@@ -7,8 +7,8 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "pack/greedy.h"
-#include "pack/types.h"
 #include "pack/page.h"
+#include "pack/types.h"
 
 namespace beltrami {
 namespace {

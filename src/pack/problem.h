@@ -10,8 +10,8 @@
 #include "pack/greedy.h"
 #include "pack/mask.h"
 #include "pack/outline.h"
-#include "pack/types.h"
 #include "pack/page.h"
+#include "pack/types.h"
 
 namespace beltrami {
 

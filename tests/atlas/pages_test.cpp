@@ -1,7 +1,7 @@
 // Atlases on pages of a texture: apart by the margin, never mirrored, whatever the unit of the
 // surface and the number of threads.
-#include "atlas/assemble.h"
 #include "atlas/pages.h"
+#include "atlas/assemble.h"
 
 #include <gtest/gtest.h>
 
