@@ -307,6 +307,21 @@ std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins
   return map;
 }
 
+/// That not all pins can be met: the first that `meets`, asked for the first few of them, finds out
+/// of reach.
+template <class Meets>
+HeldMap first_failure(Pins pins, const Work& work, const Meets& meets) {
+  // One pin is always met.
+  std::size_t met = 1, failed = pins.size();
+  while (failed - met > 1 && !work.out_of_time()) {
+    const std::size_t middle = met + (failed - met) / 2;
+    (meets(pins.first(middle)) ? met : failed) = middle;
+  }
+  HeldMap none;
+  none.failed = static_cast<Index>(failed) - 1;
+  return none;
+}
+
 }  // namespace
 
 HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
@@ -319,15 +334,30 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
   WayToPins way(mesh, rest, options, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
-  // One pin is always met.
-  std::size_t met = 1, failed = pins.size();
-  while (failed - met > 1 && !work.out_of_time()) {
-    const std::size_t middle = met + (failed - met) / 2;
-    (meet(way, start, Pins(pins).first(middle), false, work) ? met : failed) = middle;
+  return first_failure(pins, work, [&](Pins some) {
+    return meet(way, start, some, false, work).has_value();
+  });
+}
+
+HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work) {
+  const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
+  WayToPins way(mesh, rest, options, work);
+  const auto reach = [&](Pins some, std::vector<Vec2>& map) {
+    way.set_pins({}, some);
+    return way.fits(map) || way.go(map);
+  };
+  HeldMap map{uvs};
+  if (!reach(pins, map.uvs)) {
+    return first_failure(pins, work, [&](Pins some) {
+      std::vector<Vec2> trial = uvs;
+      return reach(some, trial);
+    });
   }
-  HeldMap none;
-  none.failed = static_cast<Index>(failed) - 1;
-  return none;
+  for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
+  map.converged = way.relax(work.part(kThere, 1), map.uvs);
+  return map;
 }
 
 }  // namespace beltrami
