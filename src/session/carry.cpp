@@ -10,6 +10,7 @@
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "mesh/rest_shape.h"
+#include "repair/touching.h"
 #include "repair/untangle.h"
 #include "session/similarity.h"
 
@@ -284,7 +285,8 @@ bool mend_start(const DiskMesh& mesh, const std::vector<bool>& held, std::vector
     }
     if (!mended || !non_positive_faces(mesh.faces, uvs, work).empty()) return false;
   }
-  if (is_simple(mesh.boundary, uvs)) return true;
+  // The sides of a seam that has just been opened lie on each other.
+  if (is_simple(mesh.boundary, uvs) || open_touching_sides(mesh, work, uvs)) return true;
   const bool any_held = std::find(held.begin(), held.end(), true) != held.end();
   return any_held && certify_atlas(mesh.faces, uvs, {}, work).injective();
 }

@@ -1,10 +1,10 @@
 #include "session/recut.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "base/disjoint_sets.h"
-#include "cut/cut_into_charts.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -51,8 +51,11 @@ EdgeMarks marks_on(const SurfacePiece& piece, const EdgeMarks& marks) {
 /// Unmarks seams that open nothing yet, which would only make holes of no area.
 class Waiting {
  public:
-  Waiting(const SurfacePiece& piece, EdgeMarks& marks)
+  Waiting(const SurfacePiece& piece, const EdgeMarks& opened, const EdgeMarks& standing,
+          EdgeMarks& marks)
       : surface_(piece.surface),
+        opened_(opened),
+        standing_(standing),
         marks_(marks),
         trees_(piece.surface.vertex_count()),
         sheets_(piece.surface.face_count()),
@@ -74,7 +77,8 @@ class Waiting {
   }
 
  private:
-  /// Vertices over seams, and faces over all edges; an edge that closes a loop anchors its seam.
+  /// Vertices over seams, and faces over all edges; an edge that closes a loop anchors its seam,
+  /// and so does one that had to be opened.
   void join() {
     for (Index h = 0; h < size_of(marks_); ++h) {
       const Index twin = surface_.twin[h];
@@ -82,8 +86,9 @@ class Waiting {
       sheets_.unite(h / 3, twin / 3);
       if (!marks_[h]) continue;
       const Index a = trees_.root(surface_.origin(h)), b = trees_.root(surface_.target(h));
-      const bool anchored = a == b || is_anchored_[a] || is_anchored_[b];
-      const Index edges = edges_[a] + (a == b ? 0 : edges_[b]) + 1;
+      const bool anchored = a == b || opened_[h] || is_anchored_[a] || is_anchored_[b];
+      const Index own = standing_[h] ? surface_.face_count() : 1;  // outweighs new ones
+      const std::int64_t edges = edges_[a] + (a == b ? 0 : edges_[b]) + own;
       trees_.unite(a, b);
       is_anchored_[trees_.root(a)] = anchored;
       edges_[trees_.root(a)] = edges;
@@ -118,23 +123,18 @@ class Waiting {
   }
 
   const Surface& surface_;
+  const EdgeMarks &opened_, &standing_;
   EdgeMarks& marks_;
   DisjointSets trees_, sheets_;
-  std::vector<Index> edges_;  // per tree
+  std::vector<std::int64_t> edges_;  // per tree
   std::vector<bool> is_anchored_, has_border_;
 };
 
 /// Adds the charts of one component.
-void open(const SurfacePiece& piece, const EdgeMarks& opened, const Work& work, Recut& result) {
-  const Component& component = piece.topology.components[0];
-  OpenedSurface made;
-  EdgeMarks marks(piece.surface.twin.size(), false);
-  if (!component.is_disk()) {
-    marks = marks_on(piece, opened);
-    const CutSurface cut = cut_into_charts(piece.surface, marks, work);
-    if (cut.charts.size() != 1 || !cut.non_disks.empty()) marks.clear();
-  }
-  made = marks.empty() ? open_short(piece, work) : open_along(piece, std::move(marks), work);
+void open(const SurfacePiece& piece, const Work& work, Recut& result) {
+  OpenedSurface made = piece.topology.components[0].is_disk()
+                           ? open_along(piece, EdgeMarks(piece.surface.twin.size(), false), work)
+                           : open_short(piece, work);
   for (Index h = 0; h < 3 * piece.real_faces; ++h) {
     if (made.seams[h] && piece.surface.twin[h] != kNone) {
       result.opened.push_back(3 * piece.face[h / 3] + h % 3);
@@ -149,14 +149,23 @@ void open(const SurfacePiece& piece, const EdgeMarks& opened, const Work& work, 
 }  // namespace
 
 Recut recut(const Ground& ground, const std::vector<Index>& faces, const EdgeMarks& seams,
-            const EdgeMarks& opened, const Work& work) {
+            const EdgeMarks& opened, const EdgeMarks& standing, const Work& work) {
   SurfacePiece piece = piece_of(ground, faces);
   EdgeMarks marks = marks_on(piece, seams);
-  Waiting(piece, marks).unmark();
-  SurfacePiece parted = parted_along(piece, marks, ground.fill_limit, work);
+  const EdgeMarks given = marks, before = marks_on(piece, opened);
+  for (std::size_t h = 0; h < marks.size(); ++h) {
+    if (before[h]) marks[h] = true;
+  }
+  Waiting(piece, before, marks_on(piece, standing), marks).unmark();
   Recut result;
+  for (Index h = 0; h < size_of(marks); ++h) {
+    if (marks[h] && !given[h] && piece.surface.twin[h] != kNone) {
+      result.opened.push_back(3 * piece.face[h / 3] + h % 3);
+    }
+  }
+  SurfacePiece parted = parted_along(piece, marks, ground.fill_limit, work);
   for (const SurfacePiece& component : components_of(std::move(parted), work)) {
-    open(component, opened, work, result);
+    open(component, work, result);
   }
   std::sort(result.charts.begin(), result.charts.end(),
             [](const AtlasChart& a, const AtlasChart& b) {

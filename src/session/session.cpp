@@ -52,7 +52,7 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
   state_.pins = std::move(input.pins);
   std::vector<Index> all(faces);
   std::iota(all.begin(), all.end(), 0);
-  Recut cut = recut(ground_, all, state_.seams, state_.opened, work.part(0.6, 1));
+  Recut cut = recut(ground_, all, state_.seams, state_.opened, state_.opened, work.part(0.6, 1));
   for (const Index h : cut.opened) mark_edge(ground_.admitted.surface, h, state_.opened);
   for (AtlasChart& part : cut.charts) {
     SessionChart own;
@@ -98,9 +98,14 @@ void Session::set_seams(std::span<const std::array<Index, 2>> edges, bool open) 
     halfedges.insert(halfedges.end(), found.begin(), found.end());
   }
   for (const Index h : halfedges) {
-    if (surface.twin[h] == kNone || state_.seams[h] == open) continue;
-    state_.seams[h] = open;
-    state_.seams[surface.twin[h]] = open;
+    if (surface.twin[h] == kNone) continue;
+    const bool is_opened = state_.opened[h];
+    if (state_.seams[h] == open && (open || !is_opened)) continue;
+    for (const Index side : {h, surface.twin[h]}) {
+      state_.seams[side] = open;
+      state_.opened[side] = false;
+    }
+    if (open && is_opened) continue;  // it is cut already
     state_.toggled.push_back(h);
   }
 }

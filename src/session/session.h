@@ -48,7 +48,8 @@ class Session {
   Session(SessionInput input, const GroundOptions& options, const ChartOptions& chart, bool float32,
           const Work& work);
 
-  /// Opens or closes the seams at edges, given by their vertices of the input. Throws Error
+  /// Opens or closes the seams at edges, given by their vertices of the input. Edges that had to be
+  /// cut beside the seams to make disks stay so until they are closed likewise. Throws Error
   /// INVALID_ARGUMENT where there is no such edge, or where it is inside a polygon and cannot be
   /// opened.
   void set_seams(std::span<const std::array<Index, 2>> edges, bool open);

@@ -45,6 +45,28 @@ std::vector<bool> Updater::affected() const {
   return affected;
 }
 
+/// The edges of faces that their charts are cut at, seams or not any more.
+EdgeMarks Updater::standing(const std::vector<Index>& faces) const {
+  const Surface& surface = session_.ground_.admitted.surface;
+  std::vector<Index> vertex(surface.twin.size(), kNone);  // per corner that of its chart
+  for (const Index f : faces) {
+    const SessionChart& chart = next_.charts[next_.chart_of_face[f]];
+    const Triangle& face = chart.mesh().faces[chart.local_face(f)];
+    for (int k = 0; k < 3; ++k) vertex[3 * f + k] = face[k];
+  }
+  EdgeMarks standing(surface.twin.size(), false);
+  for (const Index f : faces) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index twin = surface.twin[h];
+      if (twin == kNone) continue;
+      standing[h] = next_.chart_of_face[f] != next_.chart_of_face[twin / 3] ||
+                    vertex[h] != vertex[Surface::next(twin)] ||
+                    vertex[Surface::next(h)] != vertex[twin];
+    }
+  }
+  return standing;
+}
+
 void Updater::cut() {
   if (next_.toggled.empty()) return;
   const Ground& ground = session_.ground_;
@@ -53,7 +75,8 @@ void Updater::cut() {
   for (Index f = 0; f < ground.face_count(); ++f) {
     if (is_affected[next_.chart_of_face[f]]) faces.push_back(f);
   }
-  Recut cut = recut(ground, faces, next_.seams, next_.opened, work_.part(0, kCut));
+  Recut cut =
+      recut(ground, faces, next_.seams, next_.opened, standing(faces), work_.part(0, kCut));
   for (const Index f : faces) {
     for (int k = 0; k < 3; ++k) next_.opened[3 * f + k] = false;
   }

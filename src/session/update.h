@@ -36,6 +36,7 @@ class Updater {
 
   void cut();
   std::vector<bool> affected() const;
+  EdgeMarks standing(const std::vector<Index>& faces) const;
   void replace(const std::vector<bool>& affected, std::vector<SessionChart> fresh);
   void number(std::vector<SessionChart>& fresh);
   std::vector<Pins> pins_of_charts() const;
