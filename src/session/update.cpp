@@ -76,7 +76,7 @@ void Updater::cut() {
     if (is_affected[next_.chart_of_face[f]]) faces.push_back(f);
   }
   Recut cut =
-      recut(ground, faces, next_.seams, next_.opened, standing(faces), work_.part(0, kCut));
+      recut(ground, faces, next_.seams, next_.opened, standing(faces), work_.part(0, kCut).named("cut"));
   for (const Index f : faces) {
     for (int k = 0; k < 3; ++k) next_.opened[3 * f + k] = false;
   }
