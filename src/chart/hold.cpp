@@ -14,10 +14,12 @@
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"
+#include "descend/tutte.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
+#include "repair/touching.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -131,6 +133,9 @@ class WayToPins {
   /// whether it converged.
   bool relax(const Work& work, std::vector<Vec2>& uvs) const;
 
+  /// The same from a map near the minimum, whose boundary presses on itself nowhere or hardly.
+  bool relax_nearby(const Work& work, std::vector<Vec2>& uvs) const;
+
  private:
   bool keeps_simple(const std::vector<Vec2>& uvs) const {
     return keeps_boundary_simple(options_) && contact_.is_simple(uvs);
@@ -218,6 +223,33 @@ bool WayToPins::relax(const Work& work, std::vector<Vec2>& uvs) const {
     return minimise_soundly(work, uvs);
   }
   return minimise(last_steps(), simple, work, uvs);
+}
+
+bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
+  if (!keeps_simple(uvs)) return relax(work, uvs);
+  std::vector<Vec2> free = uvs;
+  const bool converged = minimise(last_steps(), false, work, free);
+  const std::vector<Vec2> before = free;
+  const auto holds = [&] {
+    for (std::size_t v = 0; v < held_.size(); ++v) {
+      if (held_[v] && free[v] != before[v]) return false;
+    }
+    return true;
+  };
+  const bool sound = contact_.is_simple(free) || (options_.parts_touching &&
+                                                  open_touching_sides(mesh_, work, free) && holds());
+  if (sound) {
+    uvs.swap(free);
+    return converged;
+  }
+  const auto energy = [&](const std::vector<Vec2>& map) {
+    return mean_energy(options_.energy, mesh_.faces, rest_, map, work);
+  };
+  std::vector<Vec2> pressed = uvs;
+  const bool pressed_converged = relax(work, pressed);
+  if (!pressed_converged && energy(pressed) > energy(uvs)) return false;
+  uvs.swap(pressed);
+  return pressed_converged;
 }
 
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
@@ -356,7 +388,7 @@ HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     });
   }
   for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
-  map.converged = way.relax(work.part(kThere, 1), map.uvs);
+  map.converged = way.relax_nearby(work.part(kThere, 1), map.uvs);
   return map;
 }
 

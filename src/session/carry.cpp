@@ -285,9 +285,20 @@ bool mend_start(const DiskMesh& mesh, const std::vector<bool>& held, std::vector
     }
     if (!mended || !non_positive_faces(mesh.faces, uvs, work).empty()) return false;
   }
-  // The sides of a seam that has just been opened lie on each other.
-  if (is_simple(mesh.boundary, uvs) || open_touching_sides(mesh, work, uvs)) return true;
+  if (is_simple(mesh.boundary, uvs)) return true;
   const bool any_held = std::find(held.begin(), held.end(), true) != held.end();
+  std::vector<Vec2> parted = uvs;
+  const auto stays = [&] {
+    for (std::size_t v = 0; v < held.size(); ++v) {
+      if (held[v] && parted[v] != uvs[v]) return false;
+    }
+    return true;
+  };
+  // The sides of a seam that has just been opened lie on each other.
+  if (open_touching_sides(mesh, work, parted) && stays()) {
+    uvs.swap(parted);
+    return true;
+  }
   return any_held && certify_atlas(mesh.faces, uvs, {}, work).injective();
 }
 

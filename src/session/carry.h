@@ -36,8 +36,9 @@ void place_virtual(const AtlasChart& part, std::vector<Vec2>& uvs);
 /// Whether a vertex of a chart may not move: it has a face that may not.
 std::vector<bool> held_vertices(const SessionState& state, const AtlasChart& part);
 
-/// Mends a start whose faces are not all positive around these, but for `held` vertices. Whether it is a start then: no face is folded, and the boundary is simple, or the
-/// faces do at least not overlap where vertices are held.
+/// Mends a start whose faces are not all positive around these, but for `held` vertices, and parts
+/// sides of its boundary that lie on each other. Whether it is a start then: no face is folded, and
+/// the boundary is simple, or where vertices are held the faces do at least not overlap.
 bool mend_start(const DiskMesh& mesh, const std::vector<bool>& held, std::vector<Vec2>& uvs,
                 const Work& work);
 
