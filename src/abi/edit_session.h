@@ -61,8 +61,9 @@ class EditSession {
   LoadedSurface surface_;
   std::vector<std::uint8_t> diagonals_;
   Session session_;
-  std::vector<Index> source_;            ///< per corner of the caller one of the ground
-  std::vector<Index> start_, followers_;  ///< per corner of the ground those that it is the source of
+  std::vector<Index> source_;  ///< per corner of the caller one of the ground
+  std::vector<Index> start_,
+      followers_;  ///< per corner of the ground those that it is the source of
   std::vector<Index> changes_;
 };
 

@@ -94,9 +94,8 @@ using beltrami::Work;
 
 beltrami_status beltrami_session_begin(beltrami_context* context, const beltrami_surface* surface,
                                        beltrami_progress progress, void* user) {
-  return enter(context, [&](beltrami_context& self) {
-    return self.begin_session(surface, progress, user);
-  });
+  return enter(context,
+               [&](beltrami_context& self) { return self.begin_session(surface, progress, user); });
 }
 
 beltrami_status beltrami_session_end(beltrami_context* context) {

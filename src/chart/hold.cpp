@@ -236,8 +236,8 @@ bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
     }
     return true;
   };
-  const bool sound = contact_.is_simple(free) || (options_.parts_touching &&
-                                                  open_touching_sides(mesh_, work, free) && holds());
+  const bool sound = contact_.is_simple(free) ||
+                     (options_.parts_touching && open_touching_sides(mesh_, work, free) && holds());
   if (sound) {
     uvs.swap(free);
     return converged;
@@ -366,9 +366,8 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
   WayToPins way(mesh, rest, options, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
-  return first_failure(pins, work, [&](Pins some) {
-    return meet(way, start, some, false, work).has_value();
-  });
+  return first_failure(pins, work,
+                       [&](Pins some) { return meet(way, start, some, false, work).has_value(); });
 }
 
 HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,

@@ -51,7 +51,8 @@ class Parts {
   Index leader() const {
     Index best = 0;
     for (Index p = 1; p < size_of(charts_); ++p) {
-      const bool more = is_held_[p] != is_held_[best] ? bool(is_held_[p]) : faces_[p] > faces_[best];
+      const bool more =
+          is_held_[p] != is_held_[best] ? bool(is_held_[p]) : faces_[p] > faces_[best];
       if (more) best = p;
     }
     return best;

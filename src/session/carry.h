@@ -14,9 +14,9 @@ namespace beltrami {
 
 /// What a chart brings with it.
 struct Carried {
-  std::vector<Vec2> uvs;   ///< one per vertex; where `placed`
-  bool placed = false;     ///< its faces had a place before
-  double scale = 1;        ///< of the largest part, or of that which is held
+  std::vector<Vec2> uvs;     ///< one per vertex; where `placed`
+  bool placed = false;       ///< its faces had a place before
+  double scale = 1;          ///< of the largest part, or of that which is held
   bool warm = false;         ///< all of it had maps that were of use
   std::vector<MetPin> pins;  ///< that its parts were mapped with
 };

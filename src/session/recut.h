@@ -18,9 +18,9 @@ struct Recut {
 
 /// Cuts `faces`, increasing, along the seams between them and the edges that were `opened` before;
 /// their border is cut anyway. Seams that meet neither the border nor what was opened, and enclose
-/// nothing, wait until they do, unless there is nothing else to open a closed surface by: then those
-/// that are `standing`, cut so far, serve, or else the longest. Holes are filled as ever; what is no disk then
-/// is cut along a short graph. Throws what the stages do.
+/// nothing, wait until they do, unless there is nothing else to open a closed surface by: then
+/// those that are `standing`, cut so far, serve, or else the longest. Holes are filled as ever;
+/// what is no disk then is cut along a short graph. Throws what the stages do.
 Recut recut(const Ground& ground, const std::vector<Index>& faces, const EdgeMarks& seams,
             const EdgeMarks& opened, const EdgeMarks& standing, const Work& work);
 

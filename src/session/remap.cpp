@@ -163,8 +163,7 @@ void Mapper::take_back() {
 Drafted Mapper::run() {
   set_unit(task_.scale);
   for (const Vec2& w : task_.start) start_.push_back(scaled(w, result_.draft.exponent));
-  const bool serves =
-      task_.warm && mend_start(result_.draft.disk, task_.held, start_, work_);
+  const bool serves = task_.warm && mend_start(result_.draft.disk, task_.held, start_, work_);
   if (!serves) {
     map_anew();
     if (!is_free()) hold(true);
@@ -206,8 +205,7 @@ Remapped finish(const AtlasChart& part, Draft draft, const Vec2& shift, bool flo
   if (!moved.isZero(0)) {
     for (Vec2& w : draft.placed) w += moved;
   }
-  const Rounded rounded =
-      round_map(draft.disk, draft.uvs, draft.placed, draft.held, numbers, work);
+  const Rounded rounded = round_map(draft.disk, draft.uvs, draft.placed, draft.held, numbers, work);
   Remapped result;
   result.scale = draft.scale;
   result.converged = draft.converged;

@@ -17,14 +17,14 @@ namespace beltrami {
 /// What is known of a chart before it is mapped.
 struct RemapTask {
   const AtlasChart& part;
-  std::vector<Vec2> start;  ///< one per vertex; where it is `placed`
-  bool placed = false;      ///< the chart has a place in the plane, to which a free map returns
-  bool warm = false;        ///< the start may serve as a map
-  double scale = 1;         ///< lengths in the plane per length on the ground
+  std::vector<Vec2> start;     ///< one per vertex; where it is `placed`
+  bool placed = false;         ///< the chart has a place in the plane, to which a free map returns
+  bool warm = false;           ///< the start may serve as a map
+  double scale = 1;            ///< lengths in the plane per length on the ground
   std::vector<ChartPin> pins;  ///< their places as delivered
-  bool fit_pins = false;    ///< the map is turned and scaled to where its pins fit best
-  std::vector<bool> held;   ///< per vertex, whether it may not move
-  int steps = 0;            ///< Newton steps from a start; 0: to the minimum
+  bool fit_pins = false;       ///< the map is turned and scaled to where its pins fit best
+  std::vector<bool> held;      ///< per vertex, whether it may not move
+  int steps = 0;               ///< Newton steps from a start; 0: to the minimum
 };
 
 /// A map before it is rounded.
@@ -48,7 +48,8 @@ struct Remapped {
 };
 
 /// Maps a chart: near its start where that serves, else anew. `failed_pin`: in the list of pins of
-/// the session, one that could not be met with those before it, or kNone. Throws Cancelled or Error.
+/// the session, one that could not be met with those before it, or kNone. Throws Cancelled or
+/// Error.
 struct Drafted {
   Draft draft;
   Index failed_pin = kNone;

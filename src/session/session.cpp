@@ -153,7 +153,8 @@ void Session::lock(std::span<const Index> ids, bool locked) {
 void Session::renew(std::span<const Index> ids, bool cold) {
   std::vector<Index> indices;
   for (const Index id : ids) indices.push_back(index_of(id));
-  for (const Index c : indices) state_.charts[c].due = cold ? Due::kCold : std::max(state_.charts[c].due, Due::kWarm);
+  for (const Index c : indices)
+    state_.charts[c].due = cold ? Due::kCold : std::max(state_.charts[c].due, Due::kWarm);
 }
 
 std::uint64_t Session::save() {

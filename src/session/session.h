@@ -1,5 +1,5 @@
-// An editing session: seams, pins and charts of one surface that change a little at a time, and maps
-// that follow from those that are there.
+// An editing session: seams, pins and charts of one surface that change a little at a time, and
+// maps that follow from those that are there.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct Updated {
 };
 
 /// Edits are noted at once and cost next to nothing; update() makes the maps that they ask for. A
-/// call that throws leaves everything as it was. The same calls give the same bits, at any number of
-/// threads, unless a limit of time ends one of them.
+/// call that throws leaves everything as it was. The same calls give the same bits, at any number
+/// of threads, unless a limit of time ends one of them.
 class Session {
  public:
   /// Throws what admit does. Charts with UVs for all corners keep them until they are edited.

@@ -6,7 +6,8 @@ namespace beltrami {
 
 Vec2 Similarity::operator()(const Vec2& z) const {
   const Vec2 d = z - from;
-  return Vec2(turn.real() * d.x() - turn.imag() * d.y(), turn.real() * d.y() + turn.imag() * d.x()) +
+  return Vec2(turn.real() * d.x() - turn.imag() * d.y(),
+              turn.real() * d.y() + turn.imag() * d.x()) +
          to;
 }
 

@@ -6,8 +6,8 @@ namespace beltrami {
 
 Index SessionChart::local_face(Index face) const {
   const std::vector<Index>& faces = part->chart.input_face;
-  return static_cast<Index>(std::lower_bound(faces.begin(), faces.begin() + part->real_faces, face) -
-                            faces.begin());
+  return static_cast<Index>(
+      std::lower_bound(faces.begin(), faces.begin() + part->real_faces, face) - faces.begin());
 }
 
 void CornerUvs::read(const SessionChart& chart) {

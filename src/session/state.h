@@ -50,15 +50,13 @@ struct SessionState {
   EdgeMarks opened;            ///< further edges that had to be cut to make disks
   std::vector<Index> toggled;  ///< half-edges whose seams have changed since the charts were cut
   std::vector<Pin> pins;
-  std::vector<bool> locked;    ///< per face of the ground
-  std::vector<bool> selected;  ///< likewise; none: all are
+  std::vector<bool> locked;          ///< per face of the ground
+  std::vector<bool> selected;        ///< likewise; none: all are
   std::vector<SessionChart> charts;  ///< by their least face of the ground
   std::vector<Index> chart_of_face;  ///< per face of the ground
   Index next_id = 0;
 
-  bool may_move(Index face) const {
-    return !locked[face] && (selected.empty() || selected[face]);
-  }
+  bool may_move(Index face) const { return !locked[face] && (selected.empty() || selected[face]); }
 };
 
 /// Per corner of the ground, the UVs of some charts.

@@ -75,8 +75,8 @@ void Updater::cut() {
   for (Index f = 0; f < ground.face_count(); ++f) {
     if (is_affected[next_.chart_of_face[f]]) faces.push_back(f);
   }
-  Recut cut =
-      recut(ground, faces, next_.seams, next_.opened, standing(faces), work_.part(0, kCut).named("cut"));
+  Recut cut = recut(ground, faces, next_.seams, next_.opened, standing(faces),
+                    work_.part(0, kCut).named("cut"));
   for (const Index f : faces) {
     for (int k = 0; k < 3; ++k) next_.opened[3 * f + k] = false;
   }
@@ -200,9 +200,9 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
 void Updater::map(Job& job, const Work& work) const {
   const SessionChart& chart = next_.charts[job.chart];
   std::vector<MetPin> met = met_pins(job.pins);
-  const bool same_pins = std::equal(
-      met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
-      [](const MetPin& a, const MetPin& b) { return a.corner == b.corner; });
+  const bool same_pins =
+      std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
+                 [](const MetPin& a, const MetPin& b) { return a.corner == b.corner; });
   const RemapTask task{.part = *chart.part,
                        .start = *chart.uvs,
                        .placed = chart.placed,
@@ -215,8 +215,9 @@ void Updater::map(Job& job, const Work& work) const {
   try {
     Drafted made = draft(task, session_.chart_, work);
     if (made.failed_pin != kNone) {
-      job.error = unmet(next_.pins[made.failed_pin],
-                        "cannot be met together with those before it: move it back, or take it off");
+      job.error =
+          unmet(next_.pins[made.failed_pin],
+                "cannot be met together with those before it: move it back, or take it off");
       return;
     }
     job.draft = std::move(made.draft);

@@ -22,10 +22,12 @@ using meshes::TriangleList;
 using Edges = std::vector<std::array<Index, 2>>;
 
 Session session_of(const TriangleList& mesh, Edges seams = {}) {
-  return Session(
-      {.positions = mesh.positions, .faces = mesh.faces, .seams = std::move(seams), .corner_uvs = {},
-       .pins = {}},
-      {}, {}, false, Work());
+  return Session({.positions = mesh.positions,
+                  .faces = mesh.faces,
+                  .seams = std::move(seams),
+                  .corner_uvs = {},
+                  .pins = {}},
+                 {}, {}, false, Work());
 }
 
 std::vector<Vec2> uvs_of(const Session& session) {
@@ -143,8 +145,8 @@ TEST(Session, AFailureOrACancelLeavesAllAsItWas) {
 }
 
 TEST(Session, RandomEditsAreJudgedRightRepeatAndAreUndone) {
-  const std::vector<TriangleList> all = {meshes::bumps(12, 12), meshes::octahedron(),
-                                         meshes::tetrahedron(), meshes::annulus(12),
+  const std::vector<TriangleList> all = {meshes::bumps(12, 12),      meshes::octahedron(),
+                                         meshes::tetrahedron(),      meshes::annulus(12),
                                          meshes::torus_with_hole(6), meshes::two_components(),
                                          meshes::cap(8, 12, 2.5)};
   for (std::size_t m = 0; m < all.size(); ++m) {

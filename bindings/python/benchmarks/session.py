@@ -1,4 +1,4 @@
-"""What an edit costs: sessions of seams opened and closed, pins dragged, charts selected and packed.
+"""What edits cost: seams opened and closed, pins dragged, faces selected, charts packed.
 
     session.py [--faces 5000 22000 89000 300000] [--edits 200] [--steps 1] [--record]
 
@@ -15,10 +15,11 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import beltrami
 import numpy as np
 import records
 from evaluate_data import body
+
+import beltrami
 
 LENGTH = 6  # edges that a seam is opened by
 COLD = 25  # edits from one comparison to the next

@@ -26,7 +26,9 @@ def octahedron() -> tuple[np.ndarray, np.ndarray]:
 
 def judged(editor: beltrami.Editor, vertices: np.ndarray, faces: np.ndarray) -> bool:
     """Return whether the UVs are injective, judged anew; the editor must say the same."""
-    verdict = bool(beltrami.check_atlas(vertices, faces, editor.corner_uvs.reshape(*faces.shape, 2)))
+    verdict = bool(
+        beltrami.check_atlas(vertices, faces, editor.corner_uvs.reshape(*faces.shape, 2))
+    )
     assert editor.check().injective == verdict
     return verdict
 
@@ -55,7 +57,8 @@ def test_charts_keep_their_numbers() -> None:
         editor.open_seams(row(12, 4, 0, 12))
         editor.update()
         ids = {chart.id: chart.triangles for chart in editor.charts}
-        assert ids[whole.id] == 12 * 8 * 2 and sum(ids.values()) == len(faces)
+        assert ids[whole.id] == 12 * 8 * 2
+        assert sum(ids.values()) == len(faces)
         assert set(editor.chart_of_face) == set(ids)
         editor.close_seams(row(12, 4, 0, 12))
         editor.update()
@@ -74,9 +77,7 @@ def test_what_is_not_concerned_stays_to_the_bit() -> None:
         after = editor.corner_uvs
         np.testing.assert_array_equal(after[stays], uvs[stays])
         np.testing.assert_array_equal(after[changes.corners], changes.uvs)
-        np.testing.assert_array_equal(
-            np.flatnonzero((after != uvs).any(axis=1)), changes.corners
-        )
+        np.testing.assert_array_equal(np.flatnonzero((after != uvs).any(axis=1)), changes.corners)
 
 
 def test_pins_are_met_exactly_and_dragged() -> None:
@@ -165,7 +166,8 @@ def test_charts_are_packed_alone_and_all() -> None:
         editor.update()
         editor.pack()
         uvs = editor.corner_uvs
-        assert uvs.min() >= 0 and uvs.max() <= 1
+        assert uvs.min() >= 0
+        assert uvs.max() <= 1
         assert judged(editor, vertices, faces)
         editor.pack([editor.charts[0].id])
         stays = np.repeat(editor.chart_of_face == editor.charts[1].id, 3)

@@ -964,26 +964,27 @@ BELTRAMI_API beltrami_status beltrami_get_packed_uvs(beltrami_context* context, 
 BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh,
                                                         void* out, int32_t type, uint64_t stride);
 
-/* ---- Editing sessions: seams and pins that move ------------------------------------------------ */
+/* ---- Editing sessions: seams and pins that move ------------------------------------------------
+ */
 
 /* A host with a user in front of it begins a session over one surface, notes edits in it, and asks
- * for an update after each. An update maps the charts that the edits concern and no others, from the
- * maps that they have: a seam that opens leaves its chart as it lies, sides that are closed are
+ * for an update after each. An update maps the charts that the edits concern and no others, from
+ * the maps that they have: a seam that opens leaves its chart as it lies, sides that are closed are
  * aligned by a similarity, and a pin that moves draws its chart along. What cannot start so is
  * mapped anew, near its old place. Each chart's map is judged exactly at once, the atlas by
- * beltrami_session_check. A context holds one session. Its flattening is that of the options when it
- * began; those of packing and the number of threads count at each call.
+ * beltrami_session_check. A context holds one session. Its flattening is that of the options when
+ * it began; those of packing and the number of threads count at each call.
  *
- * A call that fails leaves the maps as they were; what was asked for before it stays asked for, until
- * it is taken back or beltrami_session_restore is called. The same calls give the same bits, but for
- * updates that a limit of time ends. Every function fails with INVALID_ARGUMENT for NULL and odd
- * numbers, and with INVALID_STATE without a session and during a run. beltrami_cancel ends those that
- * take a progress, and the check. */
+ * A call that fails leaves the maps as they were; what was asked for before it stays asked for,
+ * until it is taken back or beltrami_session_restore is called. The same calls give the same bits,
+ * but for updates that a limit of time ends. Every function fails with INVALID_ARGUMENT for NULL
+ * and odd numbers, and with INVALID_STATE without a session and during a run. beltrami_cancel ends
+ * those that take a progress, and the check. */
 
-/* Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where it
- * has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit concerns
- * them. Without them all charts are mapped by the first update, which lays them side by side. Of the
- * other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap. */
+/* Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where
+ * it has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit
+ * concerns them. Without them all charts are mapped by the first update, which lays them side by
+ * side. Of the other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap. */
 BELTRAMI_API beltrami_status beltrami_session_begin(beltrami_context* context,
                                                     const beltrami_surface* surface,
                                                     beltrami_progress progress, void* user);
@@ -992,17 +993,17 @@ BELTRAMI_API beltrami_status beltrami_session_begin(beltrami_context* context,
 BELTRAMI_API beltrami_status beltrami_session_end(beltrami_context* context);
 
 /* Opens edges, or with `open` 0 closes them: `count` items of 2 vertices, U32 or U64. A seam that
- * meets no border and no other seam at either end opens nothing until it does. Where the seams leave
- * something that is no disk, further edges are cut, which beltrami_get_session_opened lists; they
- * stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge, or lies
- * inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE. */
+ * meets no border and no other seam at either end opens nothing until it does. Where the seams
+ * leave something that is no disk, further edges are cut, which beltrami_get_session_opened lists;
+ * they stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge,
+ * or lies inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE. */
 BELTRAMI_API beltrami_status beltrami_session_set_seams(beltrami_context* context,
                                                         const beltrami_buffer* edges,
                                                         uint64_t count, int32_t open);
 
-/* Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32 or
- * F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart take it
- * along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
+/* Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32
+ * or F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart
+ * take it along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
  * INDEX_OUT_OF_RANGE, NON_FINITE with the corner. */
 BELTRAMI_API beltrami_status beltrami_session_set_pins(beltrami_context* context,
                                                        const beltrami_buffer* corners,
@@ -1026,21 +1027,22 @@ BELTRAMI_API beltrami_status beltrami_session_renew(beltrami_context* context,
                                                     const beltrami_buffer* charts, uint64_t count,
                                                     int32_t cold);
 
-/* Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has (0:
- * to its minimum), and none where `seconds` of wall time are up (0: those of the option time-limit).
- * Then the call returns NOT_CONVERGED: maps are injective and better than before, and the next call
- * goes on with them. Charts without a map are mapped whatever the time. With 1 or 2 steps an update
- * takes some milliseconds for each five thousand faces of a chart that is due. Returns OK, or with a
- * result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner, INVALID_STATE with a face
- * where parts that may not move cannot be joined, CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL. */
+/* Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
+ * (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
+ * time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
+ * the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
+ * steps an update takes some milliseconds for each five thousand faces of a chart that is due.
+ * Returns OK, or with a result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner,
+ * INVALID_STATE with a face where parts that may not move cannot be joined, CANCELLED,
+ * OUT_OF_MEMORY, SOLVER, INTERNAL. */
 BELTRAMI_API beltrami_status beltrami_session_update(beltrami_context* context, double seconds,
                                                      int32_t steps, beltrami_progress progress,
                                                      void* user);
 
 /* Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
  * beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
- * those with pins stay as well. Charts keep their sizes to each other, and where some stay to these.
- * Where there is no room elsewhere charts stay where they are, if that is on the pages and
+ * those with pins stay as well. Charts keep their sizes to each other, and where some stay to
+ * these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
  * injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
  * errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
  * INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY. */
@@ -1056,8 +1058,8 @@ BELTRAMI_API beltrami_status beltrami_session_check(beltrami_context* context,
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_session_save(beltrami_context* context, uint64_t* mark);
 
-/* Goes back to what was noted, which stays noted: the same bits, and so do calls that follow return.
- * Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY. */
+/* Goes back to what was noted, which stays noted: the same bits, and so do calls that follow
+ * return. Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_session_restore(beltrami_context* context, uint64_t mark);
 
 /* Drops what was noted. Errors: INVALID_ARGUMENT (there is no such number). */
@@ -1066,7 +1068,7 @@ BELTRAMI_API beltrami_status beltrami_session_forget(beltrami_context* context, 
 /* How a session stands. */
 typedef struct beltrami_session {
   uint32_t struct_size;
-  beltrami_status status;     /* the greatest reservation of all charts */
+  beltrami_status status; /* the greatest reservation of all charts */
   uint64_t charts;
   uint64_t due;               /* charts that are to be mapped further */
   uint64_t corners;           /* of the surface */
@@ -1099,15 +1101,15 @@ BELTRAMI_API beltrami_status beltrami_get_session(beltrami_context* context, bel
 BELTRAMI_API beltrami_status beltrami_get_session_chart(beltrami_context* context, uint64_t index,
                                                         beltrami_session_chart* out);
 
-/* Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in the
- * plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32 no
- * number changes. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+/* Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in
+ * the plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32
+ * no number changes. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_session_uvs(beltrami_context* context, void* out,
                                                       int32_t type, uint64_t stride);
 
-/* Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as many
- * as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or F64. Errors:
- * INVALID_STATE, INVALID_ARGUMENT. */
+/* Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as
+ * many as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or
+ * F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_session_changes(beltrami_context* context, void* corners,
                                                           int32_t corner_type, void* uvs,
                                                           int32_t uv_type);

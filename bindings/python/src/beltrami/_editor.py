@@ -136,7 +136,7 @@ class Editor:
         """Open seams at edges, (k, 2) vertices.
 
         A seam that meets no border and no other seam opens nothing until it does. Raises
-        InvalidArgumentError where a pair is no edge or lies inside a polygon: nothing is noted then.
+        InvalidArgumentError where a pair is no edge, or inside a polygon: nothing is noted then.
         """
         self._context.edit("set_seams", _integers("edges", edges, 2), 1)
 
@@ -166,9 +166,7 @@ class Editor:
 
     # ---- Maps -----------------------------------------------------------------------------
 
-    def update(
-        self, *, seconds: float = 0.0, steps: int = 0, progress: Progress = None
-    ) -> Changes:
+    def update(self, *, seconds: float = 0.0, steps: int = 0, progress: Progress = None) -> Changes:
         """Cut and map what the edits concern.
 
         Parameters

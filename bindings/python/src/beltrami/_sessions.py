@@ -196,4 +196,3 @@ class SessionContext(Context):
         edges = np.empty((self.session_report().opened, 2), np.int64)
         self._fill(lib.beltrami_get_session_opened, edges)
         return edges
-
