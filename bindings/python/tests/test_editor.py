@@ -6,10 +6,9 @@ import threading
 
 import numpy as np
 import pytest
+from conftest import grid
 
 import beltrami
-
-from .conftest import grid
 
 
 def row(rows: int, at: int, first: int, last: int) -> np.ndarray:
