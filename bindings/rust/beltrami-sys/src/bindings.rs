@@ -1971,10 +1971,10 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where it
- has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit concerns
- them. Without them all charts are mapped by the first update, which lays them side by side. Of the
- other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap.*/
+    /** Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where
+ it has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit
+ concerns them. Without them all charts are mapped by the first update, which lays them side by
+ side. Of the other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap.*/
     pub fn beltrami_session_begin(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
@@ -1988,10 +1988,10 @@ extern "C" {
 }
 extern "C" {
     /** Opens edges, or with `open` 0 closes them: `count` items of 2 vertices, U32 or U64. A seam that
- meets no border and no other seam at either end opens nothing until it does. Where the seams leave
- something that is no disk, further edges are cut, which beltrami_get_session_opened lists; they
- stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge, or lies
- inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE.*/
+ meets no border and no other seam at either end opens nothing until it does. Where the seams
+ leave something that is no disk, further edges are cut, which beltrami_get_session_opened lists;
+ they stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge,
+ or lies inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE.*/
     pub fn beltrami_session_set_seams(
         context: *mut beltrami_context,
         edges: *const beltrami_buffer,
@@ -2000,9 +2000,9 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32 or
- F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart take it
- along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
+    /** Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32
+ or F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart
+ take it along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
  INDEX_OUT_OF_RANGE, NON_FINITE with the corner.*/
     pub fn beltrami_session_set_pins(
         context: *mut beltrami_context,
@@ -2042,13 +2042,14 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has (0:
- to its minimum), and none where `seconds` of wall time are up (0: those of the option time-limit).
- Then the call returns NOT_CONVERGED: maps are injective and better than before, and the next call
- goes on with them. Charts without a map are mapped whatever the time. With 1 or 2 steps an update
- takes some milliseconds for each five thousand faces of a chart that is due. Returns OK, or with a
- result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner, INVALID_STATE with a face
- where parts that may not move cannot be joined, CANCELLED, OUT_OF_MEMORY, SOLVER, INTERNAL.*/
+    /** Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
+ (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
+ time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
+ the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
+ steps an update takes some milliseconds for each five thousand faces of a chart that is due.
+ Returns OK, or with a result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner,
+ INVALID_STATE with a face where parts that may not move cannot be joined, CANCELLED,
+ OUT_OF_MEMORY, SOLVER, INTERNAL.*/
     pub fn beltrami_session_update(
         context: *mut beltrami_context,
         seconds: f64,
@@ -2060,8 +2061,8 @@ extern "C" {
 extern "C" {
     /** Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
  beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
- those with pins stay as well. Charts keep their sizes to each other, and where some stay to these.
- Where there is no room elsewhere charts stay where they are, if that is on the pages and
+ those with pins stay as well. Charts keep their sizes to each other, and where some stay to
+ these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
  injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
  errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
  INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY.*/
@@ -2089,8 +2090,8 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Goes back to what was noted, which stays noted: the same bits, and so do calls that follow return.
- Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY.*/
+    /** Goes back to what was noted, which stays noted: the same bits, and so do calls that follow
+ return. Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY.*/
     pub fn beltrami_session_restore(
         context: *mut beltrami_context,
         mark: u64,
@@ -2238,9 +2239,9 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in the
- plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32 no
- number changes. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    /** Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in
+ the plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32
+ no number changes. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_session_uvs(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
@@ -2249,9 +2250,9 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as many
- as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or F64. Errors:
- INVALID_STATE, INVALID_ARGUMENT.*/
+    /** Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as
+ many as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or
+ F64. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_session_changes(
         context: *mut beltrami_context,
         corners: *mut ::core::ffi::c_void,
