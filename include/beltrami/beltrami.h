@@ -964,6 +964,166 @@ BELTRAMI_API beltrami_status beltrami_get_packed_uvs(beltrami_context* context, 
 BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh,
                                                         void* out, int32_t type, uint64_t stride);
 
+/* ---- Editing sessions: seams and pins that move ------------------------------------------------
+ */
+
+/* A host with a user in front of it begins a session over one surface, notes edits in it, and asks
+ * for an update after each. An update maps the charts that the edits concern and no others, from
+ * the maps that they have: a seam that opens leaves its chart as it lies, sides that are closed are
+ * aligned by a similarity, and a pin that moves draws its chart along. What cannot start so is
+ * mapped anew, near its old place. Each chart's map is judged exactly at once, the atlas by
+ * beltrami_session_check. A context holds one session. Its flattening is that of the options when
+ * it began; those of packing and the number of threads count at each call.
+ *
+ * A call that fails leaves the maps as they were; what was asked for before it stays asked for,
+ * until it is taken back or beltrami_session_restore is called. The same calls give the same bits,
+ * but for updates that a limit of time ends. Every function fails with INVALID_ARGUMENT for NULL
+ * and odd numbers, and with INVALID_STATE without a session and during a run. beltrami_cancel ends
+ * those that take a progress, and the check. */
+
+/* Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where
+ * it has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit
+ * concerns them. Without them all charts are mapped by the first update, which lays them side by
+ * side. Of the other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap. */
+BELTRAMI_API beltrami_status beltrami_session_begin(beltrami_context* context,
+                                                    const beltrami_surface* surface,
+                                                    beltrami_progress progress, void* user);
+
+/* Ends the session, if there is one, and frees its memory. Errors: INVALID_STATE (during a run). */
+BELTRAMI_API beltrami_status beltrami_session_end(beltrami_context* context);
+
+/* Opens edges, or with `open` 0 closes them: `count` items of 2 vertices, U32 or U64. A seam that
+ * meets no border and no other seam at either end opens nothing until it does. Where the seams
+ * leave something that is no disk, further edges are cut, which beltrami_get_session_opened lists;
+ * they stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge,
+ * or lies inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE. */
+BELTRAMI_API beltrami_status beltrami_session_set_seams(beltrami_context* context,
+                                                        const beltrami_buffer* edges,
+                                                        uint64_t count, int32_t open);
+
+/* Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32
+ * or F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart
+ * take it along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
+ * INDEX_OUT_OF_RANGE, NON_FINITE with the corner. */
+BELTRAMI_API beltrami_status beltrami_session_set_pins(beltrami_context* context,
+                                                       const beltrami_buffer* corners,
+                                                       const beltrami_buffer* uvs, uint64_t count);
+
+/* Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
+ * are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
+ * INDEX_OUT_OF_RANGE. */
+BELTRAMI_API beltrami_status beltrami_session_select(beltrami_context* context,
+                                                     const beltrami_buffer* faces, uint64_t count);
+
+/* Locks charts, given by their numbers: `count` items of 1, U32 or U64, or with `locked` 0 unlocks
+ * them. Faces of locked charts stay where they are whatever happens. Errors: INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_session_lock(beltrami_context* context,
+                                                   const beltrami_buffer* charts, uint64_t count,
+                                                   int32_t locked);
+
+/* Makes charts due, given likewise; with `cold` other than 0 they start from nothing. Errors:
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_session_renew(beltrami_context* context,
+                                                    const beltrami_buffer* charts, uint64_t count,
+                                                    int32_t cold);
+
+/* Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
+ * (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
+ * time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
+ * the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
+ * steps an update takes some milliseconds for each five thousand faces of a chart that is due.
+ * Returns OK, or with a result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner,
+ * INVALID_STATE with a face where parts that may not move cannot be joined, CANCELLED,
+ * OUT_OF_MEMORY, SOLVER, INTERNAL. */
+BELTRAMI_API beltrami_status beltrami_session_update(beltrami_context* context, double seconds,
+                                                     int32_t steps, beltrami_progress progress,
+                                                     void* user);
+
+/* Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
+ * beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
+ * those with pins stay as well. Charts keep their sizes to each other, and where some stay to
+ * these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
+ * injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
+ * errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
+ * INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_session_pack(beltrami_context* context,
+                                                   const beltrami_buffer* charts, uint64_t count,
+                                                   beltrami_progress progress, void* user);
+
+/* Judges all charts together, in F64 as they are. Errors: CANCELLED, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_session_check(beltrami_context* context,
+                                                    beltrami_atlas_certificate* out);
+
+/* Notes seams, pins, locks, selection and maps under a number, which is given once in a session.
+ * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_session_save(beltrami_context* context, uint64_t* mark);
+
+/* Goes back to what was noted, which stays noted: the same bits, and so do calls that follow
+ * return. Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY. */
+BELTRAMI_API beltrami_status beltrami_session_restore(beltrami_context* context, uint64_t mark);
+
+/* Drops what was noted. Errors: INVALID_ARGUMENT (there is no such number). */
+BELTRAMI_API beltrami_status beltrami_session_forget(beltrami_context* context, uint64_t mark);
+
+/* How a session stands. */
+typedef struct beltrami_session {
+  uint32_t struct_size;
+  beltrami_status status; /* the greatest reservation of all charts */
+  uint64_t charts;
+  uint64_t due;               /* charts that are to be mapped further */
+  uint64_t corners;           /* of the surface */
+  uint64_t changes;           /* corners that the last update, pack or restore moved */
+  uint64_t opened;            /* edges cut beside the seams */
+  double symmetric_dirichlet; /* mean over the area, each chart at its scale; NaN before the first
+                               * update */
+  double seconds;             /* of the last update, pack or check */
+  double cpu_seconds;
+} beltrami_session;
+
+/* A chart of a session. */
+typedef struct beltrami_session_chart {
+  uint32_t struct_size;
+  beltrami_status status; /* OK, NOT_CONVERGED or NOT_INJECTIVE: by itself */
+  int32_t due;            /* 1 or 0 */
+  int32_t locked;         /* 1: all of its faces are */
+  uint64_t id;            /* its number: it stays while most of the chart does, and is given once */
+  uint64_t triangles;
+  uint64_t first_face; /* of the input, the least */
+  double symmetric_dirichlet;
+  double scale; /* lengths in the plane per length on the surface that it is to have */
+} beltrami_session_chart;
+
+/* Counts and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session(beltrami_context* context, beltrami_session* out);
+
+/* Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
+ * INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session_chart(beltrami_context* context, uint64_t index,
+                                                        beltrami_session_chart* out);
+
+/* Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in
+ * the plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32
+ * no number changes. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session_uvs(beltrami_context* context, void* out,
+                                                      int32_t type, uint64_t stride);
+
+/* Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as
+ * many as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or
+ * F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session_changes(beltrami_context* context, void* corners,
+                                                          int32_t corner_type, void* uvs,
+                                                          int32_t uv_type);
+
+/* Writes the number of the chart of each face, or all bits set for faces without area: U32 or U64.
+ * Errors: INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session_face_charts(beltrami_context* context, void* out,
+                                                              int32_t type, uint64_t stride);
+
+/* Writes the edges that are cut beside the seams, as two vertices each: U32 or U64. Errors:
+ * INVALID_STATE, INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_get_session_opened(beltrami_context* context, void* out,
+                                                         int32_t type, uint64_t stride);
+
 /* ---- Baking: what images show through old UVs, for new UVs --------------------------------- */
 
 /* What an image shows beyond [0,1]^2. */

@@ -37,6 +37,8 @@ BELTRAMI_FIRST_SIZE(beltrami_uv_mesh, cancel);
 BELTRAMI_FIRST_SIZE(beltrami_packing, cpu_seconds);
 BELTRAMI_FIRST_SIZE(beltrami_bake_job, cancel);
 BELTRAMI_FIRST_SIZE(beltrami_baked, cpu_seconds);
+BELTRAMI_FIRST_SIZE(beltrami_session, cpu_seconds);
+BELTRAMI_FIRST_SIZE(beltrami_session_chart, scale);
 #undef BELTRAMI_FIRST_SIZE
 
 /// The struct_size of the caller's struct; throws Error INVALID_ARGUMENT if it is null or too

@@ -204,6 +204,46 @@ beltrami_status beltrami_context::bake(const beltrami_bake_job* job, beltrami_ba
   return BELTRAMI_OK;
 }
 
+beltrami_status beltrami_context::begin_session(const beltrami_surface* surface,
+                                                beltrami_progress progress, void* user) {
+  const beltrami_surface header = beltrami::read_surface_header(surface);
+  beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
+  beltrami::HostProgress host(progress, user);
+  const beltrami::Work work(beltrami::limits(options), host.watched());
+  auto begun = std::make_unique<beltrami::EditSession>(header, options, work.named("read"));
+  if (mark.take_request() || host.cancelled()) {
+    throw beltrami::Cancelled();
+  }
+  session = std::move(begun);
+  return BELTRAMI_OK;
+}
+
+beltrami_status beltrami_context::run_session(
+    double seconds, beltrami_progress progress, void* user,
+    const std::function<beltrami_status(beltrami::EditSession&, const beltrami::Work&)>& body) {
+  beltrami::EditSession& own = editing();
+  const double wall = beltrami::wall_seconds(), cpu = beltrami::cpu_seconds();
+  beltrami::RunMark mark(*this);
+  const beltrami::InterruptScope interruptible(&cancelled);
+  beltrami::HostProgress host(progress, user);
+  beltrami::Limits bounds = beltrami::limits(options);
+  if (seconds > 0) bounds.seconds = seconds;
+  const beltrami::Work work(bounds, host.watched());
+  const beltrami_status status = body(own, work);
+  session_seconds = beltrami::wall_seconds() - wall;
+  session_cpu_seconds = beltrami::cpu_seconds() - cpu;
+  return status;
+}
+
+beltrami::EditSession& beltrami_context::editing() const {
+  if (!session) {
+    throw beltrami::Error(beltrami::Fault::kInvalidState,
+                          "there is no session: call beltrami_session_begin");
+  }
+  return *session;
+}
+
 const beltrami::PackedMeshes& beltrami_context::packing() const {
   if (!packed) {
     throw beltrami::Error(beltrami::Fault::kInvalidState,

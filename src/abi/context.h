@@ -4,8 +4,11 @@
 #include <beltrami/beltrami.h>
 
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <optional>
 
+#include "abi/edit_session.h"
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
 #include "abi/options.h"
@@ -42,6 +45,8 @@ struct beltrami_context {
   std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
   std::optional<beltrami::Unwrapped> unwrapped;    ///< of the last surface
   std::optional<beltrami::PackedMeshes> packed;    ///< of the last UV meshes
+  std::unique_ptr<beltrami::EditSession> session;
+  double session_seconds = 0, session_cpu_seconds = 0;  ///< of its last call that ran
   enum class Packer { kNone, kUnwrap, kPack } last_packer = Packer::kNone;
   beltrami::Failure failure;
   std::atomic<bool> cancelled{false};
@@ -68,10 +73,22 @@ struct beltrami_context {
   beltrami_status bake(const beltrami_bake_job* job, beltrami_baked* out,
                        beltrami_progress progress, void* user);
 
+  /// Begins a session, in place of the one before. Throws what its constructor does, or Cancelled;
+  /// keeps the old one then.
+  beltrami_status begin_session(const beltrami_surface* surface, beltrami_progress progress,
+                                void* user);
+
+  /// Runs `body(session, work)` for no more than `seconds`, or 0: any. Throws what that does, Error
+  /// INVALID_STATE without a session, or Cancelled.
+  beltrami_status run_session(
+      double seconds, beltrami_progress progress, void* user,
+      const std::function<beltrami_status(beltrami::EditSession&, const beltrami::Work&)>& body);
+
   /// The results. Throws Error INVALID_STATE where there are none.
   const beltrami::Flattening& results() const;
   const beltrami::Unwrapped& atlas() const;
   const beltrami::PackedMeshes& packing() const;
+  beltrami::EditSession& editing() const;
   beltrami::OnPages on_pages() const;  ///< of what was packed last
 };
 

@@ -23,21 +23,6 @@ double radians(double degrees) {
   return degrees / 180 * std::numbers::pi;
 }
 
-/// Per triangle of a polygon, bit k says whether its edge from corner k is no side of the polygon.
-std::vector<std::uint8_t> diagonals_of(const LoadedSurface& surface) {
-  std::vector<std::uint8_t> diagonals(surface.face_of_triangle.size(), 0);
-  for (Index t = 0; t < size_of(diagonals); ++t) {
-    const Index face = surface.face_of_triangle[t];
-    const Index last = surface.polygons.end(face) - surface.polygons.begin(face) - 1;
-    const Triangle& corners = surface.triangulation.triangles[t];
-    for (int k = 0; k < 3; ++k) {
-      const Index apart = std::abs(corners[(k + 1) % 3] - corners[k]);
-      if (apart != 1 && apart != last) diagonals[t] |= static_cast<std::uint8_t>(1 << k);
-    }
-  }
-  return diagonals;
-}
-
 /// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner.
 std::vector<Index> uvs_of_corners(const LoadedSurface& surface, const Atlas& atlas) {
   std::vector<Index> uv_of_corner(surface.polygons.corners.size(), kNone);
@@ -96,6 +81,20 @@ void split_vertices(const LoadedSurface& surface, const std::vector<Index>& uv_o
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> diagonals_of(const LoadedSurface& surface) {
+  std::vector<std::uint8_t> diagonals(surface.face_of_triangle.size(), 0);
+  for (Index t = 0; t < size_of(diagonals); ++t) {
+    const Index face = surface.face_of_triangle[t];
+    const Index last = surface.polygons.end(face) - surface.polygons.begin(face) - 1;
+    const Triangle& corners = surface.triangulation.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      const Index apart = std::abs(corners[(k + 1) % 3] - corners[k]);
+      if (apart != 1 && apart != last) diagonals[t] |= static_cast<std::uint8_t>(1 << k);
+    }
+  }
+  return diagonals;
+}
 
 std::uint64_t Unwrapped::face_of(Index triangle) const {
   if (triangle == kNone || face_of_triangle.empty()) return element_or_none(triangle);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "abi/surface.h"
 #include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
@@ -35,6 +36,9 @@ struct Unwrapped {
   /// The caller's face, or BELTRAMI_NO_ELEMENT.
   std::uint64_t face_of(Index triangle) const;
 };
+
+/// Per triangle of a polygon, bit k says whether its edge from corner k is no side of the polygon.
+std::vector<std::uint8_t> diagonals_of(const LoadedSurface& surface);
 
 /// Reads a surface that has passed read_surface_header, and unwraps it. `hard_angle` in degrees.
 /// Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or Cancelled.

@@ -13,10 +13,12 @@
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"
+#include "descend/tutte.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
+#include "repair/touching.h"
 #include "repair/untangle.h"
 
 namespace beltrami {
@@ -130,6 +132,9 @@ class WayToPins {
   /// whether it converged.
   bool relax(const Work& work, std::vector<Vec2>& uvs) const;
 
+  /// The same from a map near the minimum, whose boundary presses on itself nowhere or hardly.
+  bool relax_nearby(const Work& work, std::vector<Vec2>& uvs) const;
+
  private:
   bool keeps_simple(const std::vector<Vec2>& uvs) const {
     return keeps_boundary_simple(options_) && contact_.is_simple(uvs);
@@ -219,6 +224,33 @@ bool WayToPins::relax(const Work& work, std::vector<Vec2>& uvs) const {
   return minimise(last_steps(), simple, work, uvs);
 }
 
+bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
+  if (!keeps_simple(uvs)) return relax(work, uvs);
+  std::vector<Vec2> free = uvs;
+  const bool converged = minimise(last_steps(), false, work, free);
+  const std::vector<Vec2> before = free;
+  const auto holds = [&] {
+    for (std::size_t v = 0; v < held_.size(); ++v) {
+      if (held_[v] && free[v] != before[v]) return false;
+    }
+    return true;
+  };
+  const bool sound = contact_.is_simple(free) ||
+                     (options_.parts_touching && open_touching_sides(mesh_, work, free) && holds());
+  if (sound) {
+    uvs.swap(free);
+    return converged;
+  }
+  const auto energy = [&](const std::vector<Vec2>& map) {
+    return mean_energy(options_.energy, mesh_.faces, rest_, map, work);
+  };
+  std::vector<Vec2> pressed = uvs;
+  const bool pressed_converged = relax(work, pressed);
+  if (!pressed_converged && energy(pressed) > energy(uvs)) return false;
+  uvs.swap(pressed);
+  return pressed_converged;
+}
+
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
 bool WayToPins::embed(std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
@@ -306,6 +338,21 @@ std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins
   return map;
 }
 
+/// That not all pins can be met: the first that `meets`, asked for the first few of them, finds out
+/// of reach.
+template <class Meets>
+HeldMap first_failure(Pins pins, const Work& work, const Meets& meets) {
+  // One pin is always met.
+  std::size_t met = 1, failed = pins.size();
+  while (failed - met > 1 && !work.out_of_time()) {
+    const std::size_t middle = met + (failed - met) / 2;
+    (meets(pins.first(middle)) ? met : failed) = middle;
+  }
+  HeldMap none;
+  none.failed = static_cast<Index>(failed) - 1;
+  return none;
+}
+
 }  // namespace
 
 HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
@@ -318,15 +365,29 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
   WayToPins way(mesh, rest, options, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
-  // One pin is always met.
-  std::size_t met = 1, failed = pins.size();
-  while (failed - met > 1 && !work.out_of_time()) {
-    const std::size_t middle = met + (failed - met) / 2;
-    (meet(way, start, Pins(pins).first(middle), false, work) ? met : failed) = middle;
+  return first_failure(pins, work,
+                       [&](Pins some) { return meet(way, start, some, false, work).has_value(); });
+}
+
+HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work) {
+  const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
+  WayToPins way(mesh, rest, options, work);
+  const auto reach = [&](Pins some, std::vector<Vec2>& map) {
+    way.set_pins({}, some);
+    return way.fits(map) || way.go(map);
+  };
+  HeldMap map{uvs};
+  if (!reach(pins, map.uvs)) {
+    return first_failure(pins, work, [&](Pins some) {
+      std::vector<Vec2> trial = uvs;
+      return reach(some, trial);
+    });
   }
-  HeldMap none;
-  none.failed = static_cast<Index>(failed) - 1;
-  return none;
+  for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
+  map.converged = way.relax_nearby(work.part(kThere, 1), map.uvs);
+  return map;
 }
 
 }  // namespace beltrami

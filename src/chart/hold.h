@@ -39,4 +39,14 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work);
 
+/// The same from a map of positive faces that lies where it is to be: it is neither turned nor
+/// scaled, which leaves its scale at 1, and its energy is minimised even where the pins are met
+/// already. The work is that of a few steps where the map is near its minimum.
+/// Where sides of the boundary lie on each other they are let go first, and parted by hardly
+/// anything where they come to lie over each other; where that does not do they press, and a map
+/// that steps too few have left with more energy than before is not taken.
+HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work);
+
 }  // namespace beltrami

@@ -23,6 +23,7 @@ LIBRARY = [
     {"chart"},
     {"cut"},
     {"atlas"},
+    {"session"},
     {"abi"},
 ]
 # In the library it alone knows the public header: statuses and the numbers of choices end there.

@@ -369,6 +369,77 @@ static void pack(beltrami_context* context) {
   REQUIRE(mask[64 * 64] == 7 && mask[64 * 32 + 32] <= BELTRAMI_TEXEL_COVERED);
 }
 
+static beltrami_buffer integers(const uint64_t* data) {
+  beltrami_buffer buffer;
+  memset(&buffer, 0, sizeof buffer);
+  buffer.data = data;
+  buffer.type = BELTRAMI_U64;
+  return buffer;
+}
+
+static void edit(beltrami_context* context) {
+  GUARDED(beltrami_session) session;
+  GUARDED(beltrami_session_chart) chart;
+  GUARDED(beltrami_atlas_certificate) certificate;
+  static const uint64_t edge[2] = {0, 1}, inner[4] = {SIDE, SIDE + 1, SIDE + 1, SIDE + 2};
+  static const uint64_t zero[1] = {0};
+  beltrami_surface surface = describe_surface();
+  beltrami_buffer edges = integers(inner), first = integers(zero), places;
+  uint64_t mark = 0;
+  int calls = 0;
+  memset(&places, 0, sizeof places);
+  places.data = uvs;
+  places.type = BELTRAMI_F64;
+  REQUIRE(beltrami_session_update(context, 0, 0, NULL, NULL) == BELTRAMI_E_INVALID_STATE);
+  REQUIRE(beltrami_session_begin(context, &surface, count_calls, &calls) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_update(context, 0, 0, count_calls, &calls) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_save(context, &mark) == BELTRAMI_OK && mark > 0);
+  REQUIRE(beltrami_session_set_seams(context, &edges, 2, 1) == BELTRAMI_OK);
+  edges = integers(edge);
+  REQUIRE(beltrami_session_set_seams(context, &edges, 1, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_lock(context, &first, 1, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_renew(context, &first, 1, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_select(context, &first, 1) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_select(context, NULL, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_update(context, 0, 2, count_calls, &calls) >= BELTRAMI_OK);
+  corner_uvs[3 * FACES][0] = -7;
+  REQUIRE(beltrami_get_session_uvs(context, corner_uvs, BELTRAMI_F64, 0) == BELTRAMI_OK);
+  REQUIRE(corner_uvs[3 * FACES][0] == -7);
+  uvs[0][0] = corner_uvs[0][0] + 1;
+  uvs[0][1] = corner_uvs[0][1];
+  REQUIRE(beltrami_session_set_pins(context, &first, &places, 1) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_update(context, 0, 2, count_calls, &calls) >= BELTRAMI_OK);
+  ARM(session);
+  REQUIRE(beltrami_get_session(context, &session.value) == BELTRAMI_OK);
+  ALIVE(session);
+  REQUIRE(session.value.charts == 1 && session.value.corners == 3 * FACES);
+  REQUIRE(session.value.changes == 3 * FACES && session.value.opened == 0);
+  numbers[3 * FACES] = 7;
+  REQUIRE(beltrami_get_session_changes(context, numbers, BELTRAMI_U64, corner_uvs, BELTRAMI_F64) ==
+          BELTRAMI_OK);
+  REQUIRE(numbers[1] == 1 && numbers[3 * FACES] == 7 && corner_uvs[3 * FACES][0] == -7);
+  REQUIRE(corner_uvs[0][0] == uvs[0][0] && corner_uvs[0][1] == uvs[0][1]);
+  ARM(chart);
+  REQUIRE(beltrami_get_session_chart(context, 0, &chart.value) == BELTRAMI_OK);
+  ALIVE(chart);
+  REQUIRE(chart.value.id == 0 && chart.value.triangles == FACES && chart.value.locked == 0);
+  ARM(certificate);
+  REQUIRE(beltrami_session_check(context, &certificate.value) == BELTRAMI_OK);
+  ALIVE(certificate);
+  REQUIRE(certificate.value.injective == 1 && certificate.value.positive == FACES);
+  numbers[FACES] = 7;
+  REQUIRE(beltrami_get_session_face_charts(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[0] == 0 && numbers[FACES] == 7);
+  numbers[0] = 7;
+  REQUIRE(beltrami_get_session_opened(context, numbers, BELTRAMI_U64, 0) == BELTRAMI_OK);
+  REQUIRE(numbers[0] == 7);
+  REQUIRE(beltrami_session_restore(context, mark) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_forget(context, mark) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_restore(context, mark) == BELTRAMI_E_INVALID_ARGUMENT);
+  REQUIRE(beltrami_session_pack(context, NULL, 0, count_calls, &calls) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_end(context) == BELTRAMI_OK);
+}
+
 int main(void) {
   beltrami_context* context = NULL;
   ask_the_library();
@@ -382,6 +453,7 @@ int main(void) {
   unwrap(context);
   pack(context);
   bake(context);
+  edit(context);
   beltrami_destroy(context);
   check_without_a_context();
   return EXIT_SUCCESS;

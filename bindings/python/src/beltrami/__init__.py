@@ -21,6 +21,7 @@ from ._atlas_checks import AtlasCheck, Triangulation, check_atlas, triangulate
 from ._bake import Baked, bake
 from ._batch import batch
 from ._checks import Distortion, check_boundary, check_injective, check_triangles, distortion
+from ._editor import Changes, Editor
 from ._errors import (
     BeltramiError,
     Cancelled,
@@ -43,6 +44,7 @@ from ._jobs import BatchRecord
 from ._library import build_info
 from ._pack import Packing, UvMesh, pack
 from ._results import Parameterization
+from ._sessions import SessionChart, SessionReport
 from ._tables import (
     AtlasCertificate,
     AtlasReport,
@@ -70,8 +72,10 @@ __all__ = [
     "BeltramiError",
     "Cancelled",
     "Certificate",
+    "Changes",
     "Chart",
     "Distortion",
+    "Editor",
     "Energy",
     "Flattener",
     "IndexOutOfRangeError",
@@ -92,6 +96,8 @@ __all__ = [
     "PinError",
     "Report",
     "SceneAtlases",
+    "SessionChart",
+    "SessionReport",
     "SolverError",
     "Stage",
     "Triangulation",

@@ -1,0 +1,268 @@
+"""Editing: one surface whose seams and pins move, and maps that follow."""
+
+from __future__ import annotations
+
+import types
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _polygons
+from ._arrays import Array
+from ._errors import NotInjectiveWarning
+from ._library import UNWRAP
+from ._polygons import Faces
+from ._progress import Progress, hook_for
+from ._sessions import SessionChart, SessionContext, SessionReport
+from ._surfaces import Surface
+from ._tables import AtlasCertificate, UnwrapOptions
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """What a call moved. It equals itself only.
+
+    Attributes
+    ----------
+    corners : (k,) array of int64
+        Corners that moved, increasing: counted from 0, face after face.
+    uvs : (k, 2) array of float32 or float64
+        Where they are now.
+    status : str
+        "BELTRAMI_OK"; "BELTRAMI_NOT_CONVERGED" where the next update would go on; or
+        "BELTRAMI_NOT_INJECTIVE" where a chart by itself is not.
+    """
+
+    corners: Array
+    uvs: Array
+    status: str
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+
+def _integers(name: str, values: npt.ArrayLike, columns: int | None) -> Array:
+    """Return whole numbers as the library reads them. Raises TypeError, ValueError."""
+    array = np.asarray(values)
+    if array.size == 0:
+        array = np.empty((0,) if columns is None else (0, columns), np.int64)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be whole numbers, not {array.dtype}")
+    shape = (len(array),) if columns is None else (len(array), columns)
+    if array.shape != shape:
+        wanted = "(n,)" if columns is None else f"(n, {columns})"
+        raise ValueError(f"{name} must have the shape {wanted}, not {array.shape}")
+    return np.ascontiguousarray(array, np.int64)
+
+
+class Editor:
+    """A session of edits on one surface: seams and pins that move, and maps that follow.
+
+    Edits are noted at once. `update` then maps the charts that they concern and no others, from the
+    maps that they have, and judges each exactly. A call that raises leaves the maps as they were.
+    The same calls give the same bits, but for updates that a limit of time ends. It is a context
+    manager, which frees its memory at the end. One thread at a time may call, but `cancel` any.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like of floats
+        Positions; they are copied.
+    faces : (m, k) array_like of integers, or sequence of polygons
+        Vertex numbers from 0, as for `unwrap`.
+    corner_uvs : (m, k, 2) array_like of floats, optional
+        UVs to begin with, as for `check_atlas`: charts keep them until an edit concerns them, and
+        seams run where they differ. Without them the first update lays all charts side by side.
+    seams : (s, 2) array_like of integers, optional
+        Edges to cut, by their vertices.
+    progress : bool or callable, optional
+        As for `parameterize`, of the beginning.
+    **options
+        Those of `unwrap` that concern flattening, welding, holes, packing, `float32` and `threads`.
+
+    Raises
+    ------
+    MeshError
+        As `unwrap` does.
+    TypeError, ValueError
+        For arrays of other shapes or types, and options out of range.
+    """
+
+    def __init__(
+        self,
+        vertices: npt.ArrayLike,
+        faces: Faces,
+        *,
+        corner_uvs: npt.ArrayLike | None = None,
+        seams: npt.ArrayLike | None = None,
+        progress: Progress = None,
+        **options: Unpack[UnwrapOptions],
+    ) -> None:
+        polygons = _polygons.polygons(faces)
+        uvs = None if corner_uvs is None else _polygons.corner_uvs(corner_uvs, polygons)
+        cuts = None if seams is None else _integers("seams", seams, 2)
+        surface = Surface(_arrays.positions(vertices), polygons, uvs, seams=cuts)
+        self._faces = len(polygons)
+        self._corners = polygons.corner_count
+        self._dtype = np.dtype(np.float32 if options.get("float32") else np.float64)
+        self._context = SessionContext()
+        self._context.set_options(options, UNWRAP)
+        with hook_for(progress) as hook:
+            self._context.begin(surface, hook)
+
+    def __enter__(self) -> Editor:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        raised: BaseException | None,
+        traceback: types.TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the session and free its memory; other calls raise InvalidStateError then."""
+        self._context.end()
+
+    # ---- Edits ----------------------------------------------------------------------------
+
+    def open_seams(self, edges: npt.ArrayLike) -> None:
+        """Open seams at edges, (k, 2) vertices.
+
+        A seam that meets no border and no other seam opens nothing until it does. Raises
+        InvalidArgumentError where a pair is no edge, or inside a polygon: nothing is noted then.
+        """
+        self._context.edit("set_seams", _integers("edges", edges, 2), 1)
+
+    def close_seams(self, edges: npt.ArrayLike) -> None:
+        """Close seams at edges, (k, 2) vertices. Raises InvalidArgumentError as `open_seams`."""
+        self._context.edit("set_seams", _integers("edges", edges, 2), 0)
+
+    def set_pins(self, corners: npt.ArrayLike, uvs: npt.ArrayLike) -> None:
+        """Set pins, (k,) corners and (k, 2) UVs, in place of all before; none takes them off."""
+        places = np.asarray(uvs, np.float64).reshape(-1, 2)
+        numbers = _integers("corners", corners, None)
+        if len(places) != len(numbers):
+            raise ValueError(f"there are {len(numbers)} corners and {len(places)} UVs")
+        self._context.set_pins(numbers, np.ascontiguousarray(places))
+
+    def select(self, faces: npt.ArrayLike | None) -> None:
+        """Let these faces move alone, (k,) numbers, or with None all; their charts are due."""
+        self._context.edit("select", _integers("faces", [] if faces is None else faces, None))
+
+    def lock(self, charts: npt.ArrayLike, locked: bool = True) -> None:
+        """Lock charts, (k,) numbers, or unlock them: locked ones stay whatever happens."""
+        self._context.edit("lock", _integers("charts", charts, None), int(locked))
+
+    def renew(self, charts: npt.ArrayLike, cold: bool = False) -> None:
+        """Have the next update map charts anew, (k,) numbers; `cold`: from nothing."""
+        self._context.edit("renew", _integers("charts", charts, None), int(cold))
+
+    # ---- Maps -----------------------------------------------------------------------------
+
+    def update(self, *, seconds: float = 0.0, steps: int = 0, progress: Progress = None) -> Changes:
+        """Cut and map what the edits concern.
+
+        Parameters
+        ----------
+        seconds : float, default 0.0
+            Time after which no further step is begun, 0: any. The maps so far are injective, and
+            the next update goes on with them.
+        steps : int, default 0
+            Newton steps that a chart takes at most from the map that it has, 0: to its minimum. 1
+            or 2 are what a drag wants.
+        progress : bool or callable, optional
+            As for `parameterize`.
+
+        Returns
+        -------
+        Changes
+            The corners that moved.
+
+        Raises
+        ------
+        PinError
+            With the first corner that cannot be met together with those before it.
+        InvalidStateError
+            With a face, where parts that may not move cannot be joined.
+        Cancelled, KeyboardInterrupt
+            Where `cancel`, the progress or Ctrl-C ended it.
+        """
+        with hook_for(progress) as hook:
+            status = self._context.update(seconds, steps, hook)
+        return self._changes(status)
+
+    def pack(self, charts: npt.ArrayLike | None = None, *, progress: Progress = None) -> Changes:
+        """Pack charts, (k,) numbers, among the others, or with None all.
+
+        Locked charts and those with pins stay. Sizes are kept, but where all are packed they are
+        scaled as one. Where there is no room elsewhere charts stay where they are. Raises
+        NoRoomError, InvalidArgumentError where a chart that stays lies on no page, Cancelled.
+        """
+        numbers = _integers("charts", [] if charts is None else charts, None)
+        if charts is not None and len(numbers) == 0:
+            raise ValueError("there are no charts to pack: give None for all")
+        with hook_for(progress) as hook:
+            status = self._context.pack(numbers, hook)
+        return self._changes(status)
+
+    def _changes(self, status: str) -> Changes:
+        if status == "BELTRAMI_NOT_INJECTIVE":
+            warnings.warn("a chart is not injective", NotInjectiveWarning, stacklevel=3)
+        return Changes(*self._context.changes(self._dtype), status)
+
+    def check(self) -> AtlasCertificate:
+        """Return the exact verdict on all charts together."""
+        return self._context.check()
+
+    def cancel(self) -> None:
+        """Ask the call under way, or else the next one, to end. From any thread."""
+        self._context.cancel()
+
+    # ---- Undo -----------------------------------------------------------------------------
+
+    def save(self) -> int:
+        """Note everything under a number, which is returned."""
+        return self._context.save()
+
+    def restore(self, mark: int) -> Changes:
+        """Go back to what was saved, to the bit; it stays saved. Raises InvalidArgumentError."""
+        self._context.restore(mark)
+        return Changes(*self._context.changes(self._dtype), self._context.session_report().status)
+
+    def forget(self, mark: int) -> None:
+        """Drop what was saved. Raises InvalidArgumentError."""
+        self._context.forget(mark)
+
+    # ---- What there is --------------------------------------------------------------------
+
+    @property
+    def corner_uvs(self) -> Array:
+        """The UVs of all corners, (c, 2), face after face: float32 with that option."""
+        return self._context.corner_uvs(self._corners, self._dtype)
+
+    @property
+    def chart_of_face(self) -> Array:
+        """The number of the chart of each face, (m,) of int64; -1 for a face without area."""
+        return self._context.face_charts(self._faces)
+
+    @property
+    def charts(self) -> tuple[SessionChart, ...]:
+        """All charts, by their least faces."""
+        return self._context.charts()
+
+    @property
+    def opened(self) -> Array:
+        """Edges that are cut beside the seams, for nothing else would be a disk: (k, 2)."""
+        return self._context.opened()
+
+    @property
+    def report(self) -> SessionReport:
+        """Counts, energy and the cost of the last call."""
+        return self._context.session_report()

@@ -1,0 +1,73 @@
+// What an editing session knows at one time: a value, so that a copy of it is an undo.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "atlas/open.h"
+#include "atlas/pins.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
+#include "cut/edge_marks.h"
+
+namespace beltrami {
+
+/// What a chart waits for.
+enum class Due {
+  kNothing,
+  kWarm,  ///< to be mapped anew from the map that it has
+  kCold   ///< likewise from nothing: it has no map of use
+};
+
+/// A pin that a chart was mapped with.
+struct MetPin {
+  Index corner;  ///< of the input, 3 * face + corner
+  Vec2 place;
+
+  bool operator==(const MetPin& other) const = default;
+};
+
+struct SessionChart {
+  Index id = 0;
+  std::shared_ptr<const AtlasChart> part;        ///< of the ground, in its unit
+  std::shared_ptr<const std::vector<Vec2>> uvs;  ///< one per vertex, as delivered
+  bool placed = false;                           ///< `uvs` say where it lies
+  double scale = 1;  ///< lengths in the plane per length on the ground that it is to have
+  Due due = Due::kCold;
+  Outcome outcome = Outcome::kNotConverged;
+  double energy = 0;  ///< mean symmetric Dirichlet, of its real faces, at its scale
+  std::vector<MetPin> pins;
+
+  Index faces() const { return part->real_faces; }
+  const DiskMesh& mesh() const { return part->chart.mesh; }
+  /// Its place among the chart's faces of a face of the ground that is one of them.
+  Index local_face(Index face) const;
+};
+
+struct SessionState {
+  EdgeMarks seams;             ///< asked for, per half-edge of the ground
+  EdgeMarks opened;            ///< further edges that had to be cut to make disks
+  std::vector<Index> toggled;  ///< half-edges whose seams have changed since the charts were cut
+  std::vector<Pin> pins;
+  std::vector<bool> locked;          ///< per face of the ground
+  std::vector<bool> selected;        ///< likewise; none: all are
+  std::vector<SessionChart> charts;  ///< by their least face of the ground
+  std::vector<Index> chart_of_face;  ///< per face of the ground
+  Index next_id = 0;
+
+  bool may_move(Index face) const { return !locked[face] && (selected.empty() || selected[face]); }
+};
+
+/// Per corner of the ground, the UVs of some charts.
+class CornerUvs {
+ public:
+  explicit CornerUvs(Index faces) : uvs_(3 * static_cast<std::size_t>(faces), Vec2::Zero()) {}
+  void read(const SessionChart& chart);
+  const Vec2& operator[](Index corner) const { return uvs_[corner]; }
+
+ private:
+  std::vector<Vec2> uvs_;
+};
+
+}  // namespace beltrami

@@ -1,0 +1,328 @@
+#include "session/update.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "atlas/rows.h"
+#include "base/parallel.h"
+#include "mesh/surface.h"
+#include "session/carry.h"
+#include "session/recut.h"
+
+namespace beltrami {
+namespace {
+
+constexpr double kCut = 0.1;  // where cutting ends in the progress
+
+/// The failure of a chart, which is named by its first face.
+Error named(const Error& error, const Ground& ground, const SessionChart& chart) {
+  if (error.element().kind != ElementKind::kNothing) return error;
+  const Index face = ground.admitted.input_face[chart.part->chart.input_face[0]];
+  return {error.fault(), "the chart of face " + std::to_string(face) + ": " + error.what(),
+          Element::face(static_cast<std::uint64_t>(face))};
+}
+
+Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& w : uvs) box.extend(w);
+  return box;
+}
+
+}  // namespace
+
+/// Per chart, whether a seam on its border or inside it has been opened or closed.
+std::vector<bool> Updater::affected() const {
+  const Surface& surface = session_.ground_.admitted.surface;
+  std::vector<bool> affected(next_.charts.size(), false);
+  for (const Index h : next_.toggled) {
+    affected[next_.chart_of_face[h / 3]] = true;
+    affected[next_.chart_of_face[surface.twin[h] / 3]] = true;
+  }
+  return affected;
+}
+
+/// The edges of faces that their charts are cut at, seams or not any more.
+EdgeMarks Updater::standing(const std::vector<Index>& faces) const {
+  const Surface& surface = session_.ground_.admitted.surface;
+  std::vector<Index> vertex(surface.twin.size(), kNone);  // per corner that of its chart
+  for (const Index f : faces) {
+    const SessionChart& chart = next_.charts[next_.chart_of_face[f]];
+    const Triangle& face = chart.mesh().faces[chart.local_face(f)];
+    for (int k = 0; k < 3; ++k) vertex[3 * f + k] = face[k];
+  }
+  EdgeMarks standing(surface.twin.size(), false);
+  for (const Index f : faces) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index twin = surface.twin[h];
+      if (twin == kNone) continue;
+      standing[h] = next_.chart_of_face[f] != next_.chart_of_face[twin / 3] ||
+                    vertex[h] != vertex[Surface::next(twin)] ||
+                    vertex[Surface::next(h)] != vertex[twin];
+    }
+  }
+  return standing;
+}
+
+void Updater::cut() {
+  if (next_.toggled.empty()) return;
+  const Ground& ground = session_.ground_;
+  const std::vector<bool> is_affected = affected();
+  std::vector<Index> faces;
+  for (Index f = 0; f < ground.face_count(); ++f) {
+    if (is_affected[next_.chart_of_face[f]]) faces.push_back(f);
+  }
+  Recut cut = recut(ground, faces, next_.seams, next_.opened, standing(faces),
+                    work_.part(0, kCut).named("cut"));
+  for (const Index f : faces) {
+    for (int k = 0; k < 3; ++k) next_.opened[3 * f + k] = false;
+  }
+  for (const Index h : cut.opened) mark_edge(ground.admitted.surface, h, next_.opened);
+  for (std::size_t c = 0; c < is_affected.size(); ++c) {
+    if (is_affected[c]) session_.scratch_.read(next_.charts[c]);
+  }
+  std::vector<SessionChart> fresh;
+  for (AtlasChart& part : cut.charts) {
+    SessionChart chart;
+    Carried carried = carry(ground, next_, session_.scratch_, part);
+    chart.placed = carried.placed;
+    chart.scale = carried.scale;
+    chart.due = carried.warm ? Due::kWarm : Due::kCold;
+    chart.pins = std::move(carried.pins);
+    chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(carried.uvs));
+    chart.part = std::make_shared<const AtlasChart>(std::move(part));
+    fresh.push_back(std::move(chart));
+  }
+  number(fresh);
+  replace(is_affected, std::move(fresh));
+  next_.toggled.clear();
+}
+
+/// Each number goes on with the new chart that has most of the faces of the old one, and no new
+/// chart has two.
+void Updater::number(std::vector<SessionChart>& fresh) {
+  std::vector<std::tuple<Index, Index, Index>> shares;  // -faces, number, new chart
+  for (Index c = 0; c < size_of(fresh); ++c) {
+    fresh[c].id = kNone;
+    std::map<Index, Index> faces;
+    for (Index f = 0; f < fresh[c].faces(); ++f) {
+      ++faces[next_.chart_of_face[fresh[c].part->chart.input_face[f]]];
+    }
+    for (const auto& [old, count] : faces) shares.emplace_back(-count, next_.charts[old].id, c);
+  }
+  std::sort(shares.begin(), shares.end());
+  std::vector<Index> given;
+  for (const auto& [faces, id, c] : shares) {
+    if (fresh[c].id != kNone || std::find(given.begin(), given.end(), id) != given.end()) continue;
+    fresh[c].id = id;
+    given.push_back(id);
+  }
+  for (SessionChart& chart : fresh) {
+    if (chart.id == kNone) chart.id = next_.next_id++;
+  }
+}
+
+void Updater::replace(const std::vector<bool>& affected, std::vector<SessionChart> fresh) {
+  std::vector<SessionChart> charts = std::move(fresh);
+  for (std::size_t c = 0; c < affected.size(); ++c) {
+    if (!affected[c]) charts.push_back(std::move(next_.charts[c]));
+  }
+  std::sort(charts.begin(), charts.end(), [](const SessionChart& a, const SessionChart& b) {
+    return a.part->chart.input_face[0] < b.part->chart.input_face[0];
+  });
+  for (Index c = 0; c < size_of(charts); ++c) {
+    for (Index f = 0; f < charts[c].faces(); ++f) {
+      next_.chart_of_face[charts[c].part->chart.input_face[f]] = c;
+    }
+  }
+  next_.charts = std::move(charts);
+}
+
+/// The pins of each chart. Throws Error PINS where two of one vertex lie apart.
+std::vector<Updater::Pins> Updater::pins_of_charts() const {
+  std::vector<Pins> pins(next_.charts.size());
+  std::map<std::pair<Index, Index>, Index> first_at;  // the first pin of a vertex of a chart
+  for (Index i = 0; i < size_of(next_.pins); ++i) {
+    const Pin& pin = next_.pins[i];
+    const Index corner = session_.ground_.own_corner(pin.face, pin.corner);
+    if (corner == kNone) continue;  // of a face that is in no chart
+    const Index c = next_.chart_of_face[corner / 3];
+    const SessionChart& chart = next_.charts[c];
+    const Index vertex = chart.mesh().faces[chart.local_face(corner / 3)][corner % 3];
+    const auto [at, is_first] = first_at.try_emplace({c, vertex}, i);
+    if (is_first) {
+      pins[c].push_back({vertex, pin.uv, i});
+    } else if (next_.pins[at->second].uv != pin.uv) {
+      throw unmet(pin, "lies apart from " + name_of(next_.pins[at->second]) +
+                           ", and both are of one UV vertex: give one place, or cut between them");
+    }
+  }
+  return pins;
+}
+
+std::vector<MetPin> Updater::met_pins(const Pins& pins) const {
+  std::vector<MetPin> met;
+  for (const ChartPin& pin : pins) {
+    const Pin& own = next_.pins[pin.pin];
+    met.push_back({3 * own.face + own.corner, own.uv});
+  }
+  return met;
+}
+
+/// Charts whose pins have changed are due.
+void Updater::note_pins(const std::vector<Pins>& pins) {
+  for (std::size_t c = 0; c < pins.size(); ++c) {
+    SessionChart& chart = next_.charts[c];
+    if (chart.due == Due::kNothing && met_pins(pins[c]) != chart.pins) chart.due = Due::kWarm;
+  }
+}
+
+/// The charts to be mapped. Throws Error PINS where a pin is not where its vertex is held.
+std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
+  std::vector<Job> jobs;
+  for (Index c = 0; c < size_of(next_.charts); ++c) {
+    const SessionChart& chart = next_.charts[c];
+    if (chart.due == Due::kNothing) continue;
+    Job job{c, std::move(pins[c]), held_vertices(next_, *chart.part), {}, {}};
+    for (const ChartPin& pin : job.pins) {
+      if (!job.held[pin.vertex] || (*chart.uvs)[pin.vertex] == pin.place) continue;
+      throw unmet(next_.pins[pin.pin],
+                  "is of a vertex that may not move: unlock its chart, or select its faces");
+    }
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+void Updater::map(Job& job, const Work& work) const {
+  const SessionChart& chart = next_.charts[job.chart];
+  std::vector<MetPin> met = met_pins(job.pins);
+  const bool same_pins =
+      std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
+                 [](const MetPin& a, const MetPin& b) { return a.corner == b.corner; });
+  const RemapTask task{.part = *chart.part,
+                       .start = *chart.uvs,
+                       .placed = chart.placed,
+                       .warm = chart.due == Due::kWarm,
+                       .scale = chart.scale,
+                       .pins = job.pins,
+                       .fit_pins = !same_pins,
+                       .held = job.held,
+                       .steps = steps_};
+  try {
+    Drafted made = draft(task, session_.chart_, work);
+    if (made.failed_pin != kNone) {
+      job.error =
+          unmet(next_.pins[made.failed_pin],
+                "cannot be met together with those before it: move it back, or take it off");
+      return;
+    }
+    job.draft = std::move(made.draft);
+  } catch (const Error& error) {
+    job.error = named(error, session_.ground_, chart);
+  }
+}
+
+/// Where charts go that have had no place: in rows to the right of all others.
+std::vector<Vec2> Updater::places(const std::vector<Job>& jobs) const {
+  std::vector<Vec2> shifts(jobs.size(), Vec2::Zero());
+  Eigen::AlignedBox2d taken;
+  for (const SessionChart& chart : next_.charts) {
+    if (chart.placed) taken.extend(box_of(*chart.uvs));
+  }
+  std::vector<std::size_t> homeless;
+  std::vector<Eigen::AlignedBox2d> boxes;
+  std::vector<Vec2> sizes;
+  for (std::size_t j = 0; j < jobs.size(); ++j) {
+    const SessionChart& chart = next_.charts[jobs[j].chart];
+    if (chart.placed || !jobs[j].draft || !jobs[j].draft->held.empty()) continue;
+    homeless.push_back(j);
+    Eigen::AlignedBox2d box = box_of(jobs[j].draft->placed);
+    const double unit = std::ldexp(1.0, -jobs[j].draft->exponent);
+    box = {Vec2(unit * box.min()), Vec2(unit * box.max())};
+    boxes.push_back(box);
+    sizes.emplace_back(box.sizes());
+  }
+  if (homeless.empty()) return shifts;
+  const std::vector<Vec2> corners = place_in_rows(sizes);
+  Vec2 origin = Vec2::Zero();
+  if (!taken.isEmpty()) {
+    origin = {taken.max().x() + 0.02 * taken.sizes().maxCoeff(), taken.min().y()};
+  }
+  for (std::size_t i = 0; i < homeless.size(); ++i) {
+    shifts[homeless[i]] = origin + corners[i] - boxes[i].min();
+  }
+  return shifts;
+}
+
+void Updater::take(Job& job, const Vec2& shift) {
+  SessionChart& chart = next_.charts[job.chart];
+  if (!job.draft) {  // it waits for the next update
+    const Remapped judged = judge_as_is(*chart.part, *chart.uvs, chart.scale, work_.aside());
+    chart.outcome = std::max(judged.outcome, Outcome::kNotConverged);
+    chart.energy = judged.energy;
+    return;
+  }
+  Remapped made =
+      finish(*chart.part, *std::move(job.draft), shift, session_.float32_, work_.aside());
+  const bool goes_on = !made.converged && (steps_ > 0 || work_.out_of_time());
+  chart.due = goes_on ? Due::kWarm : Due::kNothing;
+  chart.placed = true;
+  chart.scale = made.scale;
+  chart.outcome = made.outcome;
+  chart.energy = made.energy;
+  chart.pins = met_pins(job.pins);
+  if (made.uvs != *chart.uvs) {
+    chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(made.uvs));
+  }
+}
+
+Updated Updater::report(Index mapped) const {
+  Updated report;
+  report.mapped = mapped;
+  for (const SessionChart& chart : next_.charts) {
+    if (chart.due != Due::kNothing) ++report.due;
+    report.outcome = std::max(report.outcome, chart.outcome);
+  }
+  if (report.due > 0) report.outcome = std::max(report.outcome, Outcome::kNotConverged);
+  return report;
+}
+
+Updated Updater::run() {
+  cut();
+  std::vector<Pins> pins = pins_of_charts();
+  note_pins(pins);
+  std::vector<Job> due = jobs(std::move(pins));
+  const Work mapping = work_.part(kCut, 1).named("flatten");
+  if (due.size() == 1) {
+    map(due[0], mapping);
+  } else {
+    parallel_for(mapping, size_of(due), 1, [&](std::int64_t j, std::int64_t) {
+      // One is mapped at each call, or a short time would never get anywhere.
+      const bool waits = j > 0 && next_.charts[due[j].chart].due == Due::kWarm;
+      if (!waits || !mapping.out_of_time()) map(due[j], mapping.aside());
+    });
+  }
+  for (const Job& job : due) {
+    if (job.error) throw Error(*job.error);
+  }
+  const std::vector<Vec2> shifts = places(due);
+  Index mapped = 0;
+  for (std::size_t j = 0; j < due.size(); ++j) {
+    if (due[j].draft) ++mapped;
+    take(due[j], shifts[j]);
+  }
+  return report(mapped);
+}
+
+Updated Session::update(int steps, const Work& work) {
+  Updater updater(*this, steps, work);
+  const Updated report = updater.run();
+  commit(updater.result());
+  return report;
+}
+
+}  // namespace beltrami

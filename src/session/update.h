@@ -1,0 +1,57 @@
+// What an update of a session does: cut, carry over, map.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "atlas/pins.h"
+#include "base/error.h"
+#include "base/types.h"
+#include "base/work.h"
+#include "session/remap.h"
+#include "session/session.h"
+
+namespace beltrami {
+
+class Updater {
+ public:
+  Updater(const Session& session, int steps, const Work& work)
+      : session_(session), next_(session.state_), steps_(steps), work_(work) {}
+
+  Updated run();
+  SessionState result() { return std::move(next_); }
+
+ private:
+  using Pins = std::vector<ChartPin>;
+
+  /// A chart that is due, and its new map.
+  struct Job {
+    Index chart = 0;
+    Pins pins;
+    std::vector<bool> held;
+    std::optional<Draft> draft;
+    std::optional<Error> error;
+  };
+
+  void cut();
+  std::vector<bool> affected() const;
+  EdgeMarks standing(const std::vector<Index>& faces) const;
+  void replace(const std::vector<bool>& affected, std::vector<SessionChart> fresh);
+  void number(std::vector<SessionChart>& fresh);
+  std::vector<Pins> pins_of_charts() const;
+  std::vector<MetPin> met_pins(const Pins& pins) const;
+  void note_pins(const std::vector<Pins>& pins);
+  std::vector<Job> jobs(std::vector<Pins> pins) const;
+  void map(Job& job, const Work& work) const;
+  std::vector<Vec2> places(const std::vector<Job>& jobs) const;
+  void take(Job& job, const Vec2& shift);
+  Updated report(Index mapped) const;
+
+  const Session& session_;
+  SessionState next_;
+  const int steps_;
+  const Work& work_;
+};
+
+}  // namespace beltrami
