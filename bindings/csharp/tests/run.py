@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the C# package with Mono, and runs its tests, its example and the first one of its guide.
+"""Compiles the C# package with Mono, and runs its tests, its example and that of its guide.
 
     run.py --build BUILD_FOLDER --out FOLDER
 
