@@ -349,6 +349,11 @@ public static class Tests
                     Expect(moves[after[c]].Equals(mesh.vertices[before[c]]), "blend shapes");
                 }
             }
+            // In Unity's axes faces are seen to run clockwise, and so do their UVs on the page.
+            int[] first = made.GetIndices(0);
+            Vector4 a = uvs[first[0]], b = uvs[first[1]], c2 = uvs[first[2]];
+            float turn = (b.x - a.x) * (c2.y - a.y) - (b.y - a.y) * (c2.x - a.x);
+            Expect(turn < 0, "as Unity sees it");
             Expect(uvs.All(uv => uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1), "UVs");
             mesh.isReadable = false;
             Refuses<ArgumentException>(() => UnityMeshes.Unwrapped(mesh, context));

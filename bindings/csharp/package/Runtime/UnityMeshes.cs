@@ -13,7 +13,8 @@ namespace Beltrami
     public static unsafe class UnityMeshes
     {
         /// <summary>Triangles in native arrays, which are read in place: they must stay there for
-        /// the time of a call.</summary>
+        /// the time of a call. The library's axes are right-handed, and Unity's left-handed: a
+        /// texture on these UVs is seen mirrored, which lightmaps do not mind.</summary>
         public static Surface SurfaceOf(NativeArray<Vector3> positions, NativeArray<int> indices)
         {
             return new Surface(Memory(positions), Scalar.F32, 0, positions.Length, Memory(indices),
@@ -64,7 +65,7 @@ namespace Beltrami
                 indices.AddRange(own);
                 for (int face = 0; face < own.Length / 3; ++face) materials.Add(part);
             }
-            Surface surface = new Surface(Numbers(vertices), indices.ToArray());
+            Surface surface = new Surface(Mirrored(vertices), Reversed(indices.ToArray()));
             surface.Materials = mesh.subMeshCount > 1 ? materials.ToArray() : null;
             return Split(mesh, context.Unwrap(surface, progress, cancel), channel);
         }
@@ -74,15 +75,28 @@ namespace Beltrami
             return (IntPtr)NativeArrayUnsafeUtility.GetUnsafeReadOnlyPtr(array);
         }
 
-        static float[] Numbers(Vector3[] vectors)
+        /// <summary>From Unity's left-handed axes to right-handed ones: with faces reversed, too,
+        /// charts are seen as the surface is.</summary>
+        static float[] Mirrored(Vector3[] vectors)
         {
             float[] numbers = new float[3 * vectors.Length];
             for (int i = 0; i < vectors.Length; ++i) {
-                numbers[3 * i] = vectors[i].x;
+                numbers[3 * i] = -vectors[i].x;
                 numbers[3 * i + 1] = vectors[i].y;
                 numbers[3 * i + 2] = vectors[i].z;
             }
             return numbers;
+        }
+
+        /// <summary>The corners of triangles, two of each exchanged; twice is as before.</summary>
+        static int[] Reversed(int[] corners)
+        {
+            int[] reversed = (int[])corners.Clone();
+            for (int c = 0; c + 2 < corners.Length; c += 3) {
+                reversed[c + 1] = corners[c + 2];
+                reversed[c + 2] = corners[c + 1];
+            }
+            return reversed;
         }
 
         static Mesh Split(Mesh mesh, Atlas atlas, int channel)
@@ -107,10 +121,11 @@ namespace Beltrami
                 made.bindposes = mesh.bindposes;
             }
             made.subMeshCount = mesh.subMeshCount;
+            int[] uvOfCorner = Reversed(atlas.UvOfCorner);
             int corner = 0;
             for (int part = 0; part < mesh.subMeshCount; ++part) {
                 int[] indices = new int[mesh.GetIndices(part).Length];
-                Array.Copy(atlas.UvOfCorner, corner, indices, 0, indices.Length);
+                Array.Copy(uvOfCorner, corner, indices, 0, indices.Length);
                 made.SetIndices(indices, MeshTopology.Triangles, part);
                 corner += indices.Length;
             }
