@@ -20,8 +20,8 @@ struct CompletedCommand {
   std::vector<std::string> words;  ///< that may be its arguments; none: files
 };
 
-/// The script for "bash", "zsh" or "fish". Precondition: one of them. `general` has the options that
-/// stand before a command.
+/// The script for "bash", "zsh" or "fish". Precondition: one of them. `general` has the options
+/// that stand before a command.
 std::string completions(const std::string& shell, const std::vector<CompletedOption>& general,
                         const std::vector<CompletedCommand>& commands);
 

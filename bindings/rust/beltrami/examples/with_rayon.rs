@@ -41,7 +41,7 @@ fn run() -> Result<(), AnyError> {
     // One mesh: its loops are shared by the threads of rayon. The bits stay the same.
     let alone = unwrap(&mut Unwrapper::new()?, first)?;
     let threads = rayon::current_num_threads();
-    let options = UnwrapOptions::new().threads(u32::try_from(threads)?.max(2).into());
+    let options = UnwrapOptions::new().threads(u32::try_from(threads)?.max(2));
     let mut unwrapper = Unwrapper::with_options(&options)?;
     unwrapper.run_loops_by(|count, job| (0..count).into_par_iter().for_each(job));
     if unwrap(&mut unwrapper, first)? != alone {
