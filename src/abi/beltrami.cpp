@@ -17,7 +17,6 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "energy/measure.h"

@@ -8,10 +8,12 @@
 #include <string>
 #include <utility>
 
-#include "abi/buffers.h"
 #include "abi/hints.h"
 #include "abi/pins.h"
+#include "admit/triangulate.h"
+#include "atlas/pins.h"
 #include "base/error.h"
+#include "cut/seam_costs.h"
 
 namespace beltrami {
 namespace {
