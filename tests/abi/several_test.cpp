@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "abi/host.h"
-#include "base/vectors.h"
+#include "base/types.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 
