@@ -95,9 +95,32 @@ if(TARGET beltrami_program)
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
+# The manual page, and what shells complete by: the program prints them, so it has to run here.
+if(TARGET beltrami_program AND PROJECT_IS_TOP_LEVEL AND UNIX AND NOT CMAKE_CROSSCOMPILING)
+  set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
+  file(MAKE_DIRECTORY ${pages})
+  set(printed "")
+  foreach(arguments "beltrami.1 --man" "beltrami.bash completions bash" "_beltrami completions zsh"
+      "beltrami.fish completions fish")
+    separate_arguments(arguments)
+    list(POP_FRONT arguments name)
+    add_custom_command(OUTPUT ${pages}/${name}
+      COMMAND beltrami_program ${arguments} > ${pages}/${name} VERBATIM)
+    list(APPEND printed ${pages}/${name})
+  endforeach()
+  add_custom_target(beltrami_pages ALL DEPENDS ${printed})
+  install(FILES ${pages}/beltrami.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  install(FILES ${pages}/beltrami.bash RENAME beltrami
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  install(FILES ${pages}/_beltrami
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
+  install(FILES ${pages}/beltrami.fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+endif()
+
 # All of it, and nothing else: what has to be built before it can be installed.
 add_custom_target(beltrami_installed)
-foreach(target beltrami beltrami_static beltrami_program)
+foreach(target beltrami beltrami_static beltrami_program beltrami_pages)
   if(TARGET ${target})
     add_dependencies(beltrami_installed ${target})
   endif()

@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -330,11 +331,14 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   return command;
 }
 
+constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};
+
+/// The last command.
 CLI::App* add_completions(CLI::App& app, std::string& shell) {
   CLI::App* command = app.add_subcommand("completions", "Print what a shell completes commands by");
   command->add_option("SHELL", shell, "bash, zsh or fish")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kShells.begin(), kShells.end())));
   command->footer(
       "  beltrami completions bash \\\n"
       "    > ~/.local/share/bash-completion/completions/beltrami\n"
@@ -357,9 +361,9 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// What a shell completes of a command.
+/// What a shell completes of a command, or of what stands before it.
 CompletedCommand completed(const CLI::App& command) {
-  CompletedCommand all{command.get_name(), command.get_description(), {}};
+  CompletedCommand all{command.get_name(), command.get_description(), {}, {}};
   for (const CLI::Option* option : command.get_options()) {
     CompletedOption own;
     for (const std::string& name : option->get_snames()) own.names.push_back("-" + name);
@@ -481,7 +485,9 @@ int run(int argc, char** argv) {
     return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
   }
   if (completions_app->parsed()) {
-    return print(completions(shell, completed_commands(app)), "the completions", 0);
+    std::vector<CompletedCommand> commands = completed_commands(app);
+    commands.back().words = {kShells.begin(), kShells.end()};
+    return print(completions(shell, completed(app).options, commands), "the completions", 0);
   }
   take_standard_output(flatten);
   take_standard_output(unwrap);

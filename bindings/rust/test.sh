@@ -27,7 +27,7 @@ with_library() (
 
 unit_tests() {
   say "tests and documentation tests"
-  with_library cargo test --locked --quiet --workspace --features beltrami/glam,beltrami/ndarray
+  with_library cargo test --locked --quiet --workspace --features beltrami/mint,beltrami/ndarray
 }
 
 # What is generated from the header and the option table is what is committed.
@@ -73,6 +73,8 @@ examples() {
   grep -q -e '^cancelled' -e "faster than the user's patience" "$PLACE/cancel.txt"
   with_library "$folder/unwrap_obj" "$CLOSED" "$PLACE/unwrapped.obj" >/dev/null 2>&1
   "$BUILD/program/beltrami" check "$PLACE/unwrapped.obj" >/dev/null
+  with_library "$folder/with_rayon" "$MESH" "$CLOSED" >"$PLACE/with_rayon.txt"
+  grep -q '2 of 2 meshes are injective, and the loops of a run have the same bits' "$PLACE/with_rayon.txt"
   with_library "$folder/bake" "$MESH" "$PLACE/distortion.png"
   file "$PLACE/distortion.png" | grep -q 'PNG image data, 1024 x 1024'
 }
@@ -81,7 +83,7 @@ examples() {
 documentation() {
   say "documentation"
   DOCS_RS=1 cargo doc --locked --offline --quiet --no-deps --target-dir "$TARGET/docs-rs" \
-    --features beltrami/glam,beltrami/ndarray
+    --features beltrami/mint,beltrami/ndarray
 }
 
 # Leaves the packages unpacked in $PACKAGES. Their files have old dates, by which cargo does not see
@@ -142,6 +144,10 @@ consumers() {
   say "a program with the packages: BELTRAMI_LIB_DIR, static"
   BELTRAMI_STATIC=1 with_library consumer static
   if links_the_shared_library static; then fail "it is not the static library"; fi
+
+  say "a program with the packages: BELTRAMI_LIB_DIR, the feature static"
+  with_library consumer static-feature --features static
+  if links_the_shared_library static-feature; then fail "it is not the static library"; fi
 
   say "a program with the packages: pkg-config, shared"
   rm -rf "$TARGET"/consumer-installed-* # cargo does not see that what is installed has changed

@@ -400,6 +400,24 @@ BELTRAMI_API beltrami_status beltrami_set_int(beltrami_context* context, int32_t
 BELTRAMI_API beltrami_status beltrami_set_float(beltrami_context* context, int32_t key,
                                                 double value);
 
+/* One job of a loop of the library. */
+typedef void (*beltrami_job)(void* data, int32_t index);
+
+/* A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
+ * all calls have returned. They may come from any threads, several at a time or one after the
+ * other, and from the thread of the loop itself; a thread wants a stack of 512 KiB. Neither the
+ * loop nor the threads may leave a job by an exception. */
+typedef void (*beltrami_parallel_for)(void* user, int32_t count, beltrami_job job, void* data);
+
+/* Lends the threads of the host to later calls on this context: loops go to `parallel_for`, and the
+ * library starts no threads of its own. It is called on the thread of the call alone, never from a
+ * job, thousands of times in a long run, with `count` of at most the option threads. The results
+ * have the same bits. NULL takes them back. Errors: INVALID_ARGUMENT (context is NULL),
+ * INVALID_STATE (during a run). */
+BELTRAMI_API beltrami_status beltrami_set_parallel_for(beltrami_context* context,
+                                                       beltrami_parallel_for parallel_for,
+                                                       void* user);
+
 /* Writes the value that option `key` has: its default, what it was set to, or what the option
  * preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
  * run). */
@@ -415,8 +433,9 @@ enum {
   BELTRAMI_F64 = 1,
   BELTRAMI_U32 = 2,
   BELTRAMI_U64 = 3,
-  BELTRAMI_U8 = 4, /* of pixels alone, as is the next */
-  BELTRAMI_U16 = 5
+  BELTRAMI_U8 = 4, /* of pixels alone */
+  BELTRAMI_U16 = 5 /* of pixels, and of integers wherever U32 may stand: those that are written are
+                    * below 65,535 then, or the call fails with INVALID_ARGUMENT */
 };
 
 /* Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
@@ -683,6 +702,17 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);
+
+/* The same for several surfaces at once: their charts share pages, at one scale, and one verdict.
+ * Vertices, faces, corners and triangles count through all of them, one surface after another, in
+ * results and in errors; so do UV vertices, of which those of a surface are consecutive, too.
+ * Vertices of two surfaces are never welded. What is left out of some has no effect on those:
+ * densities of 1, no labels, no paint. `cancel` of the first counts. Errors: as above, and
+ * INVALID_ARGUMENT for NULL, EMPTY for no surfaces at all. */
+BELTRAMI_API beltrami_status beltrami_unwrap_surfaces(beltrami_context* context,
+                                                      const beltrami_surface* const* surfaces,
+                                                      uint64_t surface_count,
+                                                      beltrami_progress progress, void* user);
 
 /* What was made of a surface. Triangles are those of beltrami_triangulate, faces the input's. */
 typedef struct beltrami_atlas {

@@ -15,9 +15,9 @@ std::vector<std::string> names_of(const std::vector<CompletedCommand>& commands)
   return names;
 }
 
-std::vector<std::string> option_names(const CompletedCommand& command) {
+std::vector<std::string> names_of(const std::vector<CompletedOption>& options) {
   std::vector<std::string> names;
-  for (const CompletedOption& option : command.options) {
+  for (const CompletedOption& option : options) {
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return names;
@@ -30,20 +30,25 @@ std::string quoted(const std::string& text) {
   return all + "'";
 }
 
-std::string for_bash(const std::vector<CompletedCommand>& commands) {
+std::string for_bash(const std::vector<CompletedOption>& general,
+                     const std::vector<CompletedCommand>& commands) {
   std::string text =
       "# Completions of beltrami for bash.\n"
       "_beltrami() {\n"
       "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} words=\n"
       "  COMPREPLY=()\n"
       "  if ((COMP_CWORD == 1)); then\n"
-      "    mapfile -t COMPREPLY < <(compgen -W '--help --version " +
-      joined(names_of(commands)) +
+      "    mapfile -t COMPREPLY < <(compgen -W '" +
+      joined(names_of(general)) + " " + joined(names_of(commands)) +
       "' -- \"$word\")\n"
       "    return\n"
       "  fi\n"
       "  case ${COMP_WORDS[1]}:$before in\n";
   for (const CompletedCommand& command : commands) {
+    if (!command.words.empty()) {
+      text += "    " + command.name + ":" + command.name + ") words='" + joined(command.words) +
+              "' ;;\n";
+    }
     for (const CompletedOption& option : command.options) {
       if (option.choices.empty()) continue;
       for (const std::string& name : option.names) {
@@ -54,7 +59,7 @@ std::string for_bash(const std::vector<CompletedCommand>& commands) {
   }
   text += "  esac\n  if [[ -z $words && $word == -* ]]; then\n    case ${COMP_WORDS[1]} in\n";
   for (const CompletedCommand& command : commands) {
-    text += "      " + command.name + ") words='" + joined(option_names(command)) + "' ;;\n";
+    text += "      " + command.name + ") words='" + joined(names_of(command.options)) + "' ;;\n";
   }
   return text +
          "    esac\n  fi\n"
@@ -75,7 +80,23 @@ std::string for_zsh_in_brackets(const std::string& summary) {
   return "[" + text + "]";
 }
 
-std::string for_zsh(const std::vector<CompletedCommand>& commands) {
+/// Of one that has several names zsh offers none of them again.
+std::string options_for_zsh(const std::vector<CompletedOption>& options) {
+  std::string text;
+  for (const CompletedOption& option : options) {
+    const std::string value = !option.takes_value      ? ""
+                              : option.choices.empty() ? ":value:_files"
+                                                       : ":value:(" + joined(option.choices) + ")";
+    const std::string others = "(" + joined(option.names) + ")";
+    for (const std::string& name : option.names) {
+      text += " \\\n        " + quoted(others + name + for_zsh_in_brackets(option.summary) + value);
+    }
+  }
+  return text;
+}
+
+std::string for_zsh(const std::vector<CompletedOption>& general,
+                    const std::vector<CompletedCommand>& commands) {
   std::string text =
       "#compdef beltrami\n"
       "# Completions of beltrami for zsh.\n"
@@ -88,6 +109,9 @@ std::string for_zsh(const std::vector<CompletedCommand>& commands) {
   text +=
       "    )\n"
       "    _describe command commands\n"
+      "    _arguments" +
+      options_for_zsh(general) +
+      "\n"
       "    return\n"
       "  fi\n"
       "  local command=$words[2]\n"
@@ -95,45 +119,55 @@ std::string for_zsh(const std::vector<CompletedCommand>& commands) {
       "  ((CURRENT--))\n"
       "  case $command in\n";
   for (const CompletedCommand& command : commands) {
-    text += "    " + command.name + ")\n      _arguments";
-    for (const CompletedOption& option : command.options) {
-      const std::string value = !option.takes_value ? ""
-                                : option.choices.empty()
-                                    ? ":value:_files"
-                                    : ":value:(" + joined(option.choices) + ")";
-      for (const std::string& name : option.names) {
-        text += " \\\n        " + quoted(name + for_zsh_in_brackets(option.summary) + value);
-      }
-    }
-    text += " \\\n        '*:file:_files'\n      ;;\n";
+    const std::string arguments =
+        command.words.empty() ? "'*:file:_files'" : "'1:word:(" + joined(command.words) + ")'";
+    text += "    " + command.name + ")\n      _arguments" + options_for_zsh(command.options) +
+            " \\\n        " + arguments + "\n      ;;\n";
   }
-  return text + "  esac\n}\n_beltrami \"$@\"\n";
+  // As a file of fpath it is the function; read by source it is to be made known.
+  return text +
+         "  esac\n}\n"
+         "if [[ $funcstack[1] == _beltrami ]]; then\n"
+         "  _beltrami \"$@\"\n"
+         "elif (( $+functions[compdef] )); then\n"
+         "  compdef _beltrami beltrami\n"
+         "fi\n";
 }
 
-std::string for_fish(const std::vector<CompletedCommand>& commands) {
+std::string option_for_fish(const CompletedOption& option) {
+  std::string text;
+  for (const std::string& name : option.names) {
+    const bool is_long = name.compare(0, 2, "--") == 0;
+    text += (is_long ? " -l " : " -s ") + name.substr(is_long ? 2 : 1);
+  }
+  if (option.takes_value) text += " -r";
+  if (!option.choices.empty()) text += " -f -a " + quoted(joined(option.choices));
+  return text + " -d " + quoted(option.summary) + "\n";
+}
+
+std::string for_fish(const std::vector<CompletedOption>& general,
+                     const std::vector<CompletedCommand>& commands) {
+  const std::string start = "complete -c beltrami -n ";
   std::string text = "# Completions of beltrami for fish.\n";
+  for (const CompletedOption& option : general) {
+    text += start + "__fish_use_subcommand" + option_for_fish(option);
+  }
   for (const CompletedCommand& command : commands) {
-    text += "complete -c beltrami -n __fish_use_subcommand -f -a " + command.name + " -d " +
+    const std::string of_it = start + "'__fish_seen_subcommand_from " + command.name + "'";
+    text += start + "__fish_use_subcommand -f -a " + command.name + " -d " +
             quoted(command.summary) + "\n";
-    for (const CompletedOption& option : command.options) {
-      text += "complete -c beltrami -n '__fish_seen_subcommand_from " + command.name + "'";
-      for (const std::string& name : option.names) {
-        const bool is_long = name.compare(0, 2, "--") == 0;
-        text += (is_long ? " -l " : " -s ") + name.substr(is_long ? 2 : 1);
-      }
-      if (option.takes_value) text += " -r";
-      if (!option.choices.empty()) text += " -f -a " + quoted(joined(option.choices));
-      text += " -d " + quoted(option.summary) + "\n";
-    }
+    if (!command.words.empty()) text += of_it + " -f -a " + quoted(joined(command.words)) + "\n";
+    for (const CompletedOption& option : command.options) text += of_it + option_for_fish(option);
   }
   return text;
 }
 
 }  // namespace
 
-std::string completions(const std::string& shell, const std::vector<CompletedCommand>& commands) {
-  if (shell == "bash") return for_bash(commands);
-  return shell == "zsh" ? for_zsh(commands) : for_fish(commands);
+std::string completions(const std::string& shell, const std::vector<CompletedOption>& general,
+                        const std::vector<CompletedCommand>& commands) {
+  if (shell == "bash") return for_bash(general, commands);
+  return shell == "zsh" ? for_zsh(general, commands) : for_fish(general, commands);
 }
 
 }  // namespace beltrami::cli

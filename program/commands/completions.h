@@ -17,9 +17,12 @@ struct CompletedOption {
 struct CompletedCommand {
   std::string name, summary;
   std::vector<CompletedOption> options;
+  std::vector<std::string> words;  ///< that may be its arguments; none: files
 };
 
-/// The script for "bash", "zsh" or "fish". Precondition: one of them.
-std::string completions(const std::string& shell, const std::vector<CompletedCommand>& commands);
+/// The script for "bash", "zsh" or "fish". Precondition: one of them. `general` has the options
+/// that stand before a command.
+std::string completions(const std::string& shell, const std::vector<CompletedOption>& general,
+                        const std::vector<CompletedCommand>& commands);
 
 }  // namespace beltrami::cli

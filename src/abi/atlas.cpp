@@ -139,7 +139,16 @@ using beltrami::Unwrapped;
 beltrami_status beltrami_unwrap(beltrami_context* context, const beltrami_surface* surface,
                                 beltrami_progress progress, void* user) {
   return beltrami::enter(
-      context, [&](beltrami_context& self) { return self.unwrap(surface, progress, user); });
+      context, [&](beltrami_context& self) { return self.unwrap(&surface, 1, progress, user); });
+}
+
+beltrami_status beltrami_unwrap_surfaces(beltrami_context* context,
+                                         const beltrami_surface* const* surfaces,
+                                         uint64_t surface_count, beltrami_progress progress,
+                                         void* user) {
+  return beltrami::enter(context, [&](beltrami_context& self) {
+    return self.unwrap(surfaces, surface_count, progress, user);
+  });
 }
 
 beltrami_status beltrami_get_atlas(beltrami_context* context, beltrami_atlas* out) {

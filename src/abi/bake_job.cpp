@@ -122,7 +122,7 @@ std::vector<std::uint32_t> read_pages(const beltrami_buffer& buffer, std::uint64
   std::vector<std::uint32_t> found(static_cast<std::size_t>(faces), 0);
   if (buffer.data == nullptr) return found;
   const std::vector<std::uint64_t> given = read_integers(buffer, faces, 1, what, work);
-  const std::uint64_t none = buffer.type == BELTRAMI_U32 ? kNoPage : kAllBits;
+  const std::uint64_t none = all_bits_of(buffer.type);
   for (std::size_t f = 0; f < given.size(); ++f) {
     if (given[f] == none) {
       found[f] = kNoPage;

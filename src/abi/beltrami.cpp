@@ -17,7 +17,6 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "energy/measure.h"
@@ -244,10 +243,19 @@ beltrami_status beltrami_get_option(beltrami_context* context, int32_t key, doub
   });
 }
 
+beltrami_status beltrami_set_parallel_for(beltrami_context* context,
+                                          beltrami_parallel_for parallel_for, void* user) {
+  return enter(context, [&](beltrami_context& self) {
+    self.parallel_for = parallel_for;
+    self.parallel_user = user;
+    return BELTRAMI_OK;
+  });
+}
+
 beltrami_status beltrami_set_mesh(beltrami_context* context, const beltrami_mesh* mesh) {
   return enter(context, [&](beltrami_context& self) {
     self.cancelled.store(false);
-    self.mesh = beltrami::load_mesh(mesh, beltrami::Work(self.options.threads), self.cancelled);
+    self.mesh = beltrami::load_mesh(mesh, self.work(nullptr), self.cancelled);
     self.flattening.reset();
     return BELTRAMI_OK;
   });

@@ -18,6 +18,7 @@ constexpr std::int64_t kGrain = 16384;
 }
 
 std::size_t element_size(std::int32_t type) {
+  if (type == BELTRAMI_U16) return 2;
   return type == BELTRAMI_F32 || type == BELTRAMI_U32 ? 4 : 8;
 }
 
@@ -63,12 +64,45 @@ class Reader {
   std::size_t stride_;
 };
 
-void require_type(std::int32_t type, std::int32_t narrow, std::int32_t wide, const char* what) {
-  if (type != narrow && type != wide) {
-    refuse(
-        "the type of the " + std::string(what) + " is " + std::to_string(type) + ": give " +
-        (narrow == BELTRAMI_F32 ? "BELTRAMI_F32 or BELTRAMI_F64" : "BELTRAMI_U32 or BELTRAMI_U64"));
+[[noreturn]] void refuse_type(std::int32_t type, const char* what, const char* instead) {
+  refuse("the type of the " + std::string(what) + " is " + std::to_string(type) + ": give " +
+         instead);
+}
+
+void require_real(std::int32_t type, const char* what) {
+  if (type != BELTRAMI_F32 && type != BELTRAMI_F64) {
+    refuse_type(type, what, "BELTRAMI_F32 or BELTRAMI_F64");
   }
+}
+
+void require_integer(std::int32_t type, const char* what) {
+  if (type != BELTRAMI_U16 && type != BELTRAMI_U32 && type != BELTRAMI_U64) {
+    refuse_type(type, what, "BELTRAMI_U32, BELTRAMI_U64 or BELTRAMI_U16");
+  }
+}
+
+/// Calls `use` with a value of the integers' type, which has passed require_integer.
+template <class Use>
+auto with_integer(std::int32_t type, const Use& use) {
+  if (type == BELTRAMI_U16) return use(std::uint16_t{});
+  return type == BELTRAMI_U32 ? use(std::uint32_t{}) : use(std::uint64_t{});
+}
+
+/// Throws Error INVALID_ARGUMENT where the type has no number for `value`: all bits set is none,
+/// and stands for kNone.
+void require_room_in(std::int32_t type, Index value) {
+  constexpr Index kAllBits = std::numeric_limits<std::uint16_t>::max();
+  if (type != BELTRAMI_U16 || value < kAllBits) return;
+  refuse("the number " + std::to_string(value) +
+         " is to be written, and BELTRAMI_U16 holds those below 65535: give BELTRAMI_U32");
+}
+
+/// Component `k` of an item; all bits set for kNone.
+void write_integer(unsigned char* item, std::size_t k, Index value, std::int32_t type) {
+  with_integer(type, [&](auto integer) {
+    integer = static_cast<decltype(integer)>(std::int64_t{value});
+    std::memcpy(item + k * sizeof integer, &integer, sizeof integer);
+  });
 }
 
 template <class Integer>
@@ -150,16 +184,16 @@ beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
 }
 
 std::vector<Triangle> read_faces(const beltrami_mesh& mesh, const Work& work) {
-  require_type(mesh.indices.type, BELTRAMI_U32, BELTRAMI_U64, "indices");
+  require_integer(mesh.indices.type, "indices");
   const Reader reader(mesh.indices, mesh.face_count, 3, "indices");
-  return mesh.indices.type == BELTRAMI_U32
-             ? read_faces_as<std::uint32_t>(reader, mesh.face_count, mesh.vertex_count, work)
-             : read_faces_as<std::uint64_t>(reader, mesh.face_count, mesh.vertex_count, work);
+  return with_integer(mesh.indices.type, [&](auto integer) {
+    return read_faces_as<decltype(integer)>(reader, mesh.face_count, mesh.vertex_count, work);
+  });
 }
 
 std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
                                  const Work& work) {
-  require_type(mesh.positions.type, BELTRAMI_F32, BELTRAMI_F64, "positions");
+  require_real(mesh.positions.type, "positions");
   const Reader reader(mesh.positions, mesh.vertex_count, 3, "positions");
   return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original, work)
                                              : read_points<double, Vec3>(reader, original, work);
@@ -168,7 +202,7 @@ std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<In
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
                            const std::vector<Index>& original, const Work& work) {
   if (uvs == nullptr) refuse("uvs is NULL");
-  require_type(uvs->type, BELTRAMI_F32, BELTRAMI_F64, "UVs");
+  require_real(uvs->type, "UVs");
   const Reader reader(*uvs, vertex_count, 2, "UVs");
   std::vector<Vec2> points = uvs->type == BELTRAMI_F32
                                  ? read_points<float, Vec2>(reader, original, work)
@@ -184,18 +218,24 @@ std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_coun
   return points;
 }
 
+std::uint64_t all_bits_of(std::int32_t type) {
+  return with_integer(type, [](auto integer) -> std::uint64_t {
+    return std::numeric_limits<decltype(integer)>::max();
+  });
+}
+
 std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uint64_t count,
                                          int components, const char* what, const Work& work) {
-  require_type(buffer.type, BELTRAMI_U32, BELTRAMI_U64, what);
+  require_integer(buffer.type, what);
   const Reader reader(buffer, count, components, what);
-  return buffer.type == BELTRAMI_U32
-             ? read_elements<std::uint32_t, std::uint64_t>(reader, count, components, work)
-             : read_elements<std::uint64_t, std::uint64_t>(reader, count, components, work);
+  return with_integer(buffer.type, [&](auto integer) {
+    return read_elements<decltype(integer), std::uint64_t>(reader, count, components, work);
+  });
 }
 
 std::vector<double> read_numbers(const beltrami_buffer& buffer, std::uint64_t count, int components,
                                  const char* what, const Work& work) {
-  require_type(buffer.type, BELTRAMI_F32, BELTRAMI_F64, what);
+  require_real(buffer.type, what);
   const Reader reader(buffer, count, components, what);
   return buffer.type == BELTRAMI_F32
              ? read_elements<float, double>(reader, count, components, work)
@@ -206,20 +246,14 @@ void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& o
                  const std::vector<Index>& original_face, void* out, std::int32_t type,
                  std::uint64_t stride) {
   if (out == nullptr) refuse("the memory to write to is NULL");
-  require_type(type, BELTRAMI_U32, BELTRAMI_U64, "output");
+  require_integer(type, "output");
   const std::size_t step = checked_stride(stride, type, 3, faces.size(), "output");
+  for (const Index vertex : original) require_room_in(type, vertex);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const Triangle& face = faces[f];
     auto* item =
         static_cast<unsigned char*>(out) + step * static_cast<std::size_t>(original_face[f]);
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto wide = static_cast<std::uint64_t>(original[static_cast<std::size_t>(face[k])]);
-      const auto narrow = static_cast<std::uint32_t>(wide);
-      if (type == BELTRAMI_U32) {
-        std::memcpy(item + k * sizeof narrow, &narrow, sizeof narrow);
-      } else {
-        std::memcpy(item + k * sizeof wide, &wide, sizeof wide);
-      }
+      write_integer(item, k, original[static_cast<std::size_t>(faces[f][k])], type);
     }
   }
 }
@@ -227,19 +261,14 @@ void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& o
 void write_integers(const std::vector<Index>& values, int components, void* out, std::int32_t type,
                     std::uint64_t stride) {
   if (out == nullptr) refuse("the memory to write to is NULL");
-  require_type(type, BELTRAMI_U32, BELTRAMI_U64, "output");
+  require_integer(type, "output");
   const auto per_item = static_cast<std::size_t>(components);
   const std::size_t step =
       checked_stride(stride, type, components, values.size() / per_item, "output");
+  for (const Index value : values) require_room_in(type, value);
   for (std::size_t i = 0; i < values.size(); ++i) {
     auto* item = static_cast<unsigned char*>(out) + step * (i / per_item);
-    const auto wide = static_cast<std::uint64_t>(std::int64_t{values[i]});
-    const auto narrow = static_cast<std::uint32_t>(wide);
-    if (type == BELTRAMI_U32) {
-      std::memcpy(item + i % per_item * sizeof narrow, &narrow, sizeof narrow);
-    } else {
-      std::memcpy(item + i % per_item * sizeof wide, &wide, sizeof wide);
-    }
+    write_integer(item, i % per_item, values[i], type);
   }
 }
 
@@ -249,7 +278,7 @@ Writer::Writer(void* out, std::int32_t type, std::uint64_t stride, std::uint64_t
       components_(components),
       single_(type == BELTRAMI_F32) {
   if (out == nullptr) refuse("the memory to write to is NULL");
-  require_type(type, BELTRAMI_F32, BELTRAMI_F64, "output");
+  require_real(type, "output");
   stride_ = checked_stride(stride, type, components, count, "output");
 }
 

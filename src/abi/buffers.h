@@ -93,7 +93,10 @@ std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<In
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
                            const std::vector<Index>& original, const Work& work);
 
-/// Reads `count` items of U32 or U64 elements, one after the other. Throws Error INVALID_ARGUMENT.
+/// What stands for none among integers of a type: all bits set.
+std::uint64_t all_bits_of(std::int32_t type);
+
+/// Reads `count` items of integers, one after the other. Throws Error INVALID_ARGUMENT.
 std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uint64_t count,
                                          int components, const char* what, const Work& work);
 

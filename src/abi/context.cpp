@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include "abi/bake_job.h"
 #include "abi/buffers.h"
 #include "abi/core_options.h"
+#include "abi/joined.h"
 #include "abi/reports.h"
-#include "abi/surface.h"
 #include "abi/unwrapped.h"
 #include "bake/bake.h"
 #include "base/error.h"
 #include "base/floating_point.h"
 #include "base/interrupt.h"
+#include "base/pool.h"
 #include "base/resources.h"
 #include "base/work.h"
 #include "chart/flatten_disk.h"
@@ -115,6 +118,19 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs, const Work& work,
 
 }  // namespace beltrami
 
+beltrami::Work beltrami_context::work(beltrami::Progress watched) const {
+  const beltrami::Work made(beltrami::limits(options), std::move(watched));
+  if (parallel_for == nullptr) return made;
+  made.pool().lend([function = parallel_for, user = parallel_user](
+                       int count, const std::function<void(int)>& job) {
+    const beltrami_job call = [](void* data, std::int32_t index) {
+      (*static_cast<const std::function<void(int)>*>(data))(index);
+    };
+    function(user, count, call, const_cast<std::function<void(int)>*>(&job));
+  });
+  return made;
+}
+
 std::uint64_t beltrami_context::estimate_memory() const {
   if (!mesh) {
     throw beltrami::Error(beltrami::Fault::kInvalidState,
@@ -131,7 +147,7 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible(&cancelled);
   beltrami::HostProgress host(progress, user);
-  const beltrami::Work work(beltrami::limits(options), host.watched());
+  const beltrami::Work work = this->work(host.watched());
   beltrami::Flattening result =
       beltrami::flatten(mesh->input.disk, mesh->frame, beltrami::chart_options(options), work);
   // A request that came after the last look at it still counts, since the run was under way.
@@ -142,17 +158,21 @@ beltrami_status beltrami_context::run(beltrami_progress progress, void* user) {
   return beltrami::status_of(flattening->status);
 }
 
-beltrami_status beltrami_context::unwrap(const beltrami_surface* surface,
-                                         beltrami_progress progress, void* user) {
-  const beltrami_surface header = beltrami::read_surface_header(surface);
-  beltrami::require_effect_on_atlas(options, header.pin_count > 0);
+beltrami_status beltrami_context::unwrap(const beltrami_surface* const* surfaces,
+                                         std::uint64_t surface_count, beltrami_progress progress,
+                                         void* user) {
+  const std::vector<beltrami_surface> headers =
+      beltrami::read_surface_headers(surfaces, surface_count);
+  const bool pinned = std::ranges::any_of(
+      headers, [](const beltrami_surface& header) { return header.pin_count > 0; });
+  beltrami::require_effect_on_atlas(options, pinned);
   beltrami::RunMark mark(*this);
-  const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
+  const beltrami::InterruptScope interruptible({&cancelled, headers.front().cancel, {}});
   beltrami::HostProgress host(progress, user);
-  const beltrami::Work work(beltrami::limits(options), host.watched());
+  const beltrami::Work work = this->work(host.watched());
   beltrami::Unwrapped result =
-      beltrami::unwrap_surface(header, beltrami::atlas_options(options),
-                               options.cut == BELTRAMI_CUT_ISLANDS, options.hard_angle, work);
+      beltrami::unwrap_surfaces(headers, beltrami::atlas_options(options),
+                                options.cut == BELTRAMI_CUT_ISLANDS, options.hard_angle, work);
   if (mark.take_request() || host.cancelled()) {
     throw beltrami::Cancelled();
   }
@@ -172,7 +192,7 @@ beltrami_status beltrami_context::pack(const beltrami_uv_mesh* const* meshes,
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible({&cancelled, headers.front().cancel, {}});
   beltrami::HostProgress host(progress, user);
-  const beltrami::Work work(beltrami::limits(options), host.watched());
+  const beltrami::Work work = this->work(host.watched());
   beltrami::PackedMeshes result =
       beltrami::pack_meshes(headers, beltrami::pack_options(options), options.float32, work);
   if (mark.take_request() || host.cancelled()) {
@@ -191,8 +211,7 @@ beltrami_status beltrami_context::bake(const beltrami_bake_job* job, beltrami_ba
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
   beltrami::HostProgress host(progress, user);
-  const beltrami::Work work =
-      beltrami::Work(beltrami::limits(options), host.watched()).named("bake");
+  const beltrami::Work work = this->work(host.watched()).named("bake");
   const beltrami::BakeProblem problem = beltrami::read_bake_problem(header, work);
   const beltrami::BakeReport report = beltrami::bake(problem, room.pages, room.masks, work);
   if (mark.take_request() || host.cancelled()) {

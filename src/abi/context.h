@@ -48,9 +48,14 @@ struct beltrami_context {
   std::unique_ptr<beltrami::EditSession> session;
   double session_seconds = 0, session_cpu_seconds = 0;  ///< of its last call that ran
   enum class Packer { kNone, kUnwrap, kPack } last_packer = Packer::kNone;
+  beltrami_parallel_for parallel_for = nullptr;  ///< the host's, or null: own threads
+  void* parallel_user = nullptr;
   beltrami::Failure failure;
   std::atomic<bool> cancelled{false};
   bool running = false;
+
+  /// What a run may use: the options' limits, and the host's threads where it lends them.
+  beltrami::Work work(beltrami::Progress watched) const;
 
   /// Bytes that the library will hold at the peak of the next run: see beltrami_estimate_memory.
   /// Throws Error INVALID_STATE where there is no mesh.
@@ -60,9 +65,10 @@ struct beltrami_context {
   /// Cancelled; keeps old results then.
   beltrami_status run(beltrami_progress progress, void* user);
 
-  /// Unwraps a surface. Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or
+  /// Unwraps surfaces together. Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or
   /// Cancelled; keeps old results then.
-  beltrami_status unwrap(const beltrami_surface* surface, beltrami_progress progress, void* user);
+  beltrami_status unwrap(const beltrami_surface* const* surfaces, std::uint64_t surface_count,
+                         beltrami_progress progress, void* user);
 
   /// Packs charts. Throws Error INVALID_ARGUMENT, NO_ROOM, OUT_OF_MEMORY or a mesh status, or
   /// Cancelled; keeps old results then.

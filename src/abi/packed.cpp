@@ -109,9 +109,7 @@ class Reader {
     }
     // Those of the meshes before this one are placed anew.
     all.kept_page.resize(all.faces.size() - header.face_count, kNone);
-    const std::uint64_t none = header.kept_pages.type == BELTRAMI_U32
-                                   ? std::numeric_limits<std::uint32_t>::max()
-                                   : BELTRAMI_NO_ELEMENT;
+    const std::uint64_t none = all_bits_of(header.kept_pages.type);
     for (const std::uint64_t page :
          read_integers(header.kept_pages, header.face_count, 1, "kept pages", work_)) {
       if (page != none && page > static_cast<std::uint64_t>(kMostPages)) {

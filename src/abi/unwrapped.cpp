@@ -2,11 +2,9 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <numbers>
 #include <utility>
 
-#include "abi/hints.h"
-#include "abi/pins.h"
+#include "abi/joined.h"
 #include "abi/reports.h"
 #include "abi/surface.h"
 #include "atlas/assemble.h"
@@ -17,11 +15,6 @@
 
 namespace beltrami {
 namespace {
-
-/// Straight angles are exactly that.
-double radians(double degrees) {
-  return degrees / 180 * std::numbers::pi;
-}
 
 /// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner.
 std::vector<Index> uvs_of_corners(const LoadedSurface& surface, const Atlas& atlas) {
@@ -101,21 +94,18 @@ std::uint64_t Unwrapped::face_of(Index triangle) const {
   return static_cast<std::uint64_t>(face_of_triangle[triangle]);
 }
 
-Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& options, bool islands,
-                         double hard_angle, const Work& work) {
+Unwrapped unwrap_surfaces(const std::vector<beltrami_surface>& headers, const AtlasOptions& options,
+                          bool islands, double hard_angle, const Work& work) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  const Work reading = work.named("read");
-  LoadedSurface surface = read_surface(header, reading);
-  AtlasInput input = atlas_input(header, surface, islands, reading);
-  input.cuts.hard_angle = radians(hard_angle);
-  input.pins = read_pins(header, surface, options, reading);
-  input.hints = read_hints(header, surface, options, reading);
+  AtlasProblem problem = read_problem(headers, options, islands, hard_angle, work.named("read"));
+  LoadedSurface& surface = problem.surface;
   AtlasOptions with_polygons = options;
+  with_polygons.admit.bodies = problem.bodies;
   const std::vector<std::uint8_t> diagonals = diagonals_of(surface);
   with_polygons.admit.polygons = {surface.face_of_triangle, diagonals};
 
   Unwrapped result;
-  result.atlas = unwrap(input, with_polygons, work);
+  result.atlas = unwrap(problem.input, with_polygons, work);
   Atlas& atlas = result.atlas;
   const std::vector<Index> uv_of_corner = uvs_of_corners(surface, atlas);
   if (follow_corners(surface, uv_of_corner, atlas)) {
@@ -126,9 +116,9 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   result.searched = options.target.has_value();
   result.reached = result.searched && meets(atlas, *options.target);
 
-  result.vertices = header.vertex_count;
-  result.faces = header.face_count;
-  result.chart_of_face.assign(header.face_count, kNone);
+  result.vertices = static_cast<std::uint64_t>(surface.vertex_count);
+  result.faces = static_cast<std::uint64_t>(surface.polygons.count());
+  result.chart_of_face.assign(static_cast<std::size_t>(surface.polygons.count()), kNone);
   result.triangles = std::move(surface.triangulation.triangles);
   for (Index t = 0; t < size_of(result.triangles); ++t) {
     Index& chart = result.chart_of_face[surface.face_of(t)];

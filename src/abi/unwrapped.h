@@ -40,9 +40,9 @@ struct Unwrapped {
 /// Per triangle of a polygon, bit k says whether its edge from corner k is no side of the polygon.
 std::vector<std::uint8_t> diagonals_of(const LoadedSurface& surface);
 
-/// Reads a surface that has passed read_surface_header, and unwraps it. `hard_angle` in degrees.
-/// Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or Cancelled.
-Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& options, bool islands,
-                         double hard_angle, const Work& work);
+/// Reads surfaces that have passed read_surface_headers, and unwraps them together. `hard_angle` in
+/// degrees. Throws Error INVALID_ARGUMENT, OUT_OF_MEMORY or a mesh status, or Cancelled.
+Unwrapped unwrap_surfaces(const std::vector<beltrami_surface>& headers, const AtlasOptions& options,
+                          bool islands, double hard_angle, const Work& work);
 
 }  // namespace beltrami

@@ -25,11 +25,25 @@ constexpr std::int64_t kGrain = 16384;
 /// all is a hundredth of it.
 constexpr double kLeastArea = 1e-14;
 
+/// Of each body, as if it were alone.
+std::vector<Index> weld_bodies(const std::vector<Vec3>& positions, double distance,
+                               std::span<const Index> bodies, const Work& work) {
+  if (bodies.size() < 2) return weld(positions, distance, work);
+  std::vector<Index> first;
+  first.reserve(positions.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Index end = b + 1 < bodies.size() ? bodies[b + 1] : size_of(positions);
+    const std::vector<Vec3> own(positions.begin() + bodies[b], positions.begin() + end);
+    for (const Index v : weld(own, distance, work)) first.push_back(bodies[b] + v);
+  }
+  return first;
+}
+
 /// Names the welded vertices instead of those welded to them.
 std::vector<Triangle> welded(const std::vector<Vec3>& positions, std::vector<Triangle> faces,
                              const AdmitOptions& options, const Work& work, Admitted& admitted) {
   if (!options.weld_distance) return faces;
-  std::vector<Index> first = weld(positions, *options.weld_distance, work);
+  std::vector<Index> first = weld_bodies(positions, *options.weld_distance, options.bodies, work);
   for (Index v = 0; v < size_of(first); ++v) {
     admitted.counts.welded_vertices += first[v] != v ? 1 : 0;
   }

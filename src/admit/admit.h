@@ -28,6 +28,9 @@ struct PolygonParts {
 struct AdmitOptions {
   /// Vertices no further apart become one, see weld; 0: those at one place; nothing: none.
   std::optional<double> weld_distance = 0;
+  /// The first vertex of each body, increasing from 0: vertices of two are never made one; none:
+  /// all are of one.
+  std::span<const Index> bodies = {};
   /// Copies are no faces of the surface: they are to share what the first of them gets.
   bool share_copies = false;
   PolygonParts polygons = {};  ///< they stay in one piece

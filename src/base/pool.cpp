@@ -73,8 +73,20 @@ void Pool::serve(int thread) {
   }
 }
 
+void Pool::run_on_host(int count, const std::function<void(int)>& task) const {
+  const std::thread::id caller = std::this_thread::get_id();
+  host_(count, [&](int index) {
+    task(std::this_thread::get_id() == caller ? 0 : std::max(index, 0) + 1);
+  });
+  task(0);  // what a host has left undone, if it called fewer jobs than it was to
+}
+
 void Pool::run(int helpers, const std::function<void(int)>& task) {
   const Turn turn(taken_);
+  if (turn && host_) {
+    run_on_host(std::min(helpers, helpers_) + 1, task);
+    return;
+  }
   if (turn) start(std::min(helpers, helpers_));
   const int places = turn ? std::min(helpers, helpers_) : 0;
   if (places == 0) {

@@ -6,9 +6,14 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace beltrami {
+
+/// Calls `job(index)` once for each index below `count`, on any threads, and returns once all calls
+/// have: how a host runs the loops of a run.
+using HostLoop = std::function<void(int count, const std::function<void(int index)>& job)>;
 
 class Pool {
  public:
@@ -26,11 +31,17 @@ class Pool {
   /// `task` throws nothing.
   void run(int helpers, const std::function<void(int thread)>& task);
 
+  /// From now on tasks run on the host's threads, and none is started here. `loop` throws nothing.
+  /// Before the first run alone.
+  void lend(HostLoop loop) { host_ = std::move(loop); }
+
  private:
+  void run_on_host(int count, const std::function<void(int thread)>& task) const;
   void start(int helpers);
   void serve(int thread);
 
-  int helpers_;  // that there may be
+  int helpers_;    // that there may be
+  HostLoop host_;  // or empty: own threads
   std::atomic<bool> taken_ = false;
   std::mutex guard_;  // whoever changes what follows, but for the threads, holds it
   std::condition_variable begin_, end_;

@@ -54,6 +54,10 @@ case $STEP in
     no_machine_path "$PREFIX"
     test -s "$PREFIX/share/doc/beltrami/LICENSE"
     test -s "$PREFIX/share/doc/beltrami/licenses/THIRD-PARTY.txt"
+    grep -q '^\.TH BELTRAMI 1' "$PREFIX/share/man/man1/beltrami.1"
+    grep -q '^complete .* beltrami$' "$PREFIX/share/bash-completion/completions/beltrami"
+    grep -q '^#compdef beltrami' "$PREFIX/share/zsh/site-functions/_beltrami"
+    grep -q '^complete -c beltrami' "$PREFIX/share/fish/vendor_completions.d/beltrami.fish"
     if readelf -S "$PREFIX"/lib*/libbeltrami.so | grep -q '\.debug_info'; then
       fail "the installed library has debug information"
     fi

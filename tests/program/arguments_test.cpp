@@ -264,9 +264,50 @@ TEST(Completions, OfBashAreChoicesOfTheOptionBeforeAndNamesOfOptions) {
                      bash);
   };
   EXPECT_EQ(completed("un", 1), "unwrap\n");
+  EXPECT_EQ(completed("--m", 1), "--man\n");
+  EXPECT_EQ(completed("completions f", 2), "fish\n");
   EXPECT_EQ(completed("unwrap --effort \"\"", 3), "quick normal high\n");
   EXPECT_EQ(completed("unwrap --flat-", 2), "--flat-seams\n");
   EXPECT_EQ(completed("unwrap out.o", 2), "\n");  // a file, which bash itself completes
+}
+
+/// Whether a command is there; what it would be asked is skipped else.
+bool has_command(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+TEST(Completions, OfFishAreCommandsChoicesAndNamesOfOptions) {
+  if (!has_command("fish")) GTEST_SKIP() << "there is no fish here";
+  const std::string fish = run({"completions", "fish"}).out;
+  const auto completed = [&](const std::string& line) {
+    std::istringstream lines(
+        answer_of("env HOME=/nonexistent fish --no-config",
+                  "source $argv[2]; complete -C \"beltrami " + line + "\" 2>/dev/null", fish));
+    std::vector<std::string> words;
+    for (std::string word; std::getline(lines, word);)
+      words.push_back(word.substr(0, word.find('\t')));
+    return words;
+  };
+  EXPECT_EQ(completed("fl"), std::vector<std::string>({"flatten"}));
+  EXPECT_EQ(completed("--m"), std::vector<std::string>({"--man"}));
+  EXPECT_EQ(completed("unwrap --effort "), std::vector<std::string>({"high", "normal", "quick"}));
+  EXPECT_EQ(completed("unwrap --flat-"), std::vector<std::string>({"--flat-seams"}));
+  EXPECT_EQ(completed("completions "), std::vector<std::string>({"bash", "fish", "zsh"}));
+}
+
+TEST(Completions, OfZshAreAFunctionOfFpathOrAreMadeKnownBySource) {
+  if (!has_command("zsh")) GTEST_SKIP() << "there is no zsh here";
+  const std::string zsh = run({"completions", "zsh"}).out;
+  EXPECT_TRUE(zsh.starts_with("#compdef beltrami\n"));
+  EXPECT_EQ(answer_of("zsh -f",
+                      "autoload -Uz compinit; compinit -u -D; source \"$1\"; "
+                      "print $_comps[beltrami]; whence -w _beltrami",
+                      zsh),
+            "_beltrami\n_beltrami: function\n");
+  for (const char* part : {"'(-q --quiet)-q[", ":value:(quick normal high)'",
+                           "'1:word:(bash zsh fish)'", "--man[Print the manual page]"}) {
+    EXPECT_NE(zsh.find(part), std::string::npos) << part;
+  }
 }
 
 }  // namespace

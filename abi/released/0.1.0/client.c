@@ -120,10 +120,17 @@ static void fail_with_an_element(beltrami_context* context) {
   make_sheet();
 }
 
+static void run_jobs(void* user, int32_t count, beltrami_job job, void* data) {
+  int32_t i;
+  REQUIRE(user == uvs && count > 0);
+  for (i = 0; i < count; ++i) job(data, i);
+}
+
 static void flatten(beltrami_context* context) {
   const beltrami_mesh mesh = describe_sheet();
   uint64_t bytes[2] = {0, 7};
   int calls = 0;
+  REQUIRE(beltrami_set_parallel_for(context, run_jobs, uvs) == BELTRAMI_OK);
   REQUIRE(beltrami_set_mesh(context, &mesh) == BELTRAMI_OK);
   REQUIRE(beltrami_estimate_memory(context, bytes) == BELTRAMI_OK);
   REQUIRE(bytes[0] > sizeof positions && bytes[1] == 7);
@@ -271,11 +278,14 @@ static void read_atlas(beltrami_context* context) {
 static void unwrap(beltrami_context* context) {
   GUARDED(beltrami_atlas_certificate) certificate;
   beltrami_surface surface = describe_surface();
+  const beltrami_surface* surfaces[1];
   uint64_t repeating = 7, pairs[3] = {7, 7, 7};
   int calls = 0;
+  surfaces[0] = &surface;
   triangles[FACES][0] = 7;
   REQUIRE(beltrami_triangulate(&surface, triangles, BELTRAMI_U32, 0, &repeating) == BELTRAMI_OK);
   REQUIRE(triangles[FACES][0] == 7 && triangles[0][1] == 1 && repeating == BELTRAMI_NO_ELEMENT);
+  REQUIRE(beltrami_unwrap_surfaces(context, surfaces, 1, count_calls, &calls) == BELTRAMI_OK);
   REQUIRE(beltrami_unwrap(context, &surface, count_calls, &calls) == BELTRAMI_OK);
   REQUIRE(calls > 0);
   read_atlas(context);

@@ -20,6 +20,7 @@ from ._atlas import Atlas, SceneAtlases
 from ._atlas_checks import AtlasCheck, Triangulation, check_atlas, triangulate
 from ._bake import Baked, bake
 from ._batch import batch
+from ._cancel import CancelToken
 from ._checks import Distortion, check_boundary, check_injective, check_triangles, distortion
 from ._editor import Changes, Editor
 from ._errors import (
@@ -70,6 +71,7 @@ __all__ = [
     "Baked",
     "BatchRecord",
     "BeltramiError",
+    "CancelToken",
     "Cancelled",
     "Certificate",
     "Changes",

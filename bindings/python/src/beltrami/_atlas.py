@@ -82,6 +82,13 @@ class Atlas:
     mesh : trimesh.Trimesh | None
         Where a ``trimesh.Trimesh`` or the path of a file was given: a copy with the UVs, split
         along the seams. None where arrays were given: `split` has what a mesh is made of.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> atlas = beltrami.unwrap(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    >>> atlas.packing.pages, atlas.chart_of_face.tolist(), round(atlas.energy, 3)
+    (1, [0, 0, 0, 0], 2.0)
     """
 
     uvs: Array = field(repr=False)
@@ -180,6 +187,14 @@ class Atlas:
         ------
         MemoryError
             Without room for them.
+
+        Examples
+        --------
+        >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> atlas = beltrami.unwrap(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+        >>> positions, faces, uvs = atlas.split()
+        >>> positions.shape, faces.shape, uvs.shape
+        ((6, 3), (4, 3), (6, 2))
         """
         faces = self.uv_triangles if triangles else self.uv_faces
         return self.vertices[self.origins], faces, self.uvs
@@ -204,6 +219,14 @@ class SceneAtlases:
     atlases : dict
         The `Atlas` of each mesh, by its name in ``scene.geometry``. With ``share_page`` what it
         says of pages and the verdict on its UVs is that on all of the meshes.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> scene = trimesh.Scene([trimesh.creation.box(), trimesh.creation.icosphere(1)])
+    >>> atlases = beltrami.unwrap(scene, share_page=True)
+    >>> atlases.injective, len(atlases.atlases), atlases.mesh.visual.uv.shape[1]
+    (True, 2, 2)
     """
 
     scene: Any

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _arrays, _polygons, _surfaces
 from ._arrays import Array
+from ._cancel import CancelToken
 from ._polygons import Faces
 from ._surfaces import Surface
 from ._tables import AtlasCertificate
@@ -36,6 +37,7 @@ def check_atlas(
     allow_mirrored: bool = False,
     *,
     most_pairs: int = 1000,
+    cancel: CancelToken | None = None,
 ) -> AtlasCheck:
     """Judge the UVs of an atlas, by exact predicates on the very numbers given.
 
@@ -56,6 +58,8 @@ def check_atlas(
         True takes charts that are negative as a whole for their mirror images.
     most_pairs : int
         How many overlaps of triangles are looked at for `pairs`, at most.
+    cancel : CancelToken, optional
+        Ends the call from any thread.
 
     Returns
     -------
@@ -69,16 +73,26 @@ def check_atlas(
         `IndexOutOfRangeError`, `NonFiniteError` (a vertex or a UV), with the element.
     TypeError, ValueError
         For arrays of other shapes or types.
-    KeyboardInterrupt
-        On Ctrl-C, in the main thread.
+    Cancelled, KeyboardInterrupt
+        By `cancel`; on Ctrl-C, in the main thread.
     OutOfMemoryError
         As its name says.
+
+    Examples
+    --------
+    Two triangles at the same place of the page:
+
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> uvs = [[[0.0, 0], [1, 0], [0, 1]], [[0.1, 0.1], [0.6, 0.1], [0.1, 0.6]]]
+    >>> check = beltrami.check_atlas(vertices, [[0, 1, 2], [0, 3, 1]], uvs)
+    >>> bool(check), check.overlaps, check.pairs.tolist()
+    (False, 1, [[0, 1]])
     """
     if most_pairs < 0:
         raise ValueError(f"most_pairs is {most_pairs}: give 0 or more")
     points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
     surface = Surface(points, polygons, _polygons.corner_uvs(corner_uvs, polygons))
-    found, pairs = _surfaces.check(surface, allow_mirrored, most_pairs)
+    found, pairs = _surfaces.check(surface, allow_mirrored, most_pairs, cancel)
     fields = {f.name: getattr(found, f.name) for f in dataclasses.fields(found)}
     return AtlasCheck(**fields, pairs=pairs)
 
@@ -124,6 +138,13 @@ def triangulate(vertices: npt.ArrayLike, faces: Faces) -> Triangulation:
     ------
     IndexOutOfRangeError, MeshError, TypeError, ValueError, OutOfMemoryError
         As `check_atlas` does.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [3, 0, 0]]
+    >>> found = beltrami.triangulate(vertices, [[0, 1, 2, 3], [1, 4, 2]])
+    >>> len(found.triangles), found.face_of_triangle.tolist()
+    (3, [0, 0, 1])
     """
     points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
     corners, repeating = _surfaces.triangulate(Surface(points, polygons))

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ._arrays import Array
 from ._baking import FILTERS, PIXELS, WRAPS, BakeArrays, BakeContext, whole_page
+from ._cancel import CancelToken
 from ._library import BAKE
 from ._progress import Progress, hook_for
 
@@ -73,6 +74,7 @@ def bake(
     # end of options
     masks: bool = False,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> Baked:
     """Read images through the old UVs of triangles, and return them for the new ones.
 
@@ -120,6 +122,8 @@ def bake(
         True adds which texels are covered, and which are gutters.
     progress : bool or callable, optional
         As for `parameterize`.
+    cancel : CancelToken, optional
+        Ends the call from any thread.
 
     Options
     -------
@@ -141,7 +145,7 @@ def bake(
     NonFiniteError
         A new UV or a position is not finite, with the corner in `element`.
     Cancelled
-        `progress` returned False.
+        By `cancel`, or because `progress` returned False.
     KeyboardInterrupt
         On Ctrl-C, in the main thread.
     OutOfMemoryError, InternalError
@@ -197,7 +201,7 @@ def bake(
     }
     if numbers["gutter"] < 0:
         raise ValueError(f"gutter is {gutter}: give 0 or more")
-    context = BakeContext()
+    context = BakeContext(cancel)
     context.set_options(given, BAKE)
     out = np.zeros((pages, resolution, resolution, views[0].shape[2]), views[0].dtype)
     mask = np.zeros(out.shape[:3], np.uint8) if masks else None

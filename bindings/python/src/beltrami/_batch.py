@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from . import _jobs, _library
+from ._cancel import CancelToken
 from ._jobs import BatchRecord
 from ._progress import Progress
 from ._tables import EnergyChoice, FlattenChoice, InjectivityChoice, MethodChoice
@@ -38,6 +39,7 @@ def batch(
     root: str | os.PathLike[str] | None = None,
     jobs: int | None = None,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> list[BatchRecord]:
     """Flatten many mesh files, on all cores or on a Dask cluster; a second call resumes.
 
@@ -69,6 +71,8 @@ def batch(
     progress : bool or callable, optional
         As for `parameterize`; called when a mesh is done, with the fraction that is done and the
         mesh's path. Returning False ends the batch.
+    cancel : CancelToken, optional
+        Ends the batch from any thread; on a cluster once the next job is done.
 
     Options
     -------
@@ -143,6 +147,16 @@ def batch(
     Cancelled, KeyboardInterrupt
         Jobs under way are ended (on a cluster, only those that have not begun); another call
         resumes.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> lines = "v 0 0 0", "v 1 0 0", "v 1 1 1", "v 0 1 0", "f 1 2 3", "f 1 3 4"
+    >>> _ = (folder / "flap.obj").write_text(chr(10).join(lines))
+    >>> records = beltrami.batch(folder.glob("*.obj"), folder / "flat", threads=1)
+    >>> [(record.output, record.status, record.injective) for record in records]
+    [('flap.obj', 'BELTRAMI_OK', True)]
     """
     given: dict[str, object] = {
         # options: items
@@ -174,4 +188,5 @@ def batch(
         root=root,
         jobs=jobs,
         progress=progress,
+        cancel=cancel,
     )

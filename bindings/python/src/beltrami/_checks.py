@@ -36,6 +36,15 @@ def check_injective(uv: npt.ArrayLike, faces: npt.ArrayLike) -> Certificate:
         For arrays of other shapes or types.
     OutOfMemoryError
         As its name says.
+
+    Examples
+    --------
+    >>> uv = [[0.0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> bool(beltrami.check_injective(uv, [[0, 1, 2], [0, 2, 3]]))
+    True
+    >>> uv[3] = [1.0, 0.9]  # folds the second face over the first
+    >>> beltrami.check_injective(uv, [[0, 1, 2], [0, 2, 3]]).negative
+    1
     """
     return _library.check("injective", *_uv_and_faces(uv, faces))
 
@@ -59,6 +68,13 @@ def check_triangles(uv: npt.ArrayLike, faces: npt.ArrayLike) -> Certificate:
     ------
     IndexOutOfRangeError, NonFiniteError, TypeError, ValueError, OutOfMemoryError
         As `check_injective` does.
+
+    Examples
+    --------
+    >>> uv = [[0.0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> verdict = beltrami.check_triangles(uv, [[0, 1, 2], [0, 3, 2]])
+    >>> bool(verdict), verdict.negative, verdict.first_bad_face
+    (False, 1, 1)
     """
     return _library.check("triangles", *_uv_and_faces(uv, faces))
 
@@ -83,6 +99,15 @@ def check_boundary(uv: npt.ArrayLike, faces: npt.ArrayLike) -> Certificate:
     ------
     MeshError, TypeError, ValueError, OutOfMemoryError
         As `check_injective` does.
+
+    Examples
+    --------
+    A quad whose boundary crosses itself:
+
+    >>> uv = [[0.0, 0], [1, 1], [1, 0], [0, 1]]
+    >>> verdict = beltrami.check_boundary(uv, [[0, 1, 2], [0, 2, 3]])
+    >>> bool(verdict), verdict.boundary_crossings
+    (False, 1)
     """
     return _library.check("boundary", *_uv_and_faces(uv, faces))
 
@@ -158,6 +183,15 @@ def distortion(vertices: npt.ArrayLike, faces: npt.ArrayLike, uv: npt.ArrayLike)
         For arrays of other shapes or types, or of different lengths.
     OutOfMemoryError
         As its name says.
+
+    Examples
+    --------
+    A square that is drawn to twice its width:
+
+    >>> vertices, uv = [[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0], [2, 0], [2, 1]]
+    >>> found = beltrami.distortion(vertices, [[0, 1, 2]], uv)
+    >>> found.singular_values.round(6).tolist(), found.area.round(6).tolist()
+    ([[2.0, 1.0]], [2.0])
     """
     points, triangles = _arrays.positions(vertices), _arrays.indices(faces)
     coordinates = _arrays.coordinates(uv)

@@ -16,6 +16,14 @@ class BeltramiError(RuntimeError):
         The face or vertex of the input that the failure is about, counted from 0.
     element_kind : {"face", "vertex", "corner"} | None
         What `element` counts.
+
+    Examples
+    --------
+    >>> try:
+    ...     beltrami.unwrap([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])
+    ... except beltrami.MeshError as error:
+    ...     print(error.status, error.element_kind, error.element)
+    BELTRAMI_E_INDEX_OUT_OF_RANGE face 0
     """
 
     def __init__(

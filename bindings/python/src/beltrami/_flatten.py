@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from . import _arrays, _hints, _trimesh
 from ._arrays import Array
+from ._cancel import CancelToken
+from ._cancel import check as check_token
 from ._errors import InvalidStateError, NotADiskError, NotInjectiveWarning
 from ._library import Context
 from ._progress import Progress, hook_for
@@ -90,6 +92,16 @@ class Flattener:
     ------
     TypeError, ValueError
         For an option that has another type, or is out of range (`InvalidArgumentError`).
+
+    Examples
+    --------
+    >>> flattener = beltrami.Flattener(energy="symmetric-arap")
+    >>> for height in (0, 1):
+    ...     vertices = [[0, 0, 0], [1, 0, 0], [1, 1, height], [0, 1, 0]]
+    ...     result = flattener.parameterize(vertices, [[0, 1, 2], [0, 2, 3]])
+    ...     print(result.injective, round(result.energy.symmetric_arap, 6))
+    True 0.0
+    True 0.0
     """
 
     def __init__(
@@ -343,6 +355,7 @@ def parameterize(
     memory_limit: int = 0,
     # end of options
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> Parameterization:
     """Flatten a disk-like triangle mesh to UVs: injective, with low distortion.
 
@@ -363,6 +376,8 @@ def parameterize(
         line on stderr if that is a terminal. A callable is told ``(fraction, stage)`` in this
         thread, with a fraction in [0, 1] that never decreases; it cancels by returning False or by
         raising, and what it raises is passed on.
+    cancel : CancelToken, optional
+        Ends the call from any thread.
 
     Options
     -------
@@ -435,11 +450,18 @@ def parameterize(
     TypeError, ValueError
         For arrays of other shapes or types, and for options out of range.
     Cancelled
-        `progress` returned False.
+        By `cancel`, or because `progress` returned False.
     KeyboardInterrupt
         On Ctrl-C, in the main thread.
     SolverError, OutOfMemoryError, InternalError
         As their names say.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]
+    >>> result = beltrami.parameterize(vertices, [[0, 1, 2], [0, 2, 3]], threads=2)
+    >>> result.uv.shape, result.injective, round(result.energy.symmetric_dirichlet, 3)
+    ((4, 2), True, 2.0)
     """
     flattener = Flattener(
         # options: keywords
@@ -460,6 +482,8 @@ def parameterize(
         memory_limit=memory_limit,
         # end of options
     )
+    check_token(cancel)
+    flattener._context.token = cancel
     return flattener._parameterize(vertices, faces, progress, callers=2)
 
 

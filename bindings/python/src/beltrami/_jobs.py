@@ -19,6 +19,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from . import _library, _program
+from ._cancel import CancelToken, ending
+from ._cancel import check as check_token
 from ._errors import Cancelled
 from ._progress import Progress, hook_for
 
@@ -100,12 +102,14 @@ def run_batch(
     root: str | os.PathLike[str] | None,
     jobs: int | None,
     progress: Progress,
+    cancel: CancelToken | None,
 ) -> list[BatchRecord]:
     """Do a task with many files; arguments, result and errors are those of `batch`."""
     if isinstance(paths, (str, os.PathLike)):
         raise TypeError(f"paths is {paths!r}: give a list of paths, such as glob.glob('*.ply')")
     if suffix not in (*task.suffixes, None):
         raise ValueError(f"suffix is {suffix!r}: give {' or '.join(map(repr, task.suffixes))}")
+    check_token(cancel)
     folder = Path(out_dir)
     work = [_job(path, folder, suffix, root, task) for path in paths]
     _require_distinct(work)
@@ -115,11 +119,12 @@ def run_batch(
     left = list({job.name: job for job in work if job.name not in done}.values())
     if jobs is None:
         jobs = cores() // task.threads
-    run = _on_processes(left, jobs) if scheduler is None else _on_dask(left, scheduler)
+    run = _on_processes(left, jobs, cancel) if scheduler is None else _on_dask(left, scheduler)
     fresh: dict[str, dict[str, Any]] = {}
     with hook_for(progress) as hook, _open_log(folder / LOG) as log:
         try:
             for job, line in run:
+                check_token(cancel)  # before what it ended is taken for a failure
                 fresh[job.name] = line
                 log.write(json.dumps(line).encode() + b"\n")
                 log.flush()
@@ -281,14 +286,17 @@ class _Processes:
                 process.terminate()
 
 
-def _on_processes(work: list[Job], count: int) -> Generator[tuple[Job, dict[str, Any]], None, None]:
+def _on_processes(
+    work: list[Job], count: int, cancel: CancelToken | None
+) -> Generator[tuple[Job, dict[str, Any]], None, None]:
     """Yield jobs with their lines as they end; closing it ends those under way."""
     processes = _Processes()
     pool = futures.ThreadPoolExecutor(max_workers=max(1, count))
     try:
-        running = {pool.submit(_run_job, job, processes): job for job in work}
-        for future in futures.as_completed(running):
-            yield running[future], future.result()
+        with ending(cancel, processes.end):
+            running = {pool.submit(_run_job, job, processes): job for job in work}
+            for future in futures.as_completed(running):
+                yield running[future], future.result()
     finally:
         processes.end()
         pool.shutdown(cancel_futures=True)

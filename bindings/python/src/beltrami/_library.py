@@ -16,6 +16,8 @@ import numpy as np
 
 from . import _arrays, _interrupt
 from ._arrays import Array
+from ._cancel import CancelToken, ending
+from ._cancel import check as check_token
 from ._errors import ERRORS, BeltramiError, InvalidArgumentError
 from ._native import ffi, lib
 from ._tables import (
@@ -164,8 +166,12 @@ def _mesh(vertices: Array | None, faces: Array, vertex_count: int) -> Any:
 _LEAST_WATCHED = 10_000  # faces: what is done with fewer is over before Ctrl-C could end it
 
 
-def cancellable(mesh: Any, call: Callable[[], int]) -> int:
-    """Return the status of a `call` on `mesh`, which Ctrl-C ends. Raises KeyboardInterrupt."""
+def cancellable(mesh: Any, call: Callable[[], int], token: CancelToken | None = None) -> int:
+    """Return the status of a `call` on `mesh`, which Ctrl-C and `token` end.
+
+    Raises KeyboardInterrupt, or Cancelled where the token is cancelled already.
+    """
+    check_token(token)
     if mesh.face_count < _LEAST_WATCHED:
         return call()
     number = ffi.new("int32_t*")
@@ -175,7 +181,7 @@ def cancellable(mesh: Any, call: Callable[[], int]) -> int:
         number[0] = 1
 
     try:
-        with _interrupt.watched(cancel) as interrupt:
+        with ending(token, cancel), _interrupt.watched(cancel) as interrupt:
             status = call()
     finally:
         mesh.cancel = ffi.NULL
@@ -300,7 +306,9 @@ def _progress(_user: Any, fraction: float, stage: Any) -> int:
 class Context:
     """A ``beltrami_context``. One thread at a time may call, but `cancel` any."""
 
-    def __init__(self) -> None:
+    def __init__(self, token: CancelToken | None = None) -> None:
+        check_token(token)
+        self.token = token  # ends calls while it is here
         out = ffi.new("beltrami_context**")
         status = lib.beltrami_create_(lib.BELTRAMI_ABI, out)
         if status < 0:
@@ -357,7 +365,8 @@ class Context:
         """Copy and validate a mesh in arrays of `_arrays`. Raises MeshError."""
         try:
             mesh = _mesh(vertices, faces, len(vertices))
-            self._check(cancellable(mesh, lambda: lib.beltrami_set_mesh(self._context, mesh)))
+            call = lambda: lib.beltrami_set_mesh(self._context, mesh)  # noqa: E731
+            self._check(cancellable(mesh, call, self.token))
         except BeltramiError as error:
             name_index(error, faces.__getitem__, faces, len(vertices), "vertices")
             raise
@@ -380,7 +389,7 @@ class Context:
         """
         outer = _running.hook, _running.raised
         try:
-            with _interrupt.watched(self.cancel) as interrupt:
+            with ending(self.token, self.cancel), _interrupt.watched(self.cancel) as interrupt:
                 status, raised = self._call(function, arguments, hook, interrupt)
             if interrupt.came:
                 # The request may have come too late for this run: the next one is not meant.

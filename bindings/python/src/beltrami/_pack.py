@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _arrays
 from ._arrays import Array
 from ._atlas import Atlas, tile_of
+from ._cancel import CancelToken
 from ._errors import NotInjectiveWarning
 from ._library import PACK, Hook
 from ._progress import Progress, hook_for
@@ -40,6 +41,13 @@ class UvMesh:
     kept_pages : (m,) array_like of integers, optional
         -1 where the chart of a face is placed anew; else the page on which it stays where it is, in
         the unit square. The same for all faces of a chart.
+
+    Examples
+    --------
+    >>> uvs = [[0.0, 0], [1, 0], [0, 1], [5, 0], [6, 0], [5, 1]]
+    >>> mesh = beltrami.UvMesh(uvs, [[0, 1, 2], [3, 4, 5]])
+    >>> beltrami.pack(mesh).report.charts
+    2
     """
 
     uvs: npt.ArrayLike
@@ -150,6 +158,7 @@ def pack(
     # end of options
     masks: bool = False,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> Packing:
     """Pack the charts of one UV mesh or several onto the pages of a texture.
 
@@ -165,6 +174,8 @@ def pack(
         True adds for each page which texels charts cover, and which are gutters.
     progress : bool or callable, optional
         As for `parameterize`.
+    cancel : CancelToken, optional
+        Ends the call from any thread.
 
     Options
     -------
@@ -210,11 +221,19 @@ def pack(
         For arrays of other shapes or types, for options out of range, and for charts that cannot
         stay where they are.
     Cancelled
-        `progress` returned False.
+        By `cancel`, or because `progress` returned False.
     KeyboardInterrupt
         On Ctrl-C, in the main thread.
     OutOfMemoryError, InternalError
         As their names say.
+
+    Examples
+    --------
+    >>> uvs = [[0.0, 0], [1, 0], [0, 1], [5, 0], [6, 0], [5, 1]]  # of UV vertices
+    >>> mesh = beltrami.UvMesh(uvs, [[0, 1, 2], [3, 4, 5]])
+    >>> packing = beltrami.pack([mesh, mesh], resolution=256, margin=4)
+    >>> packing.pages, packing.report.charts, packing.injective, packing.report.margin >= 4
+    (1, 4, True, True)
     """
     given: dict[str, object] = {
         # options: items
@@ -230,7 +249,7 @@ def pack(
     }
     listed = [meshes] if isinstance(meshes, (UvMesh, Atlas)) else list(meshes)
     with hook_for(progress) as hook:
-        packing = packed(listed, given, masks, hook)
+        packing = packed(listed, given, masks, hook, cancel)
     if not packing.injective:
         found = packing.certificate
         warnings.warn(
@@ -251,11 +270,15 @@ def _uv_mesh(mesh: Any) -> UvMesh:
 
 
 def packed(
-    things: Sequence[UvMesh | Atlas], given: dict[str, object], masks: bool, hook: Hook
+    things: Sequence[UvMesh | Atlas],
+    given: dict[str, object],
+    masks: bool,
+    hook: Hook,
+    cancel: CancelToken | None = None,
 ) -> Packing:
     """Pack with these options, and without a warning."""
     meshes: list[UvArrays] = [_uv_mesh(thing).arrays() for thing in things]
-    context = PackContext()
+    context = PackContext(cancel)
     single = all(mesh.uvs.dtype == np.float32 for mesh in meshes)
     if single and given["float32"] is False:
         given = {**given, "float32": True}  # so that what is handed out is injective

@@ -37,6 +37,13 @@ class Parameterization:
         The options that were used, by keyword.
     mesh : trimesh.Trimesh | None
         Where a ``trimesh.Trimesh`` was given: a copy with the UVs.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]
+    >>> result = beltrami.parameterize(vertices, [[0, 1, 2], [0, 2, 3]])
+    >>> result.status, result.certificate.positive, [stage.name for stage in result.stages][-1]
+    ('BELTRAMI_OK', 2, 'certify')
     """
 
     uv: Array = field(repr=False)

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _trimesh
 from ._atlas import Atlas
+from ._cancel import CancelToken
 from ._library import Hook
 from ._pack import Packing, packed
 from ._tables import UnwrapOptions
@@ -39,9 +40,10 @@ def onto_common_pages(
     meshes: Mapping[str, Any],
     given: dict[str, object],
     hook: Hook,
+    cancel: CancelToken | None = None,
 ) -> dict[str, Atlas]:
     """Return atlases that share pages. What they say of pages and of overlaps is on all of them."""
-    packing = packed(list(atlases.values()), given, False, hook)
+    packing = packed(list(atlases.values()), given, False, hook, cancel)
     return {
         name: _placed(atlas, packing, number, meshes[name])
         for number, (name, atlas) in enumerate(atlases.items())

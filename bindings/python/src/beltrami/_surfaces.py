@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _library
 from ._arrays import Array
+from ._cancel import CancelToken
 from ._errors import BeltramiError
 from ._library import Context, Hook, buffer, cancellable, fail, record, sized
 from ._native import ffi, lib
@@ -195,7 +196,9 @@ def triangulate(surface: Surface) -> tuple[Array, int | None]:
     return out, None if repeating[0] == lib.BELTRAMI_NO_ELEMENT else int(repeating[0])
 
 
-def check(surface: Surface, allow_mirrored: bool, capacity: int) -> tuple[AtlasCertificate, Array]:
+def check(
+    surface: Surface, allow_mirrored: bool, capacity: int, token: CancelToken | None = None
+) -> tuple[AtlasCertificate, Array]:
     """Return the verdict on corner UVs, and (k, 2) faces of at most `capacity` overlaps."""
     out = sized("beltrami_atlas_certificate")
     pairs = np.full((capacity, 2), -1, np.int64)
@@ -204,6 +207,7 @@ def check(surface: Surface, allow_mirrored: bool, capacity: int) -> tuple[AtlasC
     status = cancellable(
         struct,
         lambda: lib.beltrami_check_atlas(struct, allow_mirrored, out, room, capacity),
+        token,
     )
     if status < 0:
         _fail_on(surface, status, out.error_element, out.error_element_kind)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _arrays, _hints, _polygons, _sharing, _trimesh
 from ._atlas import Atlas, SceneAtlases
+from ._cancel import CancelToken
 from ._errors import BeltramiError, NotInjectiveWarning
 from ._library import UNWRAP, Hook
 from ._polygons import Faces
@@ -54,6 +55,7 @@ def unwrap(
     edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     materials: npt.ArrayLike | None = None,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
     **options: Unpack[UnwrapOptions],
 ) -> Atlas: ...
 @overload
@@ -71,6 +73,7 @@ def unwrap(
     materials: npt.ArrayLike | None = None,
     share_page: bool = False,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
     **options: Unpack[UnwrapOptions],
 ) -> Any: ...
 def unwrap(
@@ -131,6 +134,7 @@ def unwrap(
     # end of options
     share_page: bool = False,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> Any:
     """Cut any surface into charts and flatten them: an injective atlas, with low distortion.
 
@@ -181,6 +185,8 @@ def unwrap(
         page for each. Not with ``pack="none"``, `pack_splits`, `stack` or `share_copies`.
     progress : bool or callable, optional
         As for `parameterize`.
+    cancel : CancelToken, optional
+        Ends the call from any thread.
 
     Options
     -------
@@ -349,7 +355,7 @@ def unwrap(
     TypeError, ValueError
         For arrays of other shapes or types, and for options out of range.
     Cancelled
-        `progress` returned False.
+        By `cancel`, or because `progress` returned False.
     KeyboardInterrupt
         On Ctrl-C, in the main thread.
     FileNotFoundError, IsADirectoryError
@@ -358,6 +364,19 @@ def unwrap(
         For a path, without trimesh.
     OutOfMemoryError, InternalError
         As their names say.
+
+    Examples
+    --------
+    A tetrahedron, with a UV for each of its corners:
+
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+    >>> atlas = beltrami.unwrap(vertices, faces, margin=4, resolution=512)
+    >>> atlas.corner_uvs.shape, atlas.injective, len(atlas.charts)
+    ((4, 3, 2), True, 1)
+    >>> positions, triangles, uvs = atlas.split()
+    >>> positions.shape, triangles.shape, uvs.shape
+    ((6, 3), (4, 3), (6, 2))
     """
     given: dict[str, object] = {
         # options: items
@@ -412,7 +431,7 @@ def unwrap(
         of_faces = (*of_cuts, densities, pins)
         if any(values is not None for values in of_faces):
             raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
-        return _unwrap_scene(vertices, given, share_page, progress)
+        return _unwrap_scene(vertices, given, share_page, progress, cancel)
     mesh = None
     if faces is None:
         if not _trimesh.is_mesh(vertices):
@@ -425,7 +444,7 @@ def unwrap(
     surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams, pins)
     surface = _with_hints(surface, vertex_paint, edge_paint, materials)
     with hook_for(progress) as hook:
-        atlas = _unwrap(surface, given, hook, mesh)
+        atlas = _unwrap(surface, given, hook, cancel, mesh)
     _warn(atlas, "")
     return atlas
 
@@ -463,8 +482,14 @@ def _with_hints(surface: Surface, vertex_paint: Any, edge_paint: Any, materials:
     )
 
 
-def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -> Atlas:
-    context = AtlasContext()
+def _unwrap(
+    surface: Surface,
+    given: dict[str, object],
+    hook: Hook,
+    cancel: CancelToken | None,
+    mesh: Any,
+) -> Atlas:
+    context = AtlasContext(cancel)
     single = surface.vertices.dtype == np.float32
     if single and given["float32"] is False:
         given = {**given, "float32": True}  # so that what is handed out is injective
@@ -507,7 +532,11 @@ def _unwrap(surface: Surface, given: dict[str, object], hook: Hook, mesh: Any) -
 
 
 def _unwrap_scene(
-    scene: Any, given: dict[str, object], share_page: bool, progress: Progress
+    scene: Any,
+    given: dict[str, object],
+    share_page: bool,
+    progress: Progress,
+    cancel: CancelToken | None,
 ) -> SceneAtlases:
     if share_page:
         pack_options, given = _sharing.options(given)
@@ -522,14 +551,14 @@ def _unwrap_scene(
             uvs = _trimesh.corner_uvs(mesh) if given["cut"] == "islands" else None
             try:
                 surface = _surface(mesh.vertices, mesh.faces, uvs, None, None, None)
-                atlases[name] = _unwrap(surface, given, of_scene, mesh)
+                atlases[name] = _unwrap(surface, given, of_scene, cancel, mesh)
             except BeltramiError as error:
                 error.args = (f"{name}: {error}",)
                 raise
             before += share
         if share_page and atlases:
             rest = _part_of(hook, before, 1 - before)
-            atlases = _sharing.onto_common_pages(atlases, meshes, pack_options, rest)
+            atlases = _sharing.onto_common_pages(atlases, meshes, pack_options, rest, cancel)
     for name, atlas in atlases.items():
         _warn(atlas, f"{name}: ", callers=3)
     textured = {name: atlas.mesh for name, atlas in atlases.items()}

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from . import _jobs, _library
+from ._cancel import CancelToken
 from ._jobs import BatchRecord
 from ._progress import Progress
 from ._tables import (
@@ -81,6 +82,7 @@ def unwrap_batch(
     root: str | os.PathLike[str] | None = None,
     jobs: int | None = None,
     progress: Progress = None,
+    cancel: CancelToken | None = None,
 ) -> list[BatchRecord]:
     """Unwrap many mesh files, on all cores or on a Dask cluster; a second call resumes.
 
@@ -118,6 +120,8 @@ def unwrap_batch(
     progress : bool or callable, optional
         As for `parameterize`; called when a mesh is done, with the fraction that is done and the
         mesh's path. Returning False ends the batch.
+    cancel : CancelToken, optional
+        Ends the batch from any thread; on a cluster once the next job is done.
 
     Options
     -------
@@ -286,6 +290,16 @@ def unwrap_batch(
     Cancelled, KeyboardInterrupt
         Jobs under way are ended (on a cluster, only those that have not begun); another call
         resumes.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> lines = "v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 2 4", "f 2 3 4", "f 3 1 4"
+    >>> _ = (folder / "tent.obj").write_text(chr(10).join(lines))
+    >>> records = beltrami.unwrap_batch(folder.glob("*.obj"), folder / "unwrapped", margin=4)
+    >>> [(record.output, record.status, record.injective) for record in records]
+    [('tent.obj', 'BELTRAMI_OK', True)]
     """
     given: dict[str, object] = {
         # options: items
@@ -350,4 +364,5 @@ def unwrap_batch(
         root=root,
         jobs=jobs,
         progress=progress,
+        cancel=cancel,
     )

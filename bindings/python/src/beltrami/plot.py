@@ -82,6 +82,12 @@ def layout(
         With the face or the vertex.
     TypeError, ValueError
         For arrays of other shapes or types, and without faces.
+
+    Examples
+    --------
+    >>> uv = [[0.0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> ax = beltrami.plot.layout(uv, [[0, 1, 2], [0, 2, 3]])
+    >>> ax.figure.savefig("layout.png")
     """
     points, triangles = _arrays.coordinates(uv).astype(float), _arrays.indices(faces)
     check_triangles(points, triangles)  # refuses what cannot be drawn
@@ -120,6 +126,12 @@ def atlas(
     ------
     ImportError
         Without Matplotlib.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> atlas = beltrami.unwrap(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    >>> beltrami.plot.atlas(atlas).figure.savefig("atlas.png")
     """
     points, triangles = unwrapped.udim_uvs.astype(float), unwrapped.uv_triangles
     chart = unwrapped.chart_of_face[unwrapped.face_of_triangle]
@@ -222,6 +234,12 @@ def heat_map(
         Without Matplotlib.
     BeltramiError, TypeError, ValueError
         As `beltrami.distortion` does, and for a limit that the scale cannot end at.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> atlas = beltrami.unwrap(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    >>> beltrami.plot.heat_map(atlas).figure.savefig("heat.png")
     """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -306,6 +324,13 @@ def checkered(
         With the face or the vertex.
     TypeError, ValueError
         For arrays of other shapes or types, and without faces.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]
+    >>> result = beltrami.parameterize(vertices, [[0, 1, 2], [0, 2, 3]])
+    >>> ax = beltrami.plot.checkered(vertices, result.faces, result.uv, cells=8)
+    >>> ax.figure.savefig("checkered.png")
     """
     _require_positive("cells", cells)
     space, triangles = _arrays.positions(vertices).astype(float), _arrays.indices(faces)

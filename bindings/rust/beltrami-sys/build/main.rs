@@ -66,12 +66,12 @@ fn link_folder(folder: &Path) -> Installation {
     let archive = find(&["libbeltrami.a", "beltrami.lib"]);
     println!("cargo::rustc-link-search=native={}", folder.display());
     match (shared, archive) {
-        (Some(_), _) if !wants_static() => println!("cargo::rustc-link-lib=dylib=beltrami"),
-        (_, Some(archive)) => {
+        (shared, Some(archive)) if prefers_static() || shared.is_none() => {
             // It is copied into the crate, so a new one makes a new crate.
             println!("cargo::rerun-if-changed={}", archive.display());
             link_static(&[]);
         }
+        (Some(_), _) if !wants_static() => println!("cargo::rustc-link-lib=dylib=beltrami"),
         _ => fail(format!("the library is not in BELTRAMI_LIB_DIR, {}", folder.display())),
     }
     let root = folder.parent().unwrap_or(folder).to_owned();
@@ -84,7 +84,7 @@ fn link_folder(folder: &Path) -> Installation {
 fn probe() -> Result<Installation, pkg_config::Error> {
     let library = pkg_config::Config::new()
         .range_version(VERSIONS)
-        .statik(wants_static())
+        .statik(prefers_static())
         .probe("beltrami")?;
     let prefix = pkg_config::get_variable("beltrami", "prefix")?;
     let include = library.include_paths.into_iter().next();
@@ -117,6 +117,12 @@ fn default_cxx_runtime() -> &'static str {
     }
 }
 
+/// Whether the static library is taken where there is one: the feature `static` asks for that.
+fn prefers_static() -> bool {
+    wants_static() || cfg!(feature = "static")
+}
+
+/// Whether no other will do.
 fn wants_static() -> bool {
     variable("BELTRAMI_STATIC").is_some_and(|value| value != "0")
 }

@@ -461,6 +461,34 @@ extern "C" {
         value: f64,
     ) -> beltrami_status;
 }
+/// One job of a loop of the library.
+pub type beltrami_job = ::core::option::Option<
+    unsafe extern "C" fn(data: *mut ::core::ffi::c_void, index: i32),
+>;
+/** A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
+ all calls have returned. They may come from any threads, several at a time or one after the
+ other, and from the thread of the loop itself; a thread wants a stack of 512 KiB. Neither the
+ loop nor the threads may leave a job by an exception.*/
+pub type beltrami_parallel_for = ::core::option::Option<
+    unsafe extern "C" fn(
+        user: *mut ::core::ffi::c_void,
+        count: i32,
+        job: beltrami_job,
+        data: *mut ::core::ffi::c_void,
+    ),
+>;
+extern "C" {
+    /** Lends the threads of the host to later calls on this context: loops go to `parallel_for`, and the
+ library starts no threads of its own. It is called on the thread of the call alone, never from a
+ job, thousands of times in a long run, with `count` of at most the option threads. The results
+ have the same bits. NULL takes them back. Errors: INVALID_ARGUMENT (context is NULL),
+ INVALID_STATE (during a run).*/
+    pub fn beltrami_set_parallel_for(
+        context: *mut beltrami_context,
+        parallel_for: beltrami_parallel_for,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
 extern "C" {
     /** Writes the value that option `key` has: its default, what it was set to, or what the option
  preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
@@ -476,8 +504,10 @@ pub const BELTRAMI_F32: _bindgen_ty_17 = 0;
 pub const BELTRAMI_F64: _bindgen_ty_17 = 1;
 pub const BELTRAMI_U32: _bindgen_ty_17 = 2;
 pub const BELTRAMI_U64: _bindgen_ty_17 = 3;
-/// of pixels alone, as is the next
+/// of pixels alone
 pub const BELTRAMI_U8: _bindgen_ty_17 = 4;
+/** of pixels, and of integers wherever U32 may stand: those that are written are
+ below 65,535 then, or the call fails with INVALID_ARGUMENT*/
 pub const BELTRAMI_U16: _bindgen_ty_17 = 5;
 /// Element types of buffers.
 pub type _bindgen_ty_17 = ::core::ffi::c_int;
@@ -1181,6 +1211,21 @@ extern "C" {
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** The same for several surfaces at once: their charts share pages, at one scale, and one verdict.
+ Vertices, faces, corners and triangles count through all of them, one surface after another, in
+ results and in errors; so do UV vertices, of which those of a surface are consecutive, too.
+ Vertices of two surfaces are never welded. What is left out of some has no effect on those:
+ densities of 1, no labels, no paint. `cancel` of the first counts. Errors: as above, and
+ INVALID_ARGUMENT for NULL, EMPTY for no surfaces at all.*/
+    pub fn beltrami_unwrap_surfaces(
+        context: *mut beltrami_context,
+        surfaces: *const *const beltrami_surface,
+        surface_count: u64,
         progress: beltrami_progress,
         user: *mut ::core::ffi::c_void,
     ) -> beltrami_status;

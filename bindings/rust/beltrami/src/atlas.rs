@@ -95,7 +95,7 @@ impl<'a> Atlas<'a> {
     /// [`Pack::None`](crate::Pack::None), and with pins, in the surface's unit of length, or with the
     /// option `unit_square` in the unit square. Single precision is rounded to nearest.
     pub fn uvs<T: Uv>(&self) -> Vec<T> {
-        let mut uvs = vec![T::default(); count(self.raw().uv_vertices)];
+        let mut uvs = vec![T::origin(); count(self.raw().uv_vertices)];
         self.fill(T::room(&mut uvs), sys::beltrami_get_uv_vertices);
         uvs
     }
@@ -114,7 +114,7 @@ impl<'a> Atlas<'a> {
 
     /// One (u, v) for every corner, face after face.
     pub fn corner_uvs<T: Uv>(&self) -> Vec<T> {
-        let mut uvs = vec![T::default(); count(self.raw().corners)];
+        let mut uvs = vec![T::origin(); count(self.raw().corners)];
         self.fill(T::room(&mut uvs), sys::beltrami_get_corner_uvs);
         uvs
     }

@@ -1,16 +1,21 @@
 //! The library's context: it goes with its owner, and tells why a call failed.
 
 use std::ffi::CStr;
+use std::panic::resume_unwind;
 use std::ptr::{self, NonNull};
 
 use beltrami_sys as sys;
 
 use crate::error::{Element, Error};
+use crate::host_loop::{self, HostLoop};
 use crate::options::Value;
 
 /// A live context, which one thread uses at a time: it is Send, and not Sync.
 #[derive(Debug)]
-pub(crate) struct Context(NonNull<sys::beltrami_context>);
+pub(crate) struct Context {
+    raw: NonNull<sys::beltrami_context>,
+    host: Option<Box<HostLoop>>,
+}
 
 // SAFETY: a context belongs to one thread at a time, whichever, and has no thread-local state.
 unsafe impl Send for Context {}
@@ -28,15 +33,36 @@ impl Context {
         let mut context = ptr::null_mut();
         // SAFETY: `context` is valid for a write.
         let status = unsafe { sys::beltrami_create(&mut context) };
-        NonNull::new(context).map(Context).ok_or_else(|| Error::from_status(status, None))
+        NonNull::new(context)
+            .map(|raw| Context { raw, host: None })
+            .ok_or_else(|| Error::from_status(status, None))
     }
 
     pub(crate) fn handle(&self) -> NonNull<sys::beltrami_context> {
-        self.0
+        self.raw
     }
 
     pub(crate) fn raw(&self) -> *mut sys::beltrami_context {
-        self.0.as_ptr()
+        self.raw.as_ptr()
+    }
+
+    /// Has loops run by `closure`.
+    pub(crate) fn run_loops_by(
+        &mut self,
+        closure: impl Fn(usize, &(dyn Fn(usize) + Sync)) + Send + Sync + 'static,
+    ) {
+        let host = Box::new(HostLoop::new(closure, self.raw));
+        let user = ptr::from_ref::<HostLoop>(&host).cast_mut().cast();
+        // SAFETY: the context is alive, and the loop lives as long: it is dropped after the context,
+        // or after another one has taken its place here.
+        let status =
+            unsafe { sys::beltrami_set_parallel_for(self.raw(), Some(host_loop::call), user) };
+        debug_assert_eq!(status, sys::BELTRAMI_OK);
+        self.host = Some(host);
+    }
+
+    pub(crate) fn host_has_panicked(&self) -> bool {
+        self.host.as_ref().is_some_and(|host| host.has_panicked())
     }
 
     /// Sets options by key. Fails with `InvalidArgument` at the first that is out of range.
@@ -53,8 +79,11 @@ impl Context {
         Ok(())
     }
 
-    /// Turns a negative status of the last call into its failure.
+    /// Turns a negative status of the last call into its failure. Goes on with the panic of a loop.
     pub(crate) fn check(&self, status: sys::beltrami_status) -> Result<(), Error> {
+        if let Some(payload) = self.host.as_ref().and_then(|host| host.take_panic()) {
+            resume_unwind(payload);
+        }
         if status >= 0 {
             return Ok(());
         }

@@ -98,6 +98,27 @@ impl Flattener {
         result
     }
 
+    /// Runs loops on the caller's threads in place of the library's own: `closure` is given a count,
+    /// at most that of the option `threads`, and a job to call once with each index below it, on any
+    /// threads, before it returns. The result has the same bits. With rayon:
+    ///
+    /// ```
+    /// # use beltrami::{Flattener, Options};
+    /// use rayon::prelude::*;
+    ///
+    /// let mut flattener = Flattener::with_options(&Options::new().threads(4))?;
+    /// flattener.run_loops_by(|count, job| (0..count).into_par_iter().for_each(job));
+    /// # Ok::<(), beltrami::Error>(())
+    /// ```
+    ///
+    /// A panic in `closure` ends the call that it runs for, and goes on in the caller.
+    pub fn run_loops_by(
+        &mut self,
+        closure: impl Fn(usize, &(dyn Fn(usize) + Sync)) + Send + Sync + 'static,
+    ) {
+        self.context.run_loops_by(closure);
+    }
+
     /// Copies and validates a mesh for [`run`](Self::run). A valid one drops the results of the old
     /// one; an invalid one leaves the flattener with its old mesh and results.
     ///
@@ -153,6 +174,7 @@ impl Flattener {
         let late_request = self.maybe_late_request
             && status == sys::BELTRAMI_E_CANCELLED
             && !trampoline.broke
+            && !self.context.host_has_panicked()
             && !control.token.is_cancelled();
         if late_request {
             status = self.run_raw(&mut trampoline); // the request is used up

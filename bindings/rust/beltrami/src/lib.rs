@@ -9,10 +9,11 @@ mod context;
 mod control;
 mod error;
 mod flattener;
-#[cfg(feature = "glam")]
-mod glam;
+mod host_loop;
 mod library;
 mod mesh;
+#[cfg(feature = "mint")]
+mod mint;
 #[cfg(feature = "ndarray")]
 mod ndarray;
 mod options;

@@ -10,7 +10,7 @@ use crate::view::{Buffer, BufferMut, Index, Real, View, ViewMut};
 /// One position (x, y, z) per vertex, borrowed, in any unit of length.
 ///
 /// Converts from `&[[f32; 3]]`, `&[[f64; 3]]`, references to arrays and `Vec`s of these, and from
-/// [`View`]s of either; with the features `glam` and `ndarray` from their types.
+/// [`View`]s of either; with the features `mint` and `ndarray` from their types.
 #[derive(Clone, Copy)]
 pub struct Positions<'a>(pub(crate) Buffer<'a>);
 
@@ -24,7 +24,7 @@ pub struct Faces<'a>(pub(crate) Buffer<'a>);
 /// One (u, v) per vertex, borrowed.
 ///
 /// Converts from `&[[f32; 2]]`, `&[[f64; 2]]`, references to arrays and `Vec`s of these, and from
-/// [`View`]s of either; with the features `glam` and `ndarray` from their types.
+/// [`View`]s of either; with the features `mint` and `ndarray` from their types.
 #[derive(Clone, Copy)]
 pub struct Uvs<'a>(pub(crate) Buffer<'a>);
 
@@ -120,8 +120,11 @@ impl std::fmt::Debug for UvsMut<'_> {
     }
 }
 
-/// A (u, v) of its own: `[f32; 2]`, `[f64; 2]`, with the feature `glam` its `Vec2` and `DVec2`.
-pub trait Uv: Copy + Default + private::Sealed {
+/// A (u, v) of its own: `[f32; 2]`, `[f64; 2]`, with the feature `mint` its vectors and points of two.
+pub trait Uv: Copy + private::Sealed {
+    /// (0, 0).
+    fn origin() -> Self;
+
     /// Room for UVs of this type.
     fn room(uvs: &mut [Self]) -> UvsMut<'_>;
 }
@@ -130,6 +133,10 @@ impl<T: Real> Uv for [T; 2]
 where
     [T; 2]: Default,
 {
+    fn origin() -> Self {
+        Self::default()
+    }
+
     fn room(uvs: &mut [Self]) -> UvsMut<'_> {
         uvs.into()
     }

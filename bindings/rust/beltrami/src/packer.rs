@@ -214,7 +214,7 @@ impl Packer {
     ///
     /// Where there is no such mesh.
     pub fn uvs<T: Uv>(&self, mesh: usize) -> Vec<T> {
-        let mut uvs = vec![T::default(); self.sizes[mesh].0];
+        let mut uvs = vec![T::origin(); self.sizes[mesh].0];
         let room = T::room(&mut uvs).0;
         // SAFETY: there is room for a UV of this type at every stride.
         let status = unsafe {

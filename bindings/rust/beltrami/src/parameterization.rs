@@ -260,7 +260,7 @@ impl<'a> Parameterization<'a> {
     /// for the map to stay injective: [`float32_certificate`](Self::float32_certificate) tells
     /// whether it did, and [`ensure_float32_injective`](Self::ensure_float32_injective) makes sure.
     pub fn uvs<T: Uv>(&self) -> Vec<T> {
-        let mut uvs = vec![T::default(); count(self.result().vertices)];
+        let mut uvs = vec![T::origin(); count(self.result().vertices)];
         self.fill_uvs(T::room(&mut uvs));
         uvs
     }

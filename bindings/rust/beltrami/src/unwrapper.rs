@@ -106,6 +106,27 @@ impl Unwrapper {
         result
     }
 
+    /// Runs loops on the caller's threads in place of the library's own: `closure` is given a count,
+    /// at most that of the option `threads`, and a job to call once with each index below it, on any
+    /// threads, before it returns. The result has the same bits. With rayon:
+    ///
+    /// ```
+    /// # use beltrami::{UnwrapOptions, Unwrapper};
+    /// use rayon::prelude::*;
+    ///
+    /// let mut unwrapper = Unwrapper::with_options(&UnwrapOptions::new().threads(4))?;
+    /// unwrapper.run_loops_by(|count, job| (0..count).into_par_iter().for_each(job));
+    /// # Ok::<(), beltrami::Error>(())
+    /// ```
+    ///
+    /// A panic in `closure` ends the call that it runs for, and goes on in the caller.
+    pub fn run_loops_by(
+        &mut self,
+        closure: impl Fn(usize, &(dyn Fn(usize) + Sync)) + Send + Sync + 'static,
+    ) {
+        self.context.run_loops_by(closure);
+    }
+
     /// Unwraps a surface. On failure the atlas of the last one stays.
     ///
     /// # Errors

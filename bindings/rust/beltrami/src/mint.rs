@@ -1,6 +1,6 @@
-//! Vectors of glam as positions and UVs: borrowed as they are, and handed out.
+//! Vectors and points of mint as positions and UVs: borrowed as they are, and handed out.
 
-use glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+use mint::{Point2, Point3, Vector2, Vector3};
 
 use crate::mesh::{private, Positions, Uv, Uvs, UvsMut};
 use crate::view::{View, ViewMut};
@@ -28,11 +28,14 @@ macro_rules! input {
     )* };
 }
 input! {
-    Vec3 => Positions;
-    Vec3A => Positions;
-    DVec3 => Positions;
-    Vec2 => Uvs;
-    DVec2 => Uvs;
+    Vector3<f32> => Positions;
+    Vector3<f64> => Positions;
+    Point3<f32> => Positions;
+    Point3<f64> => Positions;
+    Vector2<f32> => Uvs;
+    Vector2<f64> => Uvs;
+    Point2<f32> => Uvs;
+    Point2<f64> => Uvs;
 }
 
 macro_rules! output {
@@ -49,10 +52,14 @@ macro_rules! output {
         }
         impl private::Sealed for $vector {}
         impl Uv for $vector {
+            fn origin() -> Self {
+                [0.0, 0.0].into()
+            }
+
             fn room(uvs: &mut [Self]) -> UvsMut<'_> {
                 uvs.into()
             }
         }
     )* };
 }
-output!(Vec2, DVec2);
+output!(Vector2<f32>, Vector2<f64>, Point2<f32>, Point2<f64>);
