@@ -183,6 +183,7 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.keep_disk = options.weld == BELTRAMI_WELD_AUTO && options.weld_distance == 0;
   atlas.fill_limit = options.fill_holes;
   atlas.stack = stack_of(options.stack);
+  atlas.rectify_grids = options.rectify == BELTRAMI_RECTIFY_GRIDS;
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
   atlas.effort = search_effort(effort_of(options.effort));

@@ -38,6 +38,7 @@ struct Options {
   double fill_holes = 0.5;
   bool share_copies = false;
   std::int32_t stack = BELTRAMI_STACK_NONE;
+  std::int32_t rectify = BELTRAMI_RECTIFY_NONE;
   std::int32_t preset = BELTRAMI_PRESET_NONE;
   SeamTarget target = {};
   SeamWeights weights = {};

@@ -8,6 +8,7 @@
 #include "abi/hints.h"
 #include "abi/pins.h"
 #include "abi/reports.h"
+#include "abi/straight.h"
 #include "abi/surface.h"
 #include "atlas/pages.h"
 #include "atlas/seams.h"
@@ -108,6 +109,7 @@ Unwrapped unwrap_surface(const beltrami_surface& header, const AtlasOptions& opt
   AtlasInput input = atlas_input(header, surface, islands, reading);
   input.cuts.hard_angle = radians(hard_angle);
   input.pins = read_pins(header, surface, options, reading);
+  read_straight(header, surface, reading, input);
   input.hints = read_hints(header, surface, options, reading);
   AtlasOptions with_polygons = options;
   with_polygons.admit.polygons = surface.face_of_triangle;

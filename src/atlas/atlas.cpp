@@ -17,6 +17,7 @@
 #include "atlas/place.h"
 #include "atlas/rescue.h"
 #include "atlas/split_necks.h"
+#include "atlas/straighten_charts.h"
 #include "base/interrupt.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
@@ -383,6 +384,11 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   });
   MappedSurface mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
+  if (asks_for_straight(input, options)) {
+    stage("straighten", kMapped, kMapped, [&](const Work& inner) {
+      straighten_charts(input, admitted, options, inner, mapped);
+    });
+  }
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
     separate_pieces(admitted, most_charts(options, admitted), mapped.charts, mapped.maps,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"
+#include "chart/hold.h"
 #include "chart/options.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
@@ -28,6 +30,21 @@
 
 namespace beltrami {
 
+/// An edge of the input, by its vertices, that is to be straight with those that it meets: kU with
+/// one u, kV with one v, kLine on any line.
+struct StraightEdge {
+  Index from, to;
+  PinKind kind;
+};
+
+/// That the chart of a face is to be a rectangle.
+struct ChartRectangle {
+  Index face;       ///< of the input
+  Index of_caller;  ///< that face, as the caller counts
+  std::optional<std::array<Index, 4>> corners = {};  ///< vertices of the input; none: the four that
+                                                     ///< the border of its free map has
+};
+
 /// Any triangles, and what comes with them. Lists are empty where nothing is given.
 struct AtlasInput {
   std::vector<Vec3> positions;
@@ -36,6 +53,8 @@ struct AtlasInput {
   std::vector<double> densities = {};  ///< per face: lengths in the plane per length on the surface
   InputHints hints = {};
   std::vector<Pin> pins = {};  ///< their places single-precision numbers with `float32`
+  std::vector<StraightEdge> straight = {};
+  std::vector<ChartRectangle> rectangles = {};
 };
 
 /// Which components of one shape lie on each other.
@@ -59,6 +78,7 @@ struct AtlasOptions {
   /// Components that a rigid motion, or one and a reflection, carries onto one before them get its
   /// UVs. Not with pins, nor with what the target asks of the whole.
   Stack stack = Stack::kNone;
+  bool rectify_grids = false;  ///< charts that are grids of quads are laid out as such
   /// Pages to pack the charts onto, its texels per unit of the surface; none, and where there are
   /// pins: they lie side by side in that unit.
   std::optional<PackOptions> pack = {};
@@ -139,7 +159,8 @@ struct Atlas {
 /// single precision would fold is delivered in such numbers at once, mended. The same bits at any
 /// number of threads; powers of two of the input's unit scale the UVs alone. A chart that fails is
 /// named in its info; the others are not touched. UV vertices with pins are delivered at their very
-/// numbers; charts with pins stay where these put them, above them the others. Throws what admit
+/// numbers; charts with pins stay where these put them, above them the others. Charts with straight
+/// borders are turned by quarters alone. Throws what admit
 /// does, Error PINS with the corner of the first pin that no map of its chart meets together with
 /// those before it, proven or after all attempts; OUT_OF_MEMORY where the charts are estimated to
 /// need more than the limit of the work, Cancelled, or std::bad_alloc.

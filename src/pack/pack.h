@@ -31,6 +31,7 @@ struct PackChart {
   std::vector<Triangle> faces;         ///< may be folded or overlap: what they cover counts
   double scale = 1;                    ///< its density to that of the others, > 0
   std::optional<Placement> kept = {};  ///< where it stays
+  bool aligned = false;                ///< turned by quarters alone, and from what it is
 };
 
 struct PackOptions {
