@@ -44,11 +44,10 @@ struct Place {
 
 /// A number, or nothing where a - stands for it.
 std::optional<double> number_or_dash(TextCursor& cursor, const char* what) {
-  const auto number = cursor.number_if_any();
-  if (number) return number;
+  cursor.skip_blanks();
   TextCursor ahead = cursor;
-  if (ahead.word() != "-") return cursor.number(what);  // which says what is wrong
-  cursor = ahead;
+  if (ahead.word() != "-") return cursor.number(what);
+  cursor.word();
   return std::nullopt;
 }
 

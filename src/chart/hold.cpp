@@ -125,12 +125,13 @@ double size_of_map(const std::vector<Vec2>& uvs) {
 class WayToPins {
  public:
   WayToPins(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-            const ChartOptions& options, const Work& work)
+            const ChartOptions& options, bool strict, const Work& work)
       : mesh_(mesh),
         rest_(rest),
         options_(options),
         work_(work),
-        contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)) {}
+        contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)),
+        strict_(strict) {}
 
   void set_pins(const Similarity& frame, Pins pins) {
     held_.assign(mesh_.positions.size(), false);
@@ -246,6 +247,7 @@ class WayToPins {
   std::vector<bool> fixed_;
   std::vector<Vec2> slides_;  // per vertex as NewtonOptions has it
   bool any_slides_ = false;
+  const bool strict_;     // pins may not have the boundary touch itself
   Index drifts_ = kNone;  // the vertex that stays, where the map could drift along its line
   std::vector<Index> vertices_;
   std::vector<Vec2> places_;
@@ -311,7 +313,8 @@ WayToPins::End WayToPins::walk(bool simple, std::vector<Vec2>& uvs) const {
       for (std::size_t v = 0; v < uvs.size(); ++v) trial[v] = uvs[v] + length * direction[v];
       if (length == 1) put_in_place(trial);
       if (!positive(trial)) return false;
-      return !simple || (length == 1 ? is_sound(trial) : contact_.is_simple(trial));
+      const bool may_touch = length == 1 && !strict_;
+      return !simple || (may_touch ? is_sound(trial) : contact_.is_simple(trial));
     };
     const double singular = first_singular_step(mesh_.faces, uvs, direction, work_);
     double reach = std::min(singular, 1 / kShareOfWay);
@@ -347,7 +350,7 @@ bool WayToPins::go(std::vector<Vec2>& uvs) const {
   std::vector<Vec2> trial = uvs;
   End end = End::kTouched;
   if (keeps_simple(trial)) end = walk(true, trial);
-  if (end == End::kTouched) {
+  if (end == End::kTouched && !strict_) {
     trial = uvs;
     end = walk(false, trial);
   }
@@ -355,6 +358,7 @@ bool WayToPins::go(std::vector<Vec2>& uvs) const {
     uvs.swap(trial);
     return true;
   }
+  if (strict_) return false;
   // From where it got stuck, and from the start.
   return untangle_all(std::move(trial), uvs) || untangle_all(uvs, uvs);
 }
@@ -408,7 +412,7 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   if (pins.size() > 2 && !non_positive_faces(mesh.faces, start, work).empty()) {
     start = start_map(mesh, rest, options, work);
   }
-  WayToPins way(mesh, rest, options, work);
+  WayToPins way(mesh, rest, options, false, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
   // One pin is always met.
   std::size_t met = 1, failed = pins.size();
@@ -425,7 +429,7 @@ HeldMap hold_from(const DiskMesh& mesh, std::vector<Vec2> start,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work) {
   const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
-  WayToPins way(mesh, rest, options, work);
+  WayToPins way(mesh, rest, options, true, work);
   way.set_pins({}, pins);
   HeldMap map;
   if (!way.fits(start) && !way.go(start)) {

@@ -49,9 +49,9 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work);
 
-/// From a map that lies where it is to be, at its own scale, with positive faces: brings the pins
-/// into place as hold_pins does, and minimises the energy with them held, also where they were met.
-/// `failed` is 0 where they could not be met together.
+/// From an injective map that lies where it is to be, at its own scale: brings the pins into place
+/// by steps that keep it so, and minimises the energy with them held, also where they were met.
+/// `failed` is 0 where the steps get stuck.
 HeldMap hold_from(const DiskMesh& mesh, std::vector<Vec2> start,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work);

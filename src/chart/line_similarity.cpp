@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "base/portable_math.h"
 
@@ -15,9 +17,15 @@ namespace {
 constexpr int kTurns = 72, kRefinements = 30;
 /// Places that differ by less than this share of the points say nothing of the scale.
 constexpr double kNoSpread = 1e-6;
+/// What the square of the scale's logarithm counts, beside the share of the points' spread that is
+/// left between them and their lines: of turns that fit alike the one that leaves the scale wins.
+constexpr double kScaleCost = 1e-3;
+/// Where more than this share of the spread is left, the places say nothing of the scale, either.
+constexpr double kNoFit = 0.5;
 
 struct Fit {
   double error = std::numeric_limits<double>::infinity();
+  double left = 1;  ///< share of the spread
   double inverse_scale = 1;
   Vec2 shift = Vec2::Zero();  ///< of the turned map, before it is scaled
 };
@@ -42,7 +50,14 @@ Fit fit_at(const std::vector<LineFit>& fits, Complex turn, bool scaled) {
   Fit best;
   best.error = (rows * x - right).squaredNorm();
   best.shift = {x[0], x[1]};
-  if (scaled) best.inverse_scale = x[2];
+  if (!scaled) return best;
+  const Eigen::VectorXd apart =
+      right - rows.leftCols(2) * rows.leftCols(2).completeOrthogonalDecomposition().solve(right);
+  best.inverse_scale = x[2];
+  if (!(x[2] > 0 && apart.squaredNorm() > 0)) return {};
+  best.left = best.error / apart.squaredNorm();
+  const double times = portable::log(x[2]);
+  best.error = best.left + kScaleCost * times * times;
   return best;
 }
 
@@ -67,19 +82,12 @@ Complex turn_of(double angle) {
   return {portable::cos(angle), portable::sin(angle)};
 }
 
-}  // namespace
-
-LineSimilarity fit_to_lines(const std::vector<LineFit>& fits) {
-  const bool scaled = tells_scale(fits);
-  const auto at = [&](double angle) {
-    Fit fit = fit_at(fits, turn_of(angle), scaled);
-    if (!(fit.inverse_scale > 0)) fit.error = std::numeric_limits<double>::infinity();
-    return fit;
-  };
+/// The best turn, and its angle.
+std::pair<Fit, double> best_turn(const std::vector<LineFit>& fits, bool scaled) {
   double step = 2 * std::numbers::pi / kTurns, angle = 0;
-  Fit best = at(0);
+  Fit best = fit_at(fits, 1, scaled);
   const auto consider = [&](double other) {
-    const Fit fit = at(other);
+    const Fit fit = fit_at(fits, turn_of(other), scaled);
     if (!(fit.error < best.error)) return false;
     best = fit;
     angle = other;
@@ -90,10 +98,14 @@ LineSimilarity fit_to_lines(const std::vector<LineFit>& fits) {
     const double from = angle;
     if (!consider(from + step) && !consider(from - step)) step /= 2;
   }
-  if (!std::isfinite(best.error)) {  // mirrored places fit none
-    best = fit_at(fits, 1, false);
-    angle = 0;
-  }
+  return {best, angle};
+}
+
+}  // namespace
+
+LineSimilarity fit_to_lines(const std::vector<LineFit>& fits) {
+  auto [best, angle] = best_turn(fits, tells_scale(fits));
+  if (!(best.left <= kNoFit)) std::tie(best, angle) = best_turn(fits, false);
   const double scale = 1 / best.inverse_scale;
   return {scale * turn_of(angle), scale * best.shift};
 }

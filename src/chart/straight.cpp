@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 
 #include "base/portable_math.h"
@@ -59,6 +60,7 @@ struct Line {
   Vec2 place, along;
 
   Vec2 normal() const { return HeldVertex{0, place, kind, along}.normal(); }
+  Vec2 direction() const { return {normal().y(), -normal().x()}; }
 };
 
 /// The line of a path: through its middle, by its lengths, and of kLine along its longer axis.
@@ -124,6 +126,7 @@ class Rails {
 
   /// Whether the line crosses those that its vertices have been put on.
   bool add(const StraightPath& path, const Line& line) {
+    lines_.push_back({path, line});
     const std::vector<bool> released = released_of(mesh_, path);
     for (std::size_t i = 0; i < path.vertices.size(); ++i) {
       const Index v = path.vertices[i];
@@ -146,14 +149,51 @@ class Rails {
   }
 
   const std::vector<HeldVertex>& pins() const { return pins_; }
+  /// The same as points: along each line, around its middle, in the order and at the distances that
+  /// the vertices of its path have along it in a map.
+  std::vector<HeldVertex> points_in_order(const std::vector<Vec2>& uvs) const;
+
   Index released() const { return released_; }
 
  private:
   const DiskMesh& mesh_;
   std::vector<Index> pin_of_;  // per vertex
   std::vector<HeldVertex> pins_;
+  std::vector<std::pair<StraightPath, Line>> lines_;
   Index released_ = 0;
 };
+
+std::vector<HeldVertex> Rails::points_in_order(const std::vector<Vec2>& uvs) const {
+  std::vector<HeldVertex> points = pins_;
+  for (const auto& [path, line] : lines_) {
+    std::vector<double> along{0};
+    for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+      along.push_back(along.back() + (uvs[path.vertices[i]] - uvs[path.vertices[i - 1]]).norm());
+    }
+    Vec2 direction = line.direction();
+    if (direction.dot(uvs[path.vertices.back()] - uvs[path.vertices.front()]) < 0) {
+      direction = -direction;
+    }
+    // Where other lines cross, vertices have their places already: the first and the last.
+    std::vector<std::pair<double, double>> known;
+    for (std::size_t i = 0; i < path.vertices.size(); ++i) {
+      const Index pin = pin_of_[path.vertices[i]];
+      if (pin == kNone || pins_[pin].kind != PinKind::kPoint) continue;
+      known.emplace_back(along[i], direction.dot(pins_[pin].place - line.place));
+    }
+    double slope = 1, from = 0.5 * along.back(), to = 0;
+    if (!known.empty()) std::tie(from, to) = known.front();
+    if (known.size() > 1 && known.back().first > from) {
+      slope = (known.back().second - to) / (known.back().first - from);
+    }
+    for (std::size_t i = 0; i < path.vertices.size(); ++i) {
+      const Index pin = pin_of_[path.vertices[i]];
+      if (pin == kNone || pins_[pin].kind == PinKind::kPoint) continue;
+      points[pin] = {path.vertices[i], line.place + (to + slope * (along[i] - from)) * direction};
+    }
+  }
+  return points;
+}
 
 /// The factors of u and v with which a map has the least symmetric Dirichlet energy: of
 /// a^2 A + C / a^2 + b^2 B + D / b^2.
@@ -235,11 +275,49 @@ std::vector<Vec2> embedded(const DiskMesh& mesh, const Sides& sides, const Vec2&
   return field.harmonic(places);
 }
 
-}  // namespace
+/// Tutte's embedding into a circle that a path of the boundary cuts off a part of, by a chord that
+/// lies on its line; a path within the boundary alone, and its released vertices, stay on the circle.
+std::vector<Vec2> embedded(const DiskMesh& mesh, const StraightPath& path, const Line& line,
+                           const Work& work) {
+  std::vector<Vec2> places = boundary_on_circle(mesh, work);
+  const std::vector<Index>& loop = mesh.boundary;
+  const std::vector<bool> released = released_of(mesh, path);
+  std::vector<bool> on_path(mesh.positions.size(), false);
+  for (std::size_t i = 0; i < released.size(); ++i) on_path[path.vertices[i]] = !released[i];
+  std::vector<Index> at(mesh.positions.size(), kNone);
+  for (std::size_t i = 0; i < loop.size(); ++i) at[loop[i]] = static_cast<Index>(i);
+  const Index first = at[path.vertices.front()], last = at[path.vertices.back()];
+  if (first != kNone && last != kNone) {
+    const Vec2 from = places[first], chord = places[last] - from;
+    // Of the circle to the line, the border running counter-clockwise.
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      if (!on_path[loop[i]]) continue;
+      const double t = (places[i] - from).dot(chord) / chord.squaredNorm();
+      places[i] = from + t * chord;
+    }
+    const Vec2 unit = chord / chord.norm(), along = line.direction();
+    // The turn that brings the chord onto the line, and the shift to its middle.
+    const Vec2 turn(unit.dot(along), unit.x() * along.y() - unit.y() * along.x());
+    const Vec2 shift = line.place - turned(turn, from + 0.5 * chord);
+    for (Vec2& w : places) w = turned(turn, w) + shift;
+  }
+  PinField field(mesh, loop, work);
+  return field.harmonic(places);
+}
 
-StraightMap straighten(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                       const std::vector<StraightPath>& paths, const ChartOptions& options,
-                       const Work& work) {
+/// The length of a path in a map.
+double length_of(const std::vector<Vec2>& uvs, const StraightPath& path) {
+  double length = 0;
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    length += (uvs[path.vertices[i]] - uvs[path.vertices[i - 1]]).norm();
+  }
+  return length;
+}
+
+/// All of some paths at once, from a map; a first one alone also from an embedding.
+StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                               const std::vector<StraightPath>& paths,
+                               const ChartOptions& options, const Work& work) {
   const Vec2 turn = turn_to_axes(uvs, paths);
   std::vector<Vec2> start;
   start.reserve(uvs.size());
@@ -248,8 +326,42 @@ StraightMap straighten(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   for (const StraightPath& path : paths) {
     if (!rails.add(path, line_of(start, path))) return {};
   }
-  HeldMap held = hold_from(mesh, std::move(start), rails.pins(), options, work);
+  HeldMap held = hold_from(mesh, start, rails.pins(), options, work.part(0, 0.3));
+  if (held.failed != kNone) {
+    // Where lines bend much, what is nearest on them is out of order.
+    const HeldMap ordered =
+        hold_from(mesh, start, rails.points_in_order(start), options, work.part(0.3, 0.6));
+    if (ordered.failed == kNone) {
+      held = hold_from(mesh, ordered.uvs, rails.pins(), options, work.part(0.6, 0.8));
+    }
+  }
+  if (held.failed != kNone && paths.size() == 1) {
+    const Line line = line_of(start, paths.front());
+    held = hold_from(mesh, embedded(mesh, paths.front(), line, work.aside()), rails.pins(), options,
+                     work.part(0.8, 1));
+  }
+  if (held.failed != kNone) return {};
   return {std::move(held.uvs), held.converged, rails.released()};
+}
+
+}  // namespace
+
+StraightMap straighten(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
+                       const std::vector<StraightPath>& paths, const ChartOptions& options,
+                       const Work& work) {
+  StraightMap map = straighten_at_once(mesh, uvs, paths, options, work.part(0, 0.5));
+  if (!map.uvs.empty() || paths.size() == 1) return map;
+  // One after the other, the longest first: it unbends what the others are of.
+  std::vector<StraightPath> sorted = paths;
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
+    return length_of(uvs, a) > length_of(uvs, b);
+  });
+  map.uvs = uvs;
+  for (std::size_t count = 1; count <= sorted.size() && !map.uvs.empty(); ++count) {
+    const std::vector<StraightPath> first(sorted.begin(), sorted.begin() + count);
+    map = straighten_at_once(mesh, map.uvs, first, options, work.part(0.5, 1));
+  }
+  return map;
 }
 
 StraightMap to_rectangle(const DiskMesh& mesh, const std::array<Index, 4>& corners,
