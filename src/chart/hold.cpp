@@ -215,10 +215,11 @@ class WayToPins {
                        [&](Index v) { return held_[v]; });
   }
 
-  /// Composite majorization alone: the start is near the minimum.
+  /// Composite majorization alone, where the start is near the minimum: not that of straight ones.
   NewtonOptions last_steps() const {
     NewtonOptions newton = newton_options(options_);
     if (any_slides_) newton.slides = &slides_;
+    if (strict_) return newton;
     newton.proxy_steps = 0;
     newton.tolerance = std::max(newton.tolerance, kTolerance);
     return newton;

@@ -22,6 +22,9 @@ constexpr double kBulge = 0.05;
 /// more than this share, but so often at most.
 constexpr double kSameSides = 1e-3;
 constexpr int kMostFits = 6;
+/// What edges of a path keep of their length, at the least, where they go to the nearest places of
+/// their line: the cosine of how much the path may turn away from it, 45 degrees.
+constexpr double kLeastShadow = 0.7;
 /// The sine of the angle below which lines have no crossing worth its name.
 constexpr double kParallel = 1e-3;
 /// The length of border on each side of a vertex that its turn is measured by, of all of it; corners
@@ -149,6 +152,9 @@ class Rails {
   }
 
   const std::vector<HeldVertex>& pins() const { return pins_; }
+  /// Whether the places nearest on the lines are in order, and no edge of a path is shortened much
+  /// by going there: where paths bend more, ends would be rolled up.
+  bool are_near(const std::vector<Vec2>& uvs) const;
   /// The same as points: along each line, around its middle, in the order and at the distances that
   /// the vertices of its path have along it in a map.
   std::vector<HeldVertex> points_in_order(const std::vector<Vec2>& uvs) const;
@@ -162,6 +168,19 @@ class Rails {
   std::vector<std::pair<StraightPath, Line>> lines_;
   Index released_ = 0;
 };
+
+bool Rails::are_near(const std::vector<Vec2>& uvs) const {
+  for (const auto& [path, line] : lines_) {
+    Vec2 direction = line.direction();
+    const Vec2 chord = uvs[path.vertices.back()] - uvs[path.vertices.front()];
+    if (direction.dot(chord) < 0) direction = -direction;
+    for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+      const Vec2 edge = uvs[path.vertices[i]] - uvs[path.vertices[i - 1]];
+      if (direction.dot(edge) < kLeastShadow * edge.norm()) return false;
+    }
+  }
+  return true;
+}
 
 std::vector<HeldVertex> Rails::points_in_order(const std::vector<Vec2>& uvs) const {
   std::vector<HeldVertex> points = pins_;
@@ -314,9 +333,10 @@ double length_of(const std::vector<Vec2>& uvs, const StraightPath& path) {
   return length;
 }
 
-/// All of some paths at once, from a map; a first one alone also from an embedding.
+/// All of some paths at once, from a map in which the first ones are straight. Nothing where several
+/// others are far from it: one is to be unbent first. A first one alone also from an embedding.
 StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                               const std::vector<StraightPath>& paths,
+                               const std::vector<StraightPath>& paths, std::size_t paths_straight,
                                const ChartOptions& options, const Work& work) {
   const Vec2 turn = turn_to_axes(uvs, paths);
   std::vector<Vec2> start;
@@ -326,9 +346,14 @@ StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uv
   for (const StraightPath& path : paths) {
     if (!rails.add(path, line_of(start, path))) return {};
   }
-  HeldMap held = hold_from(mesh, start, rails.pins(), options, work.part(0, 0.3));
+  HeldMap held;
+  held.failed = 0;
+  const bool near = rails.are_near(start);
+  if (!near && paths.size() > paths_straight + 1) return {};
+  if (near) {
+    held = hold_from(mesh, start, rails.pins(), options, work.part(0, 0.3));
+  }
   if (held.failed != kNone) {
-    // Where lines bend much, what is nearest on them is out of order.
     const HeldMap ordered =
         hold_from(mesh, start, rails.points_in_order(start), options, work.part(0.3, 0.6));
     if (ordered.failed == kNone) {
@@ -349,7 +374,7 @@ StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uv
 StraightMap straighten(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                        const std::vector<StraightPath>& paths, const ChartOptions& options,
                        const Work& work) {
-  StraightMap map = straighten_at_once(mesh, uvs, paths, options, work.part(0, 0.5));
+  StraightMap map = straighten_at_once(mesh, uvs, paths, 0, options, work.part(0, 0.5));
   if (!map.uvs.empty() || paths.size() == 1) return map;
   // One after the other, the longest first: it unbends what the others are of.
   std::vector<StraightPath> sorted = paths;
@@ -359,7 +384,7 @@ StraightMap straighten(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   map.uvs = uvs;
   for (std::size_t count = 1; count <= sorted.size() && !map.uvs.empty(); ++count) {
     const std::vector<StraightPath> first(sorted.begin(), sorted.begin() + count);
-    map = straighten_at_once(mesh, map.uvs, first, options, work.part(0.5, 1));
+    map = straighten_at_once(mesh, map.uvs, first, count - 1, options, work.part(0.5, 1));
   }
   return map;
 }
