@@ -210,7 +210,8 @@ enum {
   BELTRAMI_OPTION_FLAT_SEAMS = 41,     /* float: how much longer, where parts then unfold flat; 0 */
   BELTRAMI_OPTION_STACK = 42,          /* choice: BELTRAMI_STACK_ */
   /* Of the maps of charts, for beltrami_unwrap. */
-  BELTRAMI_OPTION_RECTIFY = 43 /* choice: BELTRAMI_RECTIFY_ */
+  BELTRAMI_OPTION_RECTIFY = 43,    /* choice: BELTRAMI_RECTIFY_ */
+  BELTRAMI_OPTION_SNAP_TEXELS = 44 /* int: 1 puts straight borders onto the edges of texels */
 };
 
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */

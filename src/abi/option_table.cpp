@@ -583,6 +583,7 @@ const OptionEntry kOptions[] = {
         .calls = BELTRAMI_CALL_UNWRAP,
     },
     kRectify,
+    kSnapTexels,
 };
 
 }  // namespace

@@ -50,6 +50,7 @@ struct Options {
   std::int32_t pack_turns = BELTRAMI_PACK_TURNS_ANY;
   int pack_block = 1;
   double pack_splits = 0;
+  bool snap_texels = false;
   std::int32_t effort = BELTRAMI_EFFORT_NORMAL;
 };
 

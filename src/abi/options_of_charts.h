@@ -27,4 +27,19 @@ inline constexpr OptionEntry kRectify = {
     .calls = BELTRAMI_CALL_UNWRAP,
 };
 
+inline constexpr OptionEntry kSnapTexels = {
+    .key = BELTRAMI_OPTION_SNAP_TEXELS,
+    .type = BELTRAMI_TYPE_INT,
+    .name = "snap-texels",
+    .summary = "1 turns each chart to the most of its border that is straight, then by quarters "
+               "alone, and moves its straight borders onto the edges of texels, as lightmaps and "
+               "pixel art want it: nothing by more than half a texel. Charts then keep a texel more "
+               "room.",
+    .minimum = 0,
+    .maximum = 1,
+    .get = get<&Options::snap_texels>,
+    .set = set<&Options::snap_texels>,
+    .calls = BELTRAMI_CALL_UNWRAP,
+};
+
 }  // namespace beltrami

@@ -16,6 +16,7 @@
 #include "atlas/pins.h"
 #include "atlas/place.h"
 #include "atlas/rescue.h"
+#include "atlas/snap.h"
 #include "atlas/split_necks.h"
 #include "atlas/straighten_charts.h"
 #include "base/interrupt.h"
@@ -313,6 +314,7 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
   pack.effort *= options.effort.packing;
   // The frame of a map is nobody's choice: upright its borders are more likely to lie along texels.
   pack.upright = true;
+  if (pack.snap) align_to_borders(charts.charts, charts.maps);
   if (pack.texels_per_unit > 0) {
     // 0 would leave the scale open.
     const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
