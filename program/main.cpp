@@ -245,11 +245,12 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option("--straighten", arguments.straighten,
-                   "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
-                   "a face as a rectangle (and its corners, four vertices, where its border has no\n"
-                   "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
-                   "one u, at one v or on a line with those that it meets; all count from 0")
+      ->add_option(
+          "--straighten", arguments.straighten,
+          "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
+          "a face as a rectangle (and its corners, four vertices, where its border has no\n"
+          "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
+          "one u, at one v or on a line with those that it meets; all count from 0")
       ->group("Charts")
       ->type_name("FILE");
   command

@@ -672,10 +672,11 @@ typedef struct beltrami_surface {
                               * seam costs the factor of the option material-seams */
 
   /* Pins that slide. Of kind U and V the other number of pin_uvs is read, and says nothing. */
-  beltrami_buffer pin_kinds;      /* optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
-                                   * all are POINT */
-  beltrami_buffer pin_directions; /* of kind LINE, which goes through the pin's UV; optional without
-                                   * any: pin_count items of 2, F32 or F64, that kind's not both 0 */
+  beltrami_buffer pin_kinds; /* optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
+                              * all are POINT */
+  beltrami_buffer
+      pin_directions; /* of kind LINE, which goes through the pin's UV; optional without
+                       * any: pin_count items of 2, F32 or F64, that kind's not both 0 */
 
   /* Straight borders, for beltrami_unwrap. Edges of one kind that hang together become one straight
    * line in each chart that has them: U gives all their vertices one u, V one v, LINE any line. */
@@ -686,9 +687,9 @@ typedef struct beltrami_surface {
   uint64_t straight_edge_count;
   beltrami_buffer rectangles;        /* optional: rectangle_count items of 1, U32 or U64: faces; the
                                       * chart of each becomes a rectangle along the axes */
-  beltrami_buffer rectangle_corners; /* optional: rectangle_count items of 4, U32 or U64: vertices of
-                                      * its border, in any order; four BELTRAMI_NO_ELEMENT of U64,
-                                      * or left out: the four where its border turns most */
+  beltrami_buffer rectangle_corners; /* optional: rectangle_count items of 4, U32 or U64: vertices
+                                      * of its border, in any order; four BELTRAMI_NO_ELEMENT of
+                                      * U64, or left out: the four where its border turns most */
   uint64_t rectangle_count;
 } beltrami_surface;
 
@@ -726,12 +727,12 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
  * open, a chart keeps its own.
  *
  * Charts with straight borders are turned by quarters alone, and what is straight keeps one number
- * to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A rectangle
- * without given corners that is rows and columns of quads becomes a grid. Where an edge cuts off a
- * part of a chart whose border is all on one line, that part of the border is left out of it, for
- * its faces would have no area. Where no injective map is found the call fails with PINS and the
- * face of the rectangle, or a vertex of the straight edges; edges that are none, branch or form a
- * loop, and charts with pins, are INVALID_ARGUMENT. */
+ * to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
+ * rectangle without given corners that is rows and columns of quads becomes a grid. Where an edge
+ * cuts off a part of a chart whose border is all on one line, that part of the border is left out
+ * of it, for its faces would have no area. Where no injective map is found the call fails with PINS
+ * and the face of the rectangle, or a vertex of the straight edges; edges that are none, branch or
+ * form a loop, and charts with pins, are INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);

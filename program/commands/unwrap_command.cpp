@@ -123,8 +123,7 @@ class Unwrapping {
   void require_no_numbers() const {
     for (const auto& [option, path] :
          {std::pair("--seams", arguments_.seams), std::pair("--pins", arguments_.pins),
-          std::pair("--paint", arguments_.paint),
-          std::pair("--straighten", arguments_.straighten),
+          std::pair("--paint", arguments_.paint), std::pair("--straighten", arguments_.straighten),
           std::pair("--write-seams", arguments_.written_seams)}) {
       if (path.empty()) continue;
       throw Failure(
@@ -398,8 +397,7 @@ class Unwrapping {
     const std::string& about = of_pins       ? arguments_.pins
                                : is_straight ? arguments_.straighten
                                              : arguments_.input;
-    require_ok(status, about, message.c_str(), kind,
-               beltrami_error_element(context_.get()));
+    require_ok(status, about, message.c_str(), kind, beltrami_error_element(context_.get()));
   }
 
   const UnwrapArguments& arguments_;
@@ -425,11 +423,11 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   report.printed = arguments.print_report;
   report.input_path = arguments.input;
   note_options(arguments, options, report);
-  return run_guarded(report, arguments.report,
-                     {arguments.input, arguments.output, arguments.seams, arguments.pins,
-                      arguments.paint, arguments.straighten, arguments.written_seams,
-                      arguments.picture},
-                     [&] { return Unwrapping(arguments, options, report).run(); });
+  return run_guarded(
+      report, arguments.report,
+      {arguments.input, arguments.output, arguments.seams, arguments.pins, arguments.paint,
+       arguments.straighten, arguments.written_seams, arguments.picture},
+      [&] { return Unwrapping(arguments, options, report).run(); });
 }
 
 }  // namespace beltrami::cli

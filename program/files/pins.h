@@ -19,9 +19,9 @@ struct Pins {
 };
 
 /// A line each: "c CORNER U V", or "v VERTEX U V" for all corners of a vertex; numbers count from
-/// 0, and # begins a comment. With - for U or V that number is free; "v VERTEX U V DU DV" holds it to
-/// the line through (U, V) along (DU, DV). Throws Failure with the line that says something else, or that names
-/// a corner or a vertex of no face.
+/// 0, and # begins a comment. With - for U or V that number is free; "v VERTEX U V DU DV" holds it
+/// to the line through (U, V) along (DU, DV). Throws Failure with the line that says something
+/// else, or that names a corner or a vertex of no face.
 Pins read_pins(const std::string& path, const MeshFile& file);
 
 /// A message of the library with "pin 3", where that is the item, written as "the pin of line 5";

@@ -24,8 +24,8 @@ void read_rectangle(TextCursor& cursor, const MeshFile& file, Straight& straight
   cursor.skip_blanks();
   const bool named = !cursor.at_line_end();
   for (int k = 0; k < 4; ++k) {
-    straight.rectangle_corners.push_back(
-        named ? index(cursor, "vertex", file.vertex_count()) : BELTRAMI_NO_ELEMENT);
+    straight.rectangle_corners.push_back(named ? index(cursor, "vertex", file.vertex_count())
+                                               : BELTRAMI_NO_ELEMENT);
   }
 }
 

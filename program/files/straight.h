@@ -19,9 +19,9 @@ struct Straight {
 };
 
 /// A line each: "r FACE" or "r FACE VERTEX VERTEX VERTEX VERTEX" has the chart of the face become a
-/// rectangle, with these corners; "u VERTEX VERTEX", "v VERTEX VERTEX" and "l VERTEX VERTEX" have an
-/// edge lie at one u, at one v, or on any line, with those that it meets. Numbers count from 0, and
-/// # begins a comment. Throws Failure with the line that says something else.
+/// rectangle, with these corners; "u VERTEX VERTEX", "v VERTEX VERTEX" and "l VERTEX VERTEX" have
+/// an edge lie at one u, at one v, or on any line, with those that it meets. Numbers count from 0,
+/// and # begins a comment. Throws Failure with the line that says something else.
 Straight read_straight(const std::string& path, const MeshFile& file);
 
 }  // namespace beltrami::cli

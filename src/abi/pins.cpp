@@ -64,7 +64,10 @@ std::vector<Pin> read_places(const beltrami_surface& header,
   std::vector<Pin> pins;
   pins.reserve(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    Pin pin{kNone, 0, {uvs[2 * i], uvs[2 * i + 1]}, static_cast<Index>(i),
+    Pin pin{kNone,
+            0,
+            {uvs[2 * i], uvs[2 * i + 1]},
+            static_cast<Index>(i),
             static_cast<Index>(corners[i])};
     if (!kinds.empty()) pin.kind = pin_kind_of(kinds[i], name_of(pin));
     if (pin.kind == PinKind::kLine && directions.empty()) {

@@ -23,10 +23,9 @@ void require_countable(std::uint64_t count, const char* what) {
 
 Index vertex_of(std::uint64_t vertex, const beltrami_surface& header, const std::string& what) {
   if (vertex < header.vertex_count) return static_cast<Index>(vertex);
-  throw Error(Fault::kIndexOutOfRange, what + " names vertex " + std::to_string(vertex) +
-                                           ", but there are " +
-                                           std::to_string(header.vertex_count) +
-                                           " vertices: indices count from 0");
+  throw Error(Fault::kIndexOutOfRange,
+              what + " names vertex " + std::to_string(vertex) + ", but there are " +
+                  std::to_string(header.vertex_count) + " vertices: indices count from 0");
 }
 
 std::vector<StraightEdge> read_edges(const beltrami_surface& header, const Work& work) {
@@ -69,10 +68,9 @@ std::vector<ChartRectangle> read_rectangles(const beltrami_surface& header,
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const std::string name = "rectangle " + std::to_string(i);
     if (faces[i] >= header.face_count) {
-      throw Error(Fault::kIndexOutOfRange, name + " names face " + std::to_string(faces[i]) +
-                                               ", but there are " +
-                                               std::to_string(header.face_count) +
-                                               " faces: indices count from 0");
+      throw Error(Fault::kIndexOutOfRange,
+                  name + " names face " + std::to_string(faces[i]) + ", but there are " +
+                      std::to_string(header.face_count) + " faces: indices count from 0");
     }
     ChartRectangle rectangle{triangle_of[faces[i]], static_cast<Index>(faces[i])};
     if (!corners.empty() && corners[4 * i] != BELTRAMI_NO_ELEMENT) {

@@ -387,9 +387,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   MappedSurface mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
   if (asks_for_straight(input, options)) {
-    stage("straighten", kMapped, kMapped, [&](const Work& inner) {
-      straighten_charts(input, admitted, options, inner, mapped);
-    });
+    stage("straighten", kMapped, kMapped,
+          [&](const Work& inner) { straighten_charts(input, admitted, options, inner, mapped); });
   }
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {

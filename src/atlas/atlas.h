@@ -39,8 +39,8 @@ struct StraightEdge {
 
 /// That the chart of a face is to be a rectangle.
 struct ChartRectangle {
-  Index face;       ///< of the input
-  Index of_caller;  ///< that face, as the caller counts
+  Index face;                                        ///< of the input
+  Index of_caller;                                   ///< that face, as the caller counts
   std::optional<std::array<Index, 4>> corners = {};  ///< vertices of the input; none: the four that
                                                      ///< the border of its free map has
 };

@@ -40,8 +40,9 @@ class Quads {
   const std::vector<Index>& quad_;
 };
 
-/// A half-edge from a vertex of one quad, the surface on its left; kNone where the quads do not meet
-/// as those of a grid: four at a vertex, two at one of the border, and one at just four of these.
+/// A half-edge from a vertex of one quad, the surface on its left; kNone where the quads do not
+/// meet as those of a grid: four at a vertex, two at one of the border, and one at just four of
+/// these.
 Index first_corner(const DiskMesh& mesh, const Quads& quads) {
   std::vector<int> quads_at(mesh.positions.size(), 0);
   for (Index h = 0; h < size_of(mesh.twin); ++h) {

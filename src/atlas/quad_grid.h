@@ -14,8 +14,8 @@ namespace beltrami {
 
 /// The map of a chart that is rows and columns of quads: each column has one width and each row one
 /// height, the mean length of the edges across it, and all edges run along the axes to the bit. It
-/// is injective but for rounding. Nothing where the chart is no such grid, or a row or column has no
-/// extent. `polygons`: per face of the input.
+/// is injective but for rounding. Nothing where the chart is no such grid, or a row or column has
+/// no extent. `polygons`: per face of the input.
 std::optional<std::vector<Vec2>> grid_map(const AtlasChart& part, const Admitted& admitted,
                                           std::span<const Index> polygons);
 

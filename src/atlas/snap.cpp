@@ -115,9 +115,9 @@ void move(const std::vector<Line>& lines, int k, std::vector<Vec2>& texels) {
   if (lines.empty()) return;
   const auto shift = [](const Line& line) { return std::round(line.place) - line.place; };
   for (Vec2& w : texels) {
-    const auto above = std::upper_bound(
-        lines.begin(), lines.end(), w[k],
-        [](double place, const Line& line) { return place < line.place; });
+    const auto above =
+        std::upper_bound(lines.begin(), lines.end(), w[k],
+                         [](double place, const Line& line) { return place < line.place; });
     if (above == lines.begin()) {
       w[k] += shift(lines.front());
     } else if (above == lines.end()) {
@@ -162,9 +162,9 @@ void snap_to_texels(const DiskMesh& mesh, int resolution, std::vector<Vec2>& pla
   if (!certify(mesh.faces, mesh.boundary, texels, work).injective()) {
     texels = before;
     for (int k = 0; k < 2; ++k) {
-      const auto longest = std::max_element(
-          lines[k].begin(), lines[k].end(),
-          [](const Line& a, const Line& b) { return a.length < b.length; });
+      const auto longest =
+          std::max_element(lines[k].begin(), lines[k].end(),
+                           [](const Line& a, const Line& b) { return a.length < b.length; });
       if (longest == lines[k].end()) continue;
       const double shift = std::round(longest->place) - longest->place;
       for (Vec2& w : texels) w[k] += shift;

@@ -12,8 +12,9 @@
 
 namespace beltrami {
 
-/// Turns every map so that the most of its border that is straight in two directions at right angles
-/// lies along the axes, and has it `aligned`: but for maps of which no share worth the name does.
+/// Turns every map so that the most of its border that is straight in two directions at right
+/// angles lies along the axes, and has it `aligned`: but for maps of which no share worth the name
+/// does.
 void align_to_borders(const std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
 
 /// Moves the borders of a map that lie along an axis for a texel or more onto the nearest texel

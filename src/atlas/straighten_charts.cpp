@@ -109,8 +109,8 @@ class Straightening {
       if (found_[i]) continue;
       const auto& [from, to, kind] = input_.straight[i];
       throw Error(Fault::kInvalidArgument,
-                  "straight edge " + std::to_string(i) + " joins vertices " +
-                      std::to_string(from) + " and " + std::to_string(to) +
+                  "straight edge " + std::to_string(i) + " joins vertices " + std::to_string(from) +
+                      " and " + std::to_string(to) +
                       ", which no face has side by side: leave it out",
                   vertex(from));
     }
@@ -165,8 +165,8 @@ class Straightening {
     std::map<PinKind, PathFinder> finders;
     for (Index h = 0; h < 3 * part.real_faces; ++h) {
       const Index a = mesh.origin(h), b = mesh.target(h);
-      const auto asked = asked_.find(
-          in_order(input_vertex(part, admitted_, a), input_vertex(part, admitted_, b)));
+      const auto asked =
+          asked_.find(in_order(input_vertex(part, admitted_, a), input_vertex(part, admitted_, b)));
       if (asked == asked_.end()) continue;
       for (const Index i : asked->second) found_[i] = true;
       if (mesh.edge(h) != h) continue;
@@ -204,8 +204,8 @@ class Straightening {
         at = i;
       }
       if (at == mesh.boundary.size()) {
-        refuse(rectangle, "vertex " + std::to_string(corner) +
-                              " is not on its border: name one that is");
+        refuse(rectangle,
+               "vertex " + std::to_string(corner) + " is not on its border: name one that is");
       }
       places.push_back(at);
     }
@@ -242,8 +242,7 @@ class Straightening {
     scale_by_power(exponent, start);
     StraightMap map = straighten(mesh, start, paths, options_.chart, work_);
     if (take(c, exponent, std::move(map))) return;
-    const Index input =
-        input_vertex(mapped_.charts[c], admitted_, paths.front().vertices.front());
+    const Index input = input_vertex(mapped_.charts[c], admitted_, paths.front().vertices.front());
     throw Error(Fault::kPins,
                 "the straight edges at vertex " + std::to_string(input) +
                     " cannot be straight together with the others of their chart: no way was "

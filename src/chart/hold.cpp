@@ -55,9 +55,7 @@ struct Similarity {
   Vec2 to_plane(const Vec2& z) const { return times(turn, z - from) + to; }
   Vec2 to_map(const Vec2& w) const { return times(quotient(1, turn), w - to) + from; }
   /// A direction of the plane, in the map.
-  Vec2 direction_to_map(const Vec2& w) const {
-    return times(std::conj(turn) / modulus(turn), w);
-  }
+  Vec2 direction_to_map(const Vec2& w) const { return times(std::conj(turn) / modulus(turn), w); }
 
  private:
   static Vec2 times(Complex factor, const Vec2& z) {
@@ -146,8 +144,8 @@ class WayToPins {
       vertices_.push_back(pin.vertex);
       places_.push_back(frame.to_map(pin.place));
     }
-    any_slides_ = std::any_of(vertices_.begin(), vertices_.end(),
-                              [&](Index v) { return !fixed_[v]; });
+    any_slides_ =
+        std::any_of(vertices_.begin(), vertices_.end(), [&](Index v) { return !fixed_[v]; });
     drifts_ = kNone;
     fix_what_drifts();
   }
@@ -244,7 +242,7 @@ class WayToPins {
   const ChartOptions& options_;
   const Work work_;
   const BoundaryContact contact_;
-  std::vector<bool> held_;    // per vertex, and those of them that do not slide
+  std::vector<bool> held_;  // per vertex, and those of them that do not slide
   std::vector<bool> fixed_;
   std::vector<Vec2> slides_;  // per vertex as NewtonOptions has it
   bool any_slides_ = false;

@@ -27,11 +27,11 @@ constexpr int kMostFits = 6;
 constexpr double kLeastShadow = 0.7;
 /// The sine of the angle below which lines have no crossing worth its name.
 constexpr double kParallel = 1e-3;
-/// The length of border on each side of a vertex that its turn is measured by, of all of it; corners
-/// are further apart than twice that.
+/// The length of border on each side of a vertex that its turn is measured by, of all of it;
+/// corners are further apart than twice that.
 constexpr double kWindow = 1.0 / 48;
-/// 1 minus the cosine of a turn: of the least corner (some 40 degrees), and the share of that of the
-/// fourth corner which a fifth would have, for the four to be clear.
+/// 1 minus the cosine of a turn: of the least corner (some 40 degrees), and the share of that of
+/// the fourth corner which a fifth would have, for the four to be clear.
 constexpr double kLeastCorner = 0.23, kClear = 0.75;
 
 Vec2 turned(const Vec2& turn, const Vec2& w) {
@@ -87,7 +87,8 @@ Line line_of(const std::vector<Vec2>& uvs, const StraightPath& path) {
   // Half of the angle of (xx - yy, 2 xy).
   const double x = xx - yy, y = 2 * xy, size = portable::hypot(x, y);
   Vec2 along = uvs[path.vertices.back()] - uvs[path.vertices.front()];
-  if (size > 0) along = {std::sqrt(0.5 * (1 + x / size)), std::sqrt(std::max(0.0, 0.5 * (1 - x / size)))};
+  if (size > 0)
+    along = {std::sqrt(0.5 * (1 + x / size)), std::sqrt(std::max(0.0, 0.5 * (1 - x / size)))};
   if (size > 0 && y < 0) along.y() = -along.y();
   if (along.isZero(0)) along = {1, 0};
   return {path.kind, middle, along};
@@ -295,7 +296,8 @@ std::vector<Vec2> embedded(const DiskMesh& mesh, const Sides& sides, const Vec2&
 }
 
 /// Tutte's embedding into a circle that a path of the boundary cuts off a part of, by a chord that
-/// lies on its line; a path within the boundary alone, and its released vertices, stay on the circle.
+/// lies on its line; a path within the boundary alone, and its released vertices, stay on the
+/// circle.
 std::vector<Vec2> embedded(const DiskMesh& mesh, const StraightPath& path, const Line& line,
                            const Work& work) {
   std::vector<Vec2> places = boundary_on_circle(mesh, work);
@@ -333,8 +335,9 @@ double length_of(const std::vector<Vec2>& uvs, const StraightPath& path) {
   return length;
 }
 
-/// All of some paths at once, from a map in which the first ones are straight. Nothing where several
-/// others are far from it: one is to be unbent first. A first one alone also from an embedding.
+/// All of some paths at once, from a map in which the first ones are straight. Nothing where
+/// several others are far from it: one is to be unbent first. A first one alone also from an
+/// embedding.
 StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                                const std::vector<StraightPath>& paths, std::size_t paths_straight,
                                const ChartOptions& options, const Work& work) {

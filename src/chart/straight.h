@@ -21,9 +21,9 @@ struct StraightPath {
 };
 
 struct StraightMap {
-  std::vector<Vec2> uvs;      ///< one per vertex; none where it cannot be
-  bool converged = true;      ///< the optimisation was not cut short
-  Index released = 0;         ///< vertices that stand out of their line, see straighten
+  std::vector<Vec2> uvs;  ///< one per vertex; none where it cannot be
+  bool converged = true;  ///< the optimisation was not cut short
+  Index released = 0;     ///< vertices that stand out of their line, see straighten
 };
 
 /// Turns a map so that its paths lie best along the axes, puts each on the line that it has in the

@@ -57,8 +57,8 @@ class NewtonStepper {
   /// From now on the contact's energy joins the objective, no step lets the boundary touch itself,
   /// and each begins where the last one ended.
   void set_contact(const BoundaryContact& contact) { contact_.emplace(contact); }
-  /// From now on vertices move along the lines of these unit normals, where they are not zero. Keeps
-  /// the reference.
+  /// From now on vertices move along the lines of these unit normals, where they are not zero.
+  /// Keeps the reference.
   void set_slides(const std::vector<Vec2>& normals) { slides_ = &normals; }
   /// See BoundaryContact::fit; for the steps from `uvs` on. `distortion`: as symmetric Dirichlet
   /// energy; `comparable`: what gains are compared with. Precondition: set_contact.
@@ -241,9 +241,8 @@ void NewtonStepper<Density>::hold_to_lines() {
     if (row == kNone || normal.isZero(0)) continue;
     auto pull = gradient_.segment<2>(2 * row);
     pull -= normal.dot(pull) * normal;
-    const double stiffness =
-        kRail * (matrix.valuePtr()[matrix.outerIndexPtr()[2 * row]] +
-                 matrix.valuePtr()[matrix.outerIndexPtr()[2 * row + 1]]);
+    const double stiffness = kRail * (matrix.valuePtr()[matrix.outerIndexPtr()[2 * row]] +
+                                      matrix.valuePtr()[matrix.outerIndexPtr()[2 * row + 1]]);
     hessian_.add_diagonal(row, [&](int r, int c) { return stiffness * normal[r] * normal[c]; });
   }
 }

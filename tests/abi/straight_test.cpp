@@ -32,7 +32,9 @@ struct Sheet {
   std::vector<std::uint32_t> seams = {};
 
   std::uint32_t across() const { return closed ? columns : columns + 1; }
-  std::uint32_t vertex(std::uint32_t i, std::uint32_t j) const { return j * across() + i % across(); }
+  std::uint32_t vertex(std::uint32_t i, std::uint32_t j) const {
+    return j * across() + i % across();
+  }
 
   beltrami_surface view() const {
     auto surface = sized<beltrami_surface>();
@@ -53,7 +55,8 @@ Sheet sheet(std::uint32_t columns, std::uint32_t rows, bool closed, bool halves,
   Sheet made{.columns = columns, .rows = rows, .closed = closed};
   for (std::uint32_t j = 0; j <= rows; ++j) {
     for (std::uint32_t i = 0; i < made.across(); ++i) {
-      made.positions.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
+      made.positions.push_back(
+          place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
     }
     if (closed && j < rows) {
       made.seams.insert(made.seams.end(), {made.vertex(0, j), made.vertex(0, j + 1)});
@@ -197,7 +200,8 @@ TEST_P(StraightGrids, HaveRowsAndColumnsToTheBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sheets, StraightGrids,
-                         testing::Values(&leg, &cable, &curtain, +[] { return road(false); }));
+                         testing::Values(
+                             &leg, &cable, &curtain, +[] { return road(false); }));
 
 TEST(StraightCharts, OfNoGridStayFree) {
   Sheet bent = road(true);
@@ -456,8 +460,8 @@ TEST(SnappedCharts, HaveTheirBordersOnTexels) {
 }
 
 TEST(SnappedCharts, WantPages) {
-  const Atlas refused = unwrap(box().view(), {{BELTRAMI_OPTION_PACK, BELTRAMI_PACK_NONE},
-                                              {BELTRAMI_OPTION_SNAP_TEXELS, 1}});
+  const Atlas refused = unwrap(
+      box().view(), {{BELTRAMI_OPTION_PACK, BELTRAMI_PACK_NONE}, {BELTRAMI_OPTION_SNAP_TEXELS, 1}});
   EXPECT_EQ(refused.status, BELTRAMI_E_INVALID_ARGUMENT);
   EXPECT_NE(refused.message.find("snap-texels"), std::string::npos) << refused.message;
 }

@@ -68,7 +68,8 @@ class Surface {
     take(surface_.pin_kinds, kinds, pins, "there is not one kind per pin");
     return take(surface_.pin_directions, directions, pins, "there is not one direction per pin");
   }
-  /// Edges that are to be straight with those that they meet, and BELTRAMI_PIN_U, V or LINE for each.
+  /// Edges that are to be straight with those that they meet, and BELTRAMI_PIN_U, V or LINE for
+  /// each.
   Surface& straight_edges(const Indices<2>& edges, const Indices<1>& kinds) noexcept {
     surface_.straight_edge_count = edges.size();
     take(surface_.straight_edges, edges, edges.size(), "");
@@ -128,9 +129,9 @@ class Surface {
   Result<beltrami_mesh> mesh() const {
     if (defect_ != nullptr) return Failure(Status::kInvalidArgument, defect_);
     const beltrami_buffer* others[] = {
-        &surface_.face_sizes,   &surface_.corner_uvs,    &surface_.face_labels,
-        &surface_.densities,    &surface_.seams,         &surface_.pins,
-        &surface_.vertex_paint, &surface_.painted_edges, &surface_.materials,
+        &surface_.face_sizes,     &surface_.corner_uvs,    &surface_.face_labels,
+        &surface_.densities,      &surface_.seams,         &surface_.pins,
+        &surface_.vertex_paint,   &surface_.painted_edges, &surface_.materials,
         &surface_.straight_edges, &surface_.rectangles};
     for (const beltrami_buffer* other : others) {
       if (other->data != nullptr) {

@@ -7,7 +7,8 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use beltrami::{
     check_atlas, check_atlas_with, triangulate, AtlasRules, CancelToken, Control, Cut, Element,
-    ErrorKind, Method, Pack, PinKind, Preset, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
+    ErrorKind, Method, Pack, PinKind, Preset, Status, Surface, UnwrapOptions, Unwrapper, View,
+    Weld,
 };
 use support::{sheet, single};
 
@@ -204,7 +205,9 @@ fn charts_become_rectangles_and_edges_straight() {
     // Two rows of three squares, bent along the middle column.
     let height = [0.0, 0.0, 0.4, 0.4];
     let positions: Vec<[f64; 3]> = (0..12)
-        .map(|v| [f64::from(v % 4) + 0.2 * f64::from(v / 4), f64::from(v / 4), height[v as usize % 4]])
+        .map(|v| {
+            [f64::from(v % 4) + 0.2 * f64::from(v / 4), f64::from(v / 4), height[v as usize % 4]]
+        })
         .collect();
     let mut faces = Vec::new();
     for a in [0_u32, 1, 2, 4, 5, 6] {
