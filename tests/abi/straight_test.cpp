@@ -118,7 +118,7 @@ struct Atlas {
   std::uint64_t element = 0;
   std::int32_t element_kind = 0;
   std::vector<Uv> uvs = {};  // per corner
-  double energy = 0, margin = 0;
+  double energy = 0;
   bool injective = false;
 };
 
@@ -385,14 +385,18 @@ TEST(StraightEdges, AreRefusedWhereNoLineGoes) {
 
 TEST(SlidingPins, HoldWhatTheyHold) {
   const Sheet bent = road(true, 10);
-  beltrami_surface surface = bent.view();
-  // Corners of triangles, 30 to a row: three at one u, two at one v, one on a diagonal.
-  const std::array<std::uint32_t, 6> corners = {0, 60, 90, 30, 117, 57};
-  const std::array<Uv, 6> uvs = {{{1, 9}, {1, 9}, {1, 9}, {9, 0.3}, {9, 0.3}, {5, 5}}};
+  const Atlas free = unwrap(bent.view(), kFree);
+  ASSERT_EQ(free.status, BELTRAMI_OK);
+  // One corner of each of some vertices; what they hold is near to where they lie.
+  const std::array<std::uint32_t, 6> corners = {0, 60, 120, 24, 36, 57};
+  const double u = free.uvs[60][0], v = free.uvs[36][1];
+  const Uv on_line = {free.uvs[57][0] + 0.25, free.uvs[57][1]};
+  const std::array<Uv, 6> uvs = {{{u, 9}, {u, 9}, {u, 9}, {9, v}, {9, v}, on_line}};
   const std::array<std::uint32_t, 6> kinds = {BELTRAMI_PIN_U, BELTRAMI_PIN_U, BELTRAMI_PIN_U,
                                               BELTRAMI_PIN_V, BELTRAMI_PIN_V, BELTRAMI_PIN_LINE};
   std::array<Uv, 6> directions = {};
   directions[5] = {1, -1};
+  beltrami_surface surface = bent.view();
   surface.pins = {corners.data(), 0, BELTRAMI_U32, 0};
   surface.pin_uvs = {uvs.data(), 0, BELTRAMI_F64, 0};
   surface.pin_kinds = {kinds.data(), 0, BELTRAMI_U32, 0};
@@ -402,9 +406,9 @@ TEST(SlidingPins, HoldWhatTheyHold) {
   const Atlas atlas = unwrap(surface, settings);
   ASSERT_EQ(atlas.status, BELTRAMI_OK) << atlas.message;
   EXPECT_TRUE(atlas.injective);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(atlas.uvs[corners[i]][0], 1);
-  for (std::size_t i = 3; i < 5; ++i) EXPECT_EQ(atlas.uvs[corners[i]][1], 0.3);
-  EXPECT_NEAR(atlas.uvs[57][0] + atlas.uvs[57][1], 10, 1e-5);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(atlas.uvs[corners[i]][0], u);
+  for (std::size_t i = 3; i < 5; ++i) EXPECT_EQ(atlas.uvs[corners[i]][1], v);
+  EXPECT_NEAR(atlas.uvs[57][0] + atlas.uvs[57][1], on_line[0] + on_line[1], 1e-5);
   directions[5] = {0, 0};
   const Atlas refused = unwrap(surface, settings);
   EXPECT_EQ(refused.status, BELTRAMI_E_INVALID_ARGUMENT);
