@@ -28,6 +28,7 @@ from ._tables import (
     PackChoice,
     PackTurnsChoice,
     PresetChoice,
+    RectifyChoice,
     StackChoice,
     UnwrapOptions,
     WeldChoice,

@@ -19,6 +19,7 @@ from ._tables import (
     PackChoice,
     PackTurnsChoice,
     PresetChoice,
+    RectifyChoice,
     StackChoice,
     WeldChoice,
 )
