@@ -249,6 +249,10 @@ export interface UnwrapOptions extends Running {
   flatSeams?: number;
   /** Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams. Default: none. */
   stack?: 'none' | 'copies' | 'mirrored';
+  /** Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height). Default: none. */
+  rectify?: 'none' | 'grids';
+  /** True turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room. Default: false. */
+  snapTexels?: boolean;
 }
 
 export interface PackOptions extends Running {

@@ -90,7 +90,8 @@ enum {
   BELTRAMI_E_GENUS = -30,               /* has handles: cut them open first */
   BELTRAMI_E_ZERO_AREA = -31,           /* the whole surface has no area, or overflows */
 
-  /* The pins of a surface cannot be met. Corner: the first that cannot, with those before it. */
+  /* The pins of a surface cannot be met. Corner: the first that cannot, with those before it. Or a
+   * chart cannot be straight. Face: that of a rectangle; vertex: of straight edges. */
   BELTRAMI_E_PINS = -32,
 
   /* The charts do not fit onto the pages that the options allow. */
@@ -207,7 +208,10 @@ enum {
   BELTRAMI_OPTION_STRAIGHT_SEAMS = 39, /* float: what turns of seams cost; 0: nothing */
   BELTRAMI_OPTION_EFFORT = 40,         /* choice: BELTRAMI_EFFORT_ */
   BELTRAMI_OPTION_FLAT_SEAMS = 41,     /* float: how much longer, where parts then unfold flat; 0 */
-  BELTRAMI_OPTION_STACK = 42           /* choice: BELTRAMI_STACK_ */
+  BELTRAMI_OPTION_STACK = 42,          /* choice: BELTRAMI_STACK_ */
+  /* Of the maps of charts, for beltrami_unwrap. */
+  BELTRAMI_OPTION_RECTIFY = 43,    /* choice: BELTRAMI_RECTIFY_ */
+  BELTRAMI_OPTION_SNAP_TEXELS = 44 /* int: 1 puts straight borders onto the edges of texels */
 };
 
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
@@ -284,6 +288,24 @@ enum {
   BELTRAMI_STACK_COPIES = 1,
   /* Mirror images, too. */
   BELTRAMI_STACK_MIRRORED = 2
+};
+
+/* Which charts become rectangles, beside those that a surface names. */
+enum {
+  BELTRAMI_RECTIFY_FORCE_SIGNED_ = -1,
+  BELTRAMI_RECTIFY_NONE = 0,
+  /* Those that are rows and columns of quads: each column gets the mean length of its edges as its
+   * width, each row as its height. */
+  BELTRAMI_RECTIFY_GRIDS = 1
+};
+
+/* What is held of a pin, and what edges that are straight have in common. */
+enum {
+  BELTRAMI_PIN_FORCE_SIGNED_ = -1,
+  BELTRAMI_PIN_POINT = 0, /* u and v */
+  BELTRAMI_PIN_U = 1,     /* u: it may slide along v */
+  BELTRAMI_PIN_V = 2,     /* v: it may slide along u */
+  BELTRAMI_PIN_LINE = 3   /* that it lies on a line, along which it may slide */
 };
 
 /* Whether vertices at one place are one. */
@@ -667,6 +689,27 @@ typedef struct beltrami_surface {
   uint64_t painted_edge_count;
   beltrami_buffer materials; /* optional: face_count items of 1, U32 or U64: where they differ a
                               * seam costs the factor of the option material-seams */
+
+  /* Pins that slide. Of kind U and V the other number of pin_uvs is read, and says nothing. */
+  beltrami_buffer pin_kinds; /* optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
+                              * all are POINT */
+  beltrami_buffer
+      pin_directions; /* of kind LINE, which goes through the pin's UV; optional without
+                       * any: pin_count items of 2, F32 or F64, that kind's not both 0 */
+
+  /* Straight borders, for beltrami_unwrap. Edges of one kind that hang together become one straight
+   * line in each chart that has them: U gives all their vertices one u, V one v, LINE any line. */
+  beltrami_buffer straight_edges; /* optional: straight_edge_count items of 2, U32 or U64: edges by
+                                   * their vertices */
+  beltrami_buffer straight_kinds; /* straight_edge_count items of 1, U32 or U64: BELTRAMI_PIN_U, V
+                                   * or LINE */
+  uint64_t straight_edge_count;
+  beltrami_buffer rectangles;        /* optional: rectangle_count items of 1, U32 or U64: faces; the
+                                      * chart of each becomes a rectangle along the axes */
+  beltrami_buffer rectangle_corners; /* optional: rectangle_count items of 4, U32 or U64: vertices
+                                      * of its border, in any order; four BELTRAMI_NO_ELEMENT of
+                                      * U64, or left out: the four where its border turns most */
+  uint64_t rectangle_count;
 } beltrami_surface;
 
 /* Cuts polygons into triangles as every function below does: by ears, the best-shaped first. Writes
@@ -698,7 +741,17 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
  * those before it: what is proven before the flattening first (two UV vertices at one place, a face
  * turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
  * to reach them without folding a face. Pins go with neither densities nor the option unit-square,
- * nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone. */
+ * nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.
+ * Pins of kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale
+ * open, a chart keeps its own.
+ *
+ * Charts with straight borders are turned by quarters alone, and what is straight keeps one number
+ * to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
+ * rectangle without given corners that is rows and columns of quads becomes a grid. Where an edge
+ * cuts off a part of a chart whose border is all on one line, that part of the border is left out
+ * of it, for its faces would have no area. Where no injective map is found the call fails with PINS
+ * and the face of the rectangle, or a vertex of the straight edges; edges that are none, branch or
+ * form a loop, and charts with pins, are INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);

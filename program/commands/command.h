@@ -28,6 +28,7 @@ struct FlattenArguments {
 struct UnwrapArguments {
   std::string input, output;
   std::string seams, pins;      ///< paths, or "" for none
+  std::string straighten;       ///< path of what is to be straight, or ""
   std::string paint;            ///< path of factors of seams, or ""
   std::string labels;           ///< what labels faces, or ""
   std::string materials;        ///< what draws seams to where it differs, or ""

@@ -22,6 +22,7 @@
 #include "files/paint.h"
 #include "files/pins.h"
 #include "files/split_mesh.h"
+#include "files/straight.h"
 #include "files/surface_view.h"
 #include "picture/picture.h"
 #include "process/failure.h"
@@ -41,6 +42,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options.emplace_back("materials", arguments.materials);
   report.options.emplace_back("uv-set", std::to_string(arguments.uv_set));
   report.options.emplace_back("pins", arguments.pins);
+  report.options.emplace_back("straighten", arguments.straighten);
   report.options.emplace_back("triangulate", arguments.triangulate);
   report.options.emplace_back("masks", arguments.masks);
   report.options.emplace_back("bake", arguments.bake);
@@ -92,9 +94,9 @@ class Unwrapping {
     }
     for (const std::string& mesh : {arguments_.input, arguments_.output}) {
       require_distinct({mesh, arguments_.seams, arguments_.pins, arguments_.paint,
-                        arguments_.report, arguments_.picture});
+                        arguments_.straighten, arguments_.report, arguments_.picture});
       require_distinct({mesh, arguments_.written_seams, arguments_.pins, arguments_.paint,
-                        arguments_.report, arguments_.picture});
+                        arguments_.straighten, arguments_.report, arguments_.picture});
     }
     const std::vector<std::string> written = {arguments_.output, arguments_.written_seams,
                                               arguments_.report, arguments_.picture};
@@ -121,7 +123,7 @@ class Unwrapping {
   void require_no_numbers() const {
     for (const auto& [option, path] :
          {std::pair("--seams", arguments_.seams), std::pair("--pins", arguments_.pins),
-          std::pair("--paint", arguments_.paint),
+          std::pair("--paint", arguments_.paint), std::pair("--straighten", arguments_.straighten),
           std::pair("--write-seams", arguments_.written_seams)}) {
       if (path.empty()) continue;
       throw Failure(
@@ -168,6 +170,7 @@ class Unwrapping {
     if (!arguments_.paint.empty()) paint_ = read_paint(arguments_.paint, file_);
     if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
     if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
+    if (!arguments_.straighten.empty()) straight_ = read_straight(arguments_.straighten, file_);
     report_.vertices = file_.vertex_count();
     report_.faces = file_.polygons.size();
     report_.short_faces = file_.short_faces;
@@ -195,6 +198,18 @@ class Unwrapping {
     if (surface.pin_count > 0) {
       surface.pins = {pins_.corners.data(), 0, BELTRAMI_U64, 0};
       surface.pin_uvs = {pins_.uvs.data(), 0, BELTRAMI_F64, 0};
+      surface.pin_kinds = {pins_.kinds.data(), 0, BELTRAMI_U32, 0};
+      surface.pin_directions = {pins_.directions.data(), 0, BELTRAMI_F64, 0};
+    }
+    surface.straight_edge_count = straight_.kinds.size();
+    if (surface.straight_edge_count > 0) {
+      surface.straight_edges = {straight_.edges.data(), 0, BELTRAMI_U64, 0};
+      surface.straight_kinds = {straight_.kinds.data(), 0, BELTRAMI_U32, 0};
+    }
+    surface.rectangle_count = straight_.rectangles.size();
+    if (surface.rectangle_count > 0) {
+      surface.rectangles = {straight_.rectangles.data(), 0, BELTRAMI_U64, 0};
+      surface.rectangle_corners = {straight_.rectangle_corners.data(), 0, BELTRAMI_U64, 0};
     }
     const auto progress = [](void* bar, double fraction, const char* stage) -> std::int32_t {
       static_cast<ProgressBar*>(bar)->show(fraction, stage);
@@ -375,9 +390,14 @@ class Unwrapping {
   void require(beltrami_status status) const {
     const std::int32_t kind = beltrami_error_element_kind(context_.get());
     const bool of_pins = kind == BELTRAMI_ELEMENT_CORNER;
-    const std::string message = with_lines(beltrami_error_message(context_.get()), pins_);
-    require_ok(status, of_pins ? arguments_.pins : arguments_.input, message.c_str(), kind,
-               beltrami_error_element(context_.get()));
+    const bool is_straight = status == BELTRAMI_E_PINS && !of_pins;
+    std::string message = with_lines(beltrami_error_message(context_.get()), "pin", pins_.lines);
+    message = with_lines(message, "straight edge", straight_.edge_lines);
+    message = with_lines(message, "rectangle", straight_.rectangle_lines);
+    const std::string& about = of_pins       ? arguments_.pins
+                               : is_straight ? arguments_.straighten
+                                             : arguments_.input;
+    require_ok(status, about, message.c_str(), kind, beltrami_error_element(context_.get()));
   }
 
   const UnwrapArguments& arguments_;
@@ -390,6 +410,7 @@ class Unwrapping {
   Paint paint_;
   std::vector<std::uint32_t> seams_;
   Pins pins_;
+  Straight straight_;
   std::optional<TextureBake> bake_;
   std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
 };
@@ -402,10 +423,11 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   report.printed = arguments.print_report;
   report.input_path = arguments.input;
   note_options(arguments, options, report);
-  return run_guarded(report, arguments.report,
-                     {arguments.input, arguments.output, arguments.seams, arguments.pins,
-                      arguments.paint, arguments.written_seams, arguments.picture},
-                     [&] { return Unwrapping(arguments, options, report).run(); });
+  return run_guarded(
+      report, arguments.report,
+      {arguments.input, arguments.output, arguments.seams, arguments.pins, arguments.paint,
+       arguments.straighten, arguments.written_seams, arguments.picture},
+      [&] { return Unwrapping(arguments, options, report).run(); });
 }
 
 }  // namespace beltrami::cli

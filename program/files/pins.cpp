@@ -1,10 +1,14 @@
 #include "files/pins.h"
 
+#include <beltrami/beltrami.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "files/polygons.h"
 #include "files/text_cursor.h"
@@ -32,6 +36,39 @@ std::uint64_t index(TextCursor& cursor, const char* what, std::uint64_t count) {
               std::to_string(count) + ", counted from 0");
 }
 
+struct Place {
+  std::uint32_t kind = BELTRAMI_PIN_POINT;
+  double u = 0, v = 0;
+  double along_u = 0, along_v = 0;
+};
+
+/// A number, or nothing where a - stands for it.
+std::optional<double> number_or_dash(TextCursor& cursor, const char* what) {
+  cursor.skip_blanks();
+  TextCursor ahead = cursor;
+  if (ahead.word() != "-") return cursor.number(what);
+  cursor.word();
+  return std::nullopt;
+}
+
+Place read_place(TextCursor& cursor) {
+  Place place;
+  const auto u = number_or_dash(cursor, "u"), v = number_or_dash(cursor, "v");
+  place.u = u.value_or(0);
+  place.v = v.value_or(0);
+  if (!u && !v) cursor.fail("a pin with two - holds nothing: give a number, or leave it out");
+  if (!u || !v) {
+    place.kind = u ? BELTRAMI_PIN_U : BELTRAMI_PIN_V;
+    return place;
+  }
+  cursor.skip_blanks();
+  if (cursor.at_line_end()) return place;
+  place.kind = BELTRAMI_PIN_LINE;
+  place.along_u = cursor.number("u of the direction");
+  place.along_v = cursor.number("v of the direction");
+  return place;
+}
+
 }  // namespace
 
 Pins read_pins(const std::string& path, const MeshFile& file) {
@@ -43,7 +80,9 @@ Pins read_pins(const std::string& path, const MeshFile& file) {
   for (cursor.skip_to_word(); !cursor.at_end(); cursor.skip_to_word()) {
     const std::string kind(cursor.word());
     if (kind != "v" && kind != "c") {
-      cursor.fail("'" + kind + "' is no pin: a line is 'v VERTEX U V' or 'c CORNER U V'");
+      cursor.fail("'" + kind +
+                  "' is no pin: a line is 'v VERTEX U V' or 'c CORNER U V', with - for a number "
+                  "that is free, or with two numbers more for a direction");
     }
     std::vector<std::uint64_t> corners;
     if (kind == "c") {
@@ -56,10 +95,12 @@ Pins read_pins(const std::string& path, const MeshFile& file) {
       for (; at != order.end() && vertex_of[*at] == vertex; ++at) corners.push_back(*at);
       if (corners.empty()) cursor.fail("no face has vertex " + std::to_string(vertex));
     }
-    const double u = cursor.number("u"), v = cursor.number("v");
+    const Place place = read_place(cursor);
     for (const std::uint64_t corner : corners) {
       pins.corners.push_back(corner);
-      pins.uvs.insert(pins.uvs.end(), {u, v});
+      pins.uvs.insert(pins.uvs.end(), {place.u, place.v});
+      pins.kinds.push_back(place.kind);
+      pins.directions.insert(pins.directions.end(), {place.along_u, place.along_v});
       pins.lines.push_back(cursor.line());
     }
     cursor.skip_blanks();
@@ -68,18 +109,20 @@ Pins read_pins(const std::string& path, const MeshFile& file) {
   return pins;
 }
 
-std::string with_lines(const std::string& message, const Pins& pins) {
-  constexpr std::string_view kPin = "pin ";
+std::string with_lines(const std::string& message, std::string_view item,
+                       const std::vector<std::uint64_t>& lines) {
+  const std::string counted = std::string(item) + " ";
   std::string text;
   std::size_t done = 0;
-  for (std::size_t at = message.find(kPin); at != std::string::npos; at = message.find(kPin, at)) {
+  for (std::size_t at = message.find(counted); at != std::string::npos;
+       at = message.find(counted, at)) {
     std::size_t number = 0;
-    const char* begin = message.data() + at + kPin.size();
+    const char* begin = message.data() + at + counted.size();
     const auto [past, error] = std::from_chars(begin, message.data() + message.size(), number);
-    at += kPin.size();
-    if (error != std::errc() || number >= pins.lines.size()) continue;
-    text += message.substr(done, at - kPin.size() - done) + "the pin of line " +
-            std::to_string(pins.lines[number]);
+    const std::size_t start = std::exchange(at, at + counted.size());
+    if (error != std::errc() || number >= lines.size()) continue;
+    text += message.substr(done, start - done) + "the " + std::string(item) + " of line " +
+            std::to_string(lines[number]);
     done = at = static_cast<std::size_t>(past - message.data());
   }
   return text + message.substr(done);

@@ -87,7 +87,7 @@ constexpr std::int32_t kOfTheSearch[] = {
 constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
                                      BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
                                      BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK,
-                                     BELTRAMI_OPTION_PACK_SPLITS};
+                                     BELTRAMI_OPTION_PACK_SPLITS,     BELTRAMI_OPTION_SNAP_TEXELS};
 
 /// Pages that are as many as it takes: as many as the option max-pages allows.
 constexpr int kManyPages = 1000;
@@ -183,10 +183,14 @@ AtlasOptions atlas_options(const Options& options) {
   atlas.keep_disk = options.weld == BELTRAMI_WELD_AUTO && options.weld_distance == 0;
   atlas.fill_limit = options.fill_holes;
   atlas.stack = stack_of(options.stack);
+  atlas.rectify_grids = options.rectify == BELTRAMI_RECTIFY_GRIDS;
   if (options.cut == BELTRAMI_CUT_AUTO) atlas.target = options.target;
   atlas.weights = options.weights;
   atlas.effort = search_effort(effort_of(options.effort));
-  if (options.pack == BELTRAMI_PACK_PAGES) atlas.pack = pack_options(options);
+  if (options.pack == BELTRAMI_PACK_PAGES) {
+    atlas.pack = pack_options(options);
+    atlas.pack->snap = options.snap_texels;
+  }
   atlas.split_price = options.pack_splits;
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);

@@ -10,6 +10,7 @@
 
 #include "abi/hints.h"
 #include "abi/pins.h"
+#include "abi/straight.h"
 #include "admit/triangulate.h"
 #include "atlas/pins.h"
 #include "base/error.h"
@@ -33,6 +34,7 @@ AtlasProblem read_one(const beltrami_surface& header, const AtlasOptions& option
   problem.input = atlas_input(header, problem.surface, islands, work);
   problem.input.cuts.hard_angle = radians_of(hard_angle);
   problem.input.pins = read_pins(header, problem.surface, options, work);
+  read_straight(header, problem.surface, work, problem.input);
   problem.input.hints = read_hints(header, problem.surface, options, work);
   problem.bodies = {0};
   return problem;
@@ -127,6 +129,19 @@ void append(AtlasInput& all, AtlasInput&& one, const Before& before, const Befor
     pin.number += before.pins;
     pin.of_caller += before.corners;
     all.pins.push_back(pin);
+  }
+  for (StraightEdge edge : one.straight) {
+    edge.from += before.vertices;
+    edge.to += before.vertices;
+    all.straight.push_back(edge);
+  }
+  for (ChartRectangle rectangle : one.rectangles) {
+    rectangle.face += before.triangles;
+    rectangle.of_caller += before.faces;
+    if (rectangle.corners) {
+      for (Index& vertex : *rectangle.corners) vertex += before.vertices;
+    }
+    all.rectangles.push_back(rectangle);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <beltrami/beltrami.h>
 
 #include "abi/option_members.h"
+#include "abi/options_of_charts.h"
 #include "cut/seam_costs.h"
 #include "cut/search.h"
 
@@ -581,6 +582,8 @@ const OptionEntry kOptions[] = {
         .set = set<&Options::stack>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
+    kRectify,
+    kSnapTexels,
 };
 
 }  // namespace

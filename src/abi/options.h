@@ -34,6 +34,7 @@ struct Options {
   double fill_holes = 0.5;
   bool share_copies = false;
   std::int32_t stack = BELTRAMI_STACK_NONE;
+  std::int32_t rectify = BELTRAMI_RECTIFY_NONE;
   std::int32_t preset = BELTRAMI_PRESET_NONE;
   SeamTarget target = {};
   SeamWeights weights = {};
@@ -45,6 +46,7 @@ struct Options {
   std::int32_t pack_turns = BELTRAMI_PACK_TURNS_ANY;
   int pack_block = 1;
   double pack_splits = 0;
+  bool snap_texels = false;
   std::int32_t effort = BELTRAMI_EFFORT_NORMAL;
 };
 

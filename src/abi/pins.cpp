@@ -28,6 +28,11 @@ void require_effect(const beltrami_surface& header, const AtlasOptions& options)
 /// Throws Error where the place of a pin is no number that can be delivered.
 void require_number(const Pin& pin, bool float32) {
   const auto corner = Element::corner(static_cast<std::uint64_t>(pin.of_caller));
+  if (pin.kind == PinKind::kLine && !(pin.along.allFinite() && !pin.along.isZero(0))) {
+    throw Error(Fault::kInvalidArgument,
+                "the direction of " + name_of(pin) + " is none: give two numbers, not both 0",
+                corner);
+  }
   if (!pin.uv.allFinite()) {
     throw Error(Fault::kNonFinite, "the UV of " + name_of(pin) + " is infinite or not a number",
                 corner);
@@ -43,7 +48,60 @@ void require_number(const Pin& pin, bool float32) {
   }
 }
 
+/// Of each pin its kind, its place and its direction, and all else but where it is.
+std::vector<Pin> read_places(const beltrami_surface& header,
+                             const std::vector<std::uint64_t>& corners, bool float32,
+                             const Work& work) {
+  const std::vector<double> uvs =
+      read_numbers(header.pin_uvs, header.pin_count, 2, "pin UVs", work);
+  std::vector<std::uint64_t> kinds;
+  std::vector<double> directions;
+  if (header.pin_kinds.data != nullptr) {
+    kinds = read_integers(header.pin_kinds, header.pin_count, 1, "kinds of pins", work);
+  }
+  if (header.pin_directions.data != nullptr) {
+    directions = read_numbers(header.pin_directions, header.pin_count, 2, "directions", work);
+  }
+  std::vector<Pin> pins;
+  pins.reserve(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    Pin pin{kNone,
+            0,
+            {uvs[2 * i], uvs[2 * i + 1]},
+            static_cast<Index>(i),
+            static_cast<Index>(corners[i])};
+    if (!kinds.empty()) pin.kind = pin_kind_of(kinds[i], name_of(pin));
+    if (pin.kind == PinKind::kLine && directions.empty()) {
+      throw Error(Fault::kInvalidArgument,
+                  name_of(pin) + " is of the kind BELTRAMI_PIN_LINE: give pin_directions");
+    }
+    if (pin.kind == PinKind::kLine) pin.along = {directions[2 * i], directions[2 * i + 1]};
+    // What says nothing is to do no harm.
+    if (pin.kind == PinKind::kU) pin.uv.y() = 0;
+    if (pin.kind == PinKind::kV) pin.uv.x() = 0;
+    require_number(pin, float32);
+    pins.push_back(pin);
+  }
+  return pins;
+}
+
 }  // namespace
+
+PinKind pin_kind_of(std::uint64_t number, const std::string& name) {
+  switch (number) {
+    case BELTRAMI_PIN_POINT:
+      return PinKind::kPoint;
+    case BELTRAMI_PIN_U:
+      return PinKind::kU;
+    case BELTRAMI_PIN_V:
+      return PinKind::kV;
+    case BELTRAMI_PIN_LINE:
+      return PinKind::kLine;
+    default:
+      throw Error(Fault::kInvalidArgument, name + " is of kind " + std::to_string(number) +
+                                               ": give a BELTRAMI_PIN_ number, from 0 to 3");
+  }
+}
 
 std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& surface,
                            const AtlasOptions& options, const Work& work) {
@@ -56,8 +114,6 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
   require_effect(header, options);
   const std::vector<std::uint64_t> corners =
       read_integers(header.pins, header.pin_count, 1, "pins", work);
-  const std::vector<double> uvs =
-      read_numbers(header.pin_uvs, header.pin_count, 2, "pin UVs", work);
   std::vector<Index> first(header.corner_count, kNone), next(corners.size(), kNone);
   PollSometimes poll;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -68,13 +124,8 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
                                                std::to_string(header.corner_count) +
                                                " corners: they count from 0, face after face");
     }
-    require_number({kNone,
-                    0,
-                    {uvs[2 * i], uvs[2 * i + 1]},
-                    static_cast<Index>(i),
-                    static_cast<Index>(corners[i])},
-                   options.float32);
   }
+  const std::vector<Pin> places = read_places(header, corners, options.float32, work);
   for (std::size_t i = corners.size(); i-- > 0;) {
     next[i] = first[corners[i]];
     first[corners[i]] = static_cast<Index>(i);
@@ -84,12 +135,9 @@ std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& 
     poll();
     for (int k = 0; k < 3; ++k) {
       for (Index i = first[triangles[t][k]]; i != kNone; i = next[i]) {
-        const auto at = static_cast<std::size_t>(i);
-        pins.push_back({static_cast<Index>(t),
-                        k,
-                        {uvs[2 * at], uvs[2 * at + 1]},
-                        i,
-                        static_cast<Index>(corners[at])});
+        Pin& pin = pins.emplace_back(places[static_cast<std::size_t>(i)]);
+        pin.face = static_cast<Index>(t);
+        pin.corner = k;
       }
     }
   }

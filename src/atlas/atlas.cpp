@@ -18,7 +18,9 @@
 #include "atlas/pins.h"
 #include "atlas/place.h"
 #include "atlas/rescue.h"
+#include "atlas/snap.h"
 #include "atlas/split_necks.h"
+#include "atlas/straighten_charts.h"
 #include "base/interrupt.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
@@ -111,6 +113,7 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
   pack.effort *= options.effort.packing;
   // The frame of a map is nobody's choice: upright its borders are more likely to lie along texels.
   pack.upright = true;
+  if (pack.snap) align_to_borders(charts.charts, charts.maps);
   if (pack.texels_per_unit > 0) {
     // 0 would leave the scale open.
     const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
@@ -161,6 +164,10 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   });
   MappedSurface mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);
+  if (asks_for_straight(input, options)) {
+    stage("straighten", kMapped, kMapped,
+          [&](const Work& inner) { straighten_charts(input, admitted, options, inner, mapped); });
+  }
   Numbers numbers{.single = options.float32, .exponent = exponent};
   stage("place", kMapped, kPlaced, [&](const Work& inner) {
     separate_pieces(admitted, most_charts(options, admitted), mapped.charts, mapped.maps,

@@ -57,6 +57,16 @@ Vec2 scaled(const Vec2& w, int exponent) {
   return {std::ldexp(w.x(), exponent), std::ldexp(w.y(), exponent)};
 }
 
+/// Where a vertex lies that has come to its pin: what is held to the bit, and what is not in single
+/// precision, as it is not rounded after this.
+void put_in_place(const ChartPin& pin, Vec2& w) {
+  const bool is_point = pin.kind == PinKind::kPoint;
+  for (int k = 0; k < 2; ++k) {
+    const bool held = is_point || pin.kind == (k == 0 ? PinKind::kU : PinKind::kV);
+    w[k] = held ? pin.place[k] : static_cast<float>(w[k]);
+  }
+}
+
 /// Holds the pins of a map of the disk, whose vertex i is order[i] of the chart.
 void hold(const DiskMesh& disk, const Normalisation& frame, const std::vector<Index>& order,
           const std::vector<ChartPin>& pins, const ChartOptions& options, const Work& work,
@@ -68,7 +78,8 @@ void hold(const DiskMesh& disk, const Normalisation& frame, const std::vector<In
   for (const Index v : order) free.push_back(scaled(map.uvs[v], frame.exponent));
   std::vector<HeldVertex> vertices;
   for (const ChartPin& pin : pins) {
-    vertices.push_back({place_of[pin.vertex], scaled(pin.place, frame.exponent)});
+    vertices.push_back(
+        {place_of[pin.vertex], scaled(pin.place, frame.exponent), pin.kind, pin.along});
   }
   const HeldMap held = hold_pins(disk, free, vertices, options, work);
   if (held.failed != kNone) {
@@ -156,7 +167,7 @@ MappedChart map_chart(const AtlasChart& part, const std::vector<ChartPin>& pins,
   if (!pins.empty()) map.held.assign(map.uvs.size(), false);
   for (const ChartPin& pin : pins) {
     map.held[pin.vertex] = true;
-    map.uvs[pin.vertex] = pin.place;
+    put_in_place(pin, map.uvs[pin.vertex]);
   }
   return map;
 }

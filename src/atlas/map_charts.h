@@ -24,6 +24,7 @@ struct MappedChart {
   std::vector<bool> held = {};
   double scale = 1;          ///< of a map with pins, see hold_pins; else 1
   bool fits_single = true;   ///< on a page: injective when it is stored in single precision, too
+  bool aligned = false;      ///< what is straight of it runs along the axes, which it keeps
   Index failed_pin = kNone;  ///< in the list of all pins: could not be met with those before it
 
   bool pinned() const { return !held.empty(); }

@@ -4,6 +4,7 @@
 
 #include "atlas/margin.h"
 #include "atlas/round_chart.h"
+#include "atlas/snap.h"
 #include "base/parallel.h"
 #include "base/types.h"
 
@@ -55,6 +56,7 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
   for (std::size_t c = 0; c < charts.size(); ++c) {
     if (maps[c].error) continue;
     parts.push_back(real_part(charts[c], maps[c].uvs));
+    parts.back().aligned = maps[c].aligned;
     chart_of_part.push_back(static_cast<Index>(c));
   }
   Pages pages;
@@ -72,6 +74,9 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
       std::vector<Vec2> placed = maps[c].uvs;
       for (Vec2& w : placed) {
         w = place_on_page(packing, parts[i], placement, options.resolution, w);
+      }
+      if (options.snap) {
+        snap_to_texels(charts[c].chart.mesh, options.resolution, placed, of_chart);
       }
       round_on_page(charts[c].chart.mesh, placed, placement.page, float32, of_chart, maps[c]);
     });

@@ -67,6 +67,7 @@ Packing pack_and_deliver(std::span<const PackChart> charts, const PackOptions& o
                          const std::function<double(const Packing&, const Work&)>& deliver,
                          const Work& work) {
   double spare = kRounding * options.resolution * greatest_coordinate(options);
+  if (options.snap) spare += 1;  // half a texel of each of two charts
   Packing packing;
   for (int attempt = 0; attempt < kMostTries; ++attempt) {
     const double done = 1 - std::ldexp(1, -attempt);

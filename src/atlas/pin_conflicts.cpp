@@ -202,8 +202,12 @@ class Conflicts {
 
 std::optional<PinConflict> find_conflict(const AtlasChart& part, const std::vector<ChartPin>& pins,
                                          const std::vector<Pin>& all) {
-  if (pins.size() < 2) return std::nullopt;
-  return Conflicts(part, pins, all).find();
+  std::vector<ChartPin> points;  // where others will lie is not known yet
+  for (const ChartPin& pin : pins) {
+    if (pin.kind == PinKind::kPoint) points.push_back(pin);
+  }
+  if (points.size() < 2) return std::nullopt;
+  return Conflicts(part, points, all).find();
 }
 
 }  // namespace beltrami

@@ -116,12 +116,16 @@ AssignedPins assign_pins(const std::vector<Pin>& pins, const std::vector<Triangl
       if (aside) {
         assigned.aside.push_back({pin.face, pin.corner, place});
       } else {
-        assigned.of_chart[chart].push_back({vertex, place, i});
+        assigned.of_chart[chart].push_back({vertex, place, i, pin.kind, pin.along});
       }
       continue;
     }
     const Pin& first = pins[at->second];
-    if (first.uv == pin.uv) continue;
+    if (first.uv == pin.uv && first.kind == pin.kind && first.along == pin.along) continue;
+    if (first.kind != pin.kind || first.kind != PinKind::kPoint) {
+      throw unmet(pin, "is to lie elsewhere than " + name_of(first) +
+                           ", which has the same UV vertex: give both the same, or one as a point");
+    }
     throw unmet(pin, "is to lie at " + written(pin.uv) + ", and " + name_of(first) +
                          ", which has the same UV vertex, at " + written(first.uv) +
                          ": give both one place, or cut a seam between them");

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
+#include "chart/hold.h"
 
 namespace beltrami {
 
@@ -19,6 +20,8 @@ struct Pin {
   Vec2 uv;          ///< in the unit of the UVs delivered, finite
   Index number;     ///< as the caller counts pins; several corners of triangles may be one of a
   Index of_caller;  ///< polygon: that corner, as the caller counts
+  PinKind kind = PinKind::kPoint;
+  Vec2 along = Vec2::Zero();  ///< of kLine: its direction
 };
 
 /// A pin of a vertex of a chart.
@@ -26,6 +29,8 @@ struct ChartPin {
   Index vertex;
   Vec2 place;  ///< in the unit of the charts
   Index pin;   ///< its place in the list of pins
+  PinKind kind = PinKind::kPoint;
+  Vec2 along = Vec2::Zero();  ///< of kLine: its direction
 };
 
 /// A pin of a face that lies in no chart.

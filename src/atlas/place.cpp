@@ -37,6 +37,10 @@ int exponent_of_square(const std::vector<Vec2>& corners, const std::vector<Vec2>
 /// The turn (cosine, sine) that lays the longer side of a map's least box along x.
 Vec2 upright(const AtlasChart& chart, const MappedChart& map) {
   if (map.error) return {1, 0};
+  if (map.aligned) {
+    const Vec2 sizes = box_of(map.uvs).sizes();
+    return sizes.x() < sizes.y() ? Vec2(0, 1) : Vec2(1, 0);
+  }
   return turn_to_least_box(outline_of(real_part(chart, map.uvs)).hull);
 }
 

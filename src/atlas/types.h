@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include "base/vectors.h"
 #include "chart/chart_map.h"
 #include "chart/flattening.h"
+#include "chart/hold.h"
 #include "chart/options.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
@@ -26,6 +28,21 @@
 
 namespace beltrami {
 
+/// An edge of the input, by its vertices, that is to be straight with those that it meets: kU with
+/// one u, kV with one v, kLine on any line.
+struct StraightEdge {
+  Index from, to;
+  PinKind kind;
+};
+
+/// That the chart of a face is to be a rectangle.
+struct ChartRectangle {
+  Index face;                                        ///< of the input
+  Index of_caller;                                   ///< that face, as the caller counts
+  std::optional<std::array<Index, 4>> corners = {};  ///< vertices of the input; none: the four that
+                                                     ///< the border of its free map has
+};
+
 /// Any triangles, and what comes with them. Lists are empty where nothing is given.
 struct AtlasInput {
   std::vector<Vec3> positions;
@@ -34,6 +51,8 @@ struct AtlasInput {
   std::vector<double> densities = {};  ///< per face: lengths in the plane per length on the surface
   InputHints hints = {};
   std::vector<Pin> pins = {};  ///< their places single-precision numbers with `float32`
+  std::vector<StraightEdge> straight = {};
+  std::vector<ChartRectangle> rectangles = {};
 };
 
 /// Which components of one shape lie on each other.
@@ -62,6 +81,7 @@ struct AtlasOptions {
   double split_price = 0;
   bool unit_square = false;  ///< scale what is not packed by a power of two into the unit square
   bool float32 = false;      ///< deliver single-precision numbers
+  bool rectify_grids = false;  ///< charts that are grids of quads are laid out as such
 };
 
 struct ChartInfo {

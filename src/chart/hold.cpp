@@ -8,7 +8,9 @@
 #include <span>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "chart/descent.h"
+#include "chart/line_similarity.h"
 #include "chart/pin_field.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
@@ -39,6 +41,8 @@ constexpr double kRelaxed = 1e-2;
 constexpr double kTolerance = 1e-3;
 /// Places nearer to each other than that, relative to the size of the map, are so for roundoff.
 constexpr double kRoundoff = 1e-12;
+/// The sine of an angle between lines that count as of one direction.
+constexpr double kParallel = 1e-9;
 /// Where the parts end in the progress.
 constexpr double kThere = 0.5;
 
@@ -51,6 +55,8 @@ struct Similarity {
 
   Vec2 to_plane(const Vec2& z) const { return times(turn, z - from) + to; }
   Vec2 to_map(const Vec2& w) const { return times(quotient(1, turn), w - to) + from; }
+  /// A direction of the plane, in the map.
+  Vec2 direction_to_map(const Vec2& w) const { return times(std::conj(turn) / modulus(turn), w); }
 
  private:
   static Vec2 times(Complex factor, const Vec2& z) {
@@ -61,7 +67,7 @@ struct Similarity {
 
 /// That takes the spread of the pins' vertices in the map to that of their places, and turns it to
 /// where it fits best. Mirrored places fit none: then it hardly matters.
-Similarity best_similarity(const std::vector<Vec2>& uvs, Pins pins) {
+Similarity similarity_of_points(const std::vector<Vec2>& uvs, Pins pins) {
   Similarity best;
   if (pins.size() == 1) {
     best.from = uvs[pins[0].vertex];
@@ -88,6 +94,26 @@ Similarity best_similarity(const std::vector<Vec2>& uvs, Pins pins) {
   return best;
 }
 
+/// Two points say all of a similarity; fewer leave its turn or its scale to the lines.
+Similarity best_similarity(const std::vector<Vec2>& uvs, Pins pins) {
+  std::vector<HeldVertex> points;
+  for (const HeldVertex& pin : pins) {
+    if (pin.kind == PinKind::kPoint) points.push_back(pin);
+  }
+  if (points.size() == pins.size() || points.size() > 1) return similarity_of_points(uvs, points);
+  std::vector<LineFit> fits;
+  for (const HeldVertex& pin : pins) {
+    if (pin.kind == PinKind::kPoint) {
+      fits.push_back({uvs[pin.vertex], pin.place, {1, 0}});
+      fits.push_back({uvs[pin.vertex], pin.place, {0, 1}});
+    } else {
+      fits.push_back({uvs[pin.vertex], pin.place, pin.normal()});
+    }
+  }
+  const LineSimilarity fit = fit_to_lines(fits);
+  return {.turn = fit.turn, .from = Vec2::Zero(), .to = fit.shift};
+}
+
 double size_of_map(const std::vector<Vec2>& uvs) {
   Eigen::AlignedBox2d box;
   for (const Vec2& w : uvs) box.extend(w);
@@ -98,28 +124,38 @@ double size_of_map(const std::vector<Vec2>& uvs) {
 class WayToPins {
  public:
   WayToPins(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-            const ChartOptions& options, const Work& work)
+            const ChartOptions& options, bool strict, const Work& work)
       : mesh_(mesh),
         rest_(rest),
         options_(options),
         work_(work),
-        contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)) {}
+        contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)),
+        strict_(strict) {}
 
   void set_pins(const Similarity& frame, Pins pins) {
     held_.assign(mesh_.positions.size(), false);
+    fixed_ = held_;
+    slides_.assign(mesh_.positions.size(), Vec2::Zero());
     vertices_.clear();
-    targets_.clear();
+    places_.clear();
     for (const HeldVertex& pin : pins) {
       held_[pin.vertex] = true;
+      fixed_[pin.vertex] = pin.kind == PinKind::kPoint;
+      if (!fixed_[pin.vertex]) slides_[pin.vertex] = frame.direction_to_map(pin.normal());
       vertices_.push_back(pin.vertex);
-      targets_.push_back(frame.to_map(pin.place));
+      places_.push_back(frame.to_map(pin.place));
     }
+    any_slides_ =
+        std::any_of(vertices_.begin(), vertices_.end(), [&](Index v) { return !fixed_[v]; });
+    drifts_ = kNone;
+    fix_what_drifts();
   }
 
   bool fits(const std::vector<Vec2>& uvs) const {
+    const std::vector<Vec2> targets = targets_of(uvs);
     double farthest = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      farthest = std::max(farthest, (uvs[vertices_[i]] - targets_[i]).norm());
+      farthest = std::max(farthest, (uvs[vertices_[i]] - targets[i]).norm());
     }
     return farthest <= kRoundoff * size_of_map(uvs);
   }
@@ -146,14 +182,34 @@ class WayToPins {
   bool positive(const std::vector<Vec2>& uvs) const {
     return non_positive_faces(mesh_.faces, uvs, work_).empty();
   }
+  /// Where lines alone are given, all in one direction, the map could drift along it: one vertex
+  /// then stays, which is no loss.
+  void fix_what_drifts() {
+    Index first = kNone;
+    for (const Index v : vertices_) {
+      if (fixed_[v]) return;
+      if (first == kNone) first = v;
+      const Vec2 &a = slides_[first], &b = slides_[v];
+      if (std::abs(a.x() * b.y() - a.y() * b.x()) > kParallel) return;
+    }
+    drifts_ = first;
+  }
+  /// Per pin its place, or the nearest one of its line.
+  std::vector<Vec2> targets_of(const std::vector<Vec2>& uvs) const {
+    std::vector<Vec2> targets = places_;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec2 &normal = slides_[vertices_[i]], &at = uvs[vertices_[i]];
+      if (!normal.isZero(0)) targets[i] = at + normal.dot(places_[i] - at) * normal;
+    }
+    return targets;
+  }
   void put_in_place(std::vector<Vec2>& uvs) const {
-    for (std::size_t i = 0; i < vertices_.size(); ++i) uvs[vertices_[i]] = targets_[i];
+    const std::vector<Vec2> targets = targets_of(uvs);
+    for (std::size_t i = 0; i < vertices_.size(); ++i) uvs[vertices_[i]] = targets[i];
   }
   std::vector<Vec2> remaining(const std::vector<Vec2>& uvs) const {
-    std::vector<Vec2> displacements;
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      displacements.push_back(targets_[i] - uvs[vertices_[i]]);
-    }
+    std::vector<Vec2> displacements = targets_of(uvs);
+    for (std::size_t i = 0; i < vertices_.size(); ++i) displacements[i] -= uvs[vertices_[i]];
     return displacements;
   }
   bool boundary_is_held() const {
@@ -161,15 +217,18 @@ class WayToPins {
                        [&](Index v) { return held_[v]; });
   }
 
-  /// Composite majorization alone: the start is near the minimum.
+  /// Composite majorization alone, where the start is near the minimum: not that of straight ones.
   NewtonOptions last_steps() const {
     NewtonOptions newton = newton_options(options_);
+    if (any_slides_) newton.slides = &slides_;
+    if (strict_) return newton;
     newton.proxy_steps = 0;
     newton.tolerance = std::max(newton.tolerance, kTolerance);
     return newton;
   }
   NewtonOptions relaxing_steps() const {
     NewtonOptions newton = newton_options(options_);
+    if (any_slides_) newton.slides = &slides_;
     newton.max_iterations = kRelaxingSteps;
     newton.proxy_steps = kRelaxingProxies;
     newton.tolerance = std::max(newton.tolerance, kRelaxed);
@@ -187,14 +246,21 @@ class WayToPins {
   const ChartOptions& options_;
   const Work work_;
   const BoundaryContact contact_;
-  std::vector<bool> held_;  // per vertex
+  std::vector<bool> held_;  // per vertex, and those of them that do not slide
+  std::vector<bool> fixed_;
+  std::vector<Vec2> slides_;  // per vertex as NewtonOptions has it
+  bool any_slides_ = false;
+  const bool strict_;     // pins may not have the boundary touch itself
+  Index drifts_ = kNone;  // the vertex that stays, where the map could drift along its line
   std::vector<Index> vertices_;
-  std::vector<Vec2> targets_;
+  std::vector<Vec2> places_;
 };
 
 bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
                          std::vector<Vec2>& uvs) const {
-  const auto run = [&] { return minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work); };
+  std::vector<bool> fixed = fixed_;
+  if (drifts_ != kNone) fixed[drifts_] = true;
+  const auto run = [&] { return minimise_energy(mesh_.faces, rest_, fixed, uvs, newton, work); };
   if (!simple) return run().converged;
   if (!contact_.is_pressed(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact_.is_simple(map); };
@@ -211,7 +277,9 @@ bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
 bool WayToPins::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
   NewtonOptions newton = last_steps();
   newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
-  NewtonResult result = minimise_energy(mesh_.faces, rest_, held_, uvs, newton, work);
+  std::vector<bool> fixed = fixed_;
+  if (drifts_ != kNone) fixed[drifts_] = true;
+  NewtonResult result = minimise_energy(mesh_.faces, rest_, fixed, uvs, newton, work);
   if (result.refused) uvs = std::move(result.admitted);
   return result.converged && !result.refused;
 }
@@ -254,7 +322,7 @@ bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
 bool WayToPins::embed(std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
-  std::vector<Vec2> trial = field.harmonic(targets_);
+  std::vector<Vec2> trial = field.harmonic(targets_of(uvs));
   if (!positive(trial)) return false;
   uvs = std::move(trial);
   return true;
@@ -275,7 +343,8 @@ WayToPins::End WayToPins::walk(bool simple, std::vector<Vec2>& uvs) const {
       for (std::size_t v = 0; v < uvs.size(); ++v) trial[v] = uvs[v] + length * direction[v];
       if (length == 1) put_in_place(trial);
       if (!positive(trial)) return false;
-      return !simple || (length == 1 ? is_sound(trial) : contact_.is_simple(trial));
+      const bool may_touch = length == 1 && !strict_;
+      return !simple || (may_touch ? is_sound(trial) : contact_.is_simple(trial));
     };
     const double singular = first_singular_step(mesh_.faces, uvs, direction, work_);
     double reach = std::min(singular, 1 / kShareOfWay);
@@ -311,7 +380,7 @@ bool WayToPins::go(std::vector<Vec2>& uvs) const {
   std::vector<Vec2> trial = uvs;
   End end = End::kTouched;
   if (keeps_simple(trial)) end = walk(true, trial);
-  if (end == End::kTouched) {
+  if (end == End::kTouched && !strict_) {
     trial = uvs;
     end = walk(false, trial);
   }
@@ -319,8 +388,19 @@ bool WayToPins::go(std::vector<Vec2>& uvs) const {
     uvs.swap(trial);
     return true;
   }
+  if (strict_) return false;
   // From where it got stuck, and from the start.
   return untangle_all(std::move(trial), uvs) || untangle_all(uvs, uvs);
+}
+
+/// What is held, at its very numbers.
+void put_at(Pins pins, std::vector<Vec2>& uvs) {
+  for (const HeldVertex& pin : pins) {
+    Vec2& w = uvs[pin.vertex];
+    if (pin.kind == PinKind::kPoint || pin.kind == PinKind::kU) w.x() = pin.place.x();
+    if (pin.kind == PinKind::kPoint || pin.kind == PinKind::kV) w.y() = pin.place.y();
+    if (pin.kind == PinKind::kLine) w += pin.normal().dot(pin.place - w) * pin.normal();
+  }
 }
 
 /// The map that meets the pins; nothing where none was found. `relaxed`: and has the least energy.
@@ -334,7 +414,7 @@ std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins
     if (relaxed) map.converged = way.relax(work.part(kThere, 1), map.uvs);
   }
   for (Vec2& w : map.uvs) w = frame.to_plane(w);
-  for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
+  put_at(pins, map.uvs);
   return map;
 }
 
@@ -355,6 +435,20 @@ HeldMap first_failure(Pins pins, const Work& work, const Meets& meets) {
 
 }  // namespace
 
+Vec2 HeldVertex::normal() const {
+  switch (kind) {
+    case PinKind::kU:
+      return {1, 0};
+    case PinKind::kV:
+      return {0, 1};
+    case PinKind::kLine:
+      return Vec2(-along.y(), along.x()) / portable::hypot(along.x(), along.y());
+    case PinKind::kPoint:
+      break;
+  }
+  return Vec2::Zero();
+}
+
 HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work) {
@@ -363,7 +457,7 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   if (pins.size() > 2 && !non_positive_faces(mesh.faces, start, work).empty()) {
     start = start_map(mesh, rest, options, work);
   }
-  WayToPins way(mesh, rest, options, work);
+  WayToPins way(mesh, rest, options, false, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
   return first_failure(pins, work,
                        [&](Pins some) { return meet(way, start, some, false, work).has_value(); });
@@ -387,6 +481,23 @@ HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   }
   for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
   map.converged = way.relax_nearby(work.part(kThere, 1), map.uvs);
+  return map;
+}
+
+HeldMap hold_from(const DiskMesh& mesh, std::vector<Vec2> start,
+                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
+                  const Work& work) {
+  const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
+  WayToPins way(mesh, rest, options, true, work);
+  way.set_pins({}, pins);
+  HeldMap map;
+  if (!way.fits(start) && !way.go(start)) {
+    map.failed = 0;
+    return map;
+  }
+  map.converged = way.relax(work.part(kThere, 1), start);
+  put_at(pins, start);
+  map.uvs = std::move(start);
   return map;
 }
 

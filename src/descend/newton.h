@@ -27,6 +27,9 @@ struct NewtonOptions {
   /// Judges the start and the map after each step, for instance: the boundary is simple. Where that
   /// does not hold once steps gain less than 1%, the run ends. Anything goes by default.
   std::function<bool(const std::vector<Vec2>& uvs)> admissible;
+  /// Per vertex the unit normal of the line along which it may slide, zero where it is free; null:
+  /// all are free. It begins on its line.
+  const std::vector<Vec2>* slides = nullptr;
 };
 
 struct NewtonResult {

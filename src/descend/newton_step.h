@@ -57,6 +57,9 @@ class NewtonStepper {
   /// From now on the contact's energy joins the objective, no step lets the boundary touch itself,
   /// and each begins where the last one ended.
   void set_contact(const BoundaryContact& contact) { contact_.emplace(contact); }
+  /// From now on vertices move along the lines of these unit normals, where they are not zero.
+  /// Keeps the reference.
+  void set_slides(const std::vector<Vec2>& normals) { slides_ = &normals; }
   /// See BoundaryContact::fit; for the steps from `uvs` on. `distortion`: as symmetric Dirichlet
   /// energy; `comparable`: what gains are compared with. Precondition: set_contact.
   void fit_contact(const std::vector<Vec2>& uvs, double distortion, double comparable) {
@@ -83,10 +86,15 @@ class NewtonStepper {
   static constexpr double kPatternMargin = 1.3;  // of the reach, up to which pairs have entries
   static constexpr double kLooseShare = 0.05;    // of all stiffness, of pairs that lack them; and
                                                  // no more than what the last step gained
+  /// Across its line a vertex that slides is so many times as stiff as it is by itself: what the
+  /// others feel of it differs from a line's pull by the inverse, and pivots keep half of their
+  /// digits.
+  static constexpr double kRail = 1e8;
 
   double strength() const { return contact_->strength() / area_; }
   std::vector<Contact> meet_contacts(const std::vector<Vec2>& uvs);
   void add_loose(const std::vector<Vec2>& uvs);
+  void hold_to_lines();
   double stop_before_touch(const std::vector<Vec2>& uvs, const std::vector<Vec2>& direction,
                            double length);
   template <class Model>
@@ -114,6 +122,7 @@ class NewtonStepper {
   std::unique_ptr<SpdSolver> solver_;
   bool analyzed_ = false;
   Eigen::VectorXd gradient_;
+  const std::vector<Vec2>* slides_ = nullptr;
 };
 
 template <class Density>
@@ -218,6 +227,24 @@ void NewtonStepper<Density>::assemble_model(const Model& model, const std::vecto
   };
   assemble(with_contacts_.empty() ? faces_ : with_contacts_, give, hessian_, gradient_, work_);
   add_loose(uvs);
+  hold_to_lines();
+}
+
+/// Takes what pulls vertices off their lines from the gradient, and makes them stiff across these.
+template <class Density>
+void NewtonStepper<Density>::hold_to_lines() {
+  if (slides_ == nullptr) return;
+  const SparseMatrix& matrix = hessian_.matrix();
+  for (Index v = 0; v < size_of(*slides_); ++v) {
+    const Vec2& normal = (*slides_)[v];
+    const Index row = hessian_.row(v);
+    if (row == kNone || normal.isZero(0)) continue;
+    auto pull = gradient_.segment<2>(2 * row);
+    pull -= normal.dot(pull) * normal;
+    const double stiffness = kRail * (matrix.valuePtr()[matrix.outerIndexPtr()[2 * row]] +
+                                      matrix.valuePtr()[matrix.outerIndexPtr()[2 * row + 1]]);
+    hessian_.add_diagonal(row, [&](int r, int c) { return stiffness * normal[r] * normal[c]; });
+  }
 }
 
 /// Pairs without entries hold their vertices to their places: of a term k (sum_i c_i n . x_i)^2 the
@@ -290,7 +317,9 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
 
   std::vector<Vec2> direction(uvs.size(), Vec2::Zero());
   for (Index v = 0; v < size_of(uvs); ++v) {
-    if (hessian_.row(v) != kNone) direction[v] = flat.segment<2>(2 * hessian_.row(v));
+    if (hessian_.row(v) == kNone) continue;
+    direction[v] = flat.segment<2>(2 * hessian_.row(v));
+    if (slides_ != nullptr) direction[v] -= (*slides_)[v].dot(direction[v]) * (*slides_)[v];
   }
   double longest = std::numeric_limits<double>::infinity();
   if (Density::kBarrier) {

@@ -98,7 +98,8 @@ class Growth {
       const double mass = std::max(1.0, box.sizes().norm() * density);
       if (!stays) extent_ = std::max(extent_, box.sizes().norm() * density);
       body.lightness = stays ? 0 : 1 / mass;
-      body.slackness = turns_ && !stays ? 1 / (mass * std::max(inertia, 1.0)) : 0;
+      const bool turns = turns_ && !stays && !problem.chart(c).aligned;
+      body.slackness = turns ? 1 / (mass * std::max(inertia, 1.0)) : 0;
       points_ += size_of(body.outline.points);
       poses_.push_back({packed.placements[c].place(middle, density), packed.placements[c].turn});
       middles_.push_back(problem.chart(c).scale * middle);
@@ -296,7 +297,7 @@ class Growth {
     const double share = far > kFurthest ? kFurthest / far : 1;
     poses_[b].middle += share * move.head<2>();
     const Vec2 turn = rotated(poses_[b].turn, Vec2(1, share * move.z()));
-    if (turns_) poses_[b].turn = turn / portable::hypot(turn.x(), turn.y());
+    if (bodies_[b].slackness > 0) poses_[b].turn = turn / portable::hypot(turn.x(), turn.y());
   }
 
   double limit_, side_, margin_;

@@ -58,7 +58,7 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
       base_(charts.size(), Vec2(1, 0)) {
   parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t c = begin; c < end && (options_.turns > 4 || options_.upright); ++c) {
-      base_[c] = turn_to_least_box(outlines_[c].hull);
+      if (!charts_[c].aligned) base_[c] = turn_to_least_box(outlines_[c].hull);
     }
   });
   turns_ = options.turns;
@@ -186,6 +186,8 @@ double Problem::radius() const {
 }
 
 Vec2 Problem::turn(Index c, int k) const {
+  // What lies along the axes has each quarter in the place of all turns up to the next one.
+  if (charts_[c].aligned) k -= k % std::max(1, turns_ / 4);
   Vec2 step;
   if (4 * k % turns_ == 0) {
     const std::array<Vec2, 4> quarters{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
@@ -214,6 +216,10 @@ Masks Problem::masks(double texels_per_unit, double spare) const {
         }
         if (k >= quarter) {
           masks[c].push_back(quarter_turned(masks[c][k - quarter]));
+          continue;
+        }
+        if (k > 0 && charts_[c].aligned) {
+          masks[c].push_back(masks[c][0]);
           continue;
         }
         masks[c].push_back(mask_of(thinned_[c], turn(c, k), density,

@@ -29,6 +29,7 @@ struct PackChart {
   std::vector<Triangle> faces;         ///< may be folded or overlap: what they cover counts
   double scale = 1;                    ///< its density to that of the others, > 0
   std::optional<Placement> kept = {};  ///< where it stays
+  bool aligned = false;                ///< turned by quarters alone, and from what it is
 };
 
 struct PackOptions {
@@ -38,6 +39,8 @@ struct PackOptions {
   int turns = 16;              ///< rotations that are tried: 16 or more, 4 quarter turns or 1, none
   bool upright = false;        ///< 4 and 1 start from each chart's least box, its longer side
                                ///< along x; else from the chart as it is
+  bool snap = false;           ///< whoever places the charts moves them by up to half a texel, onto
+                               ///< texel edges
   int block = 1;               ///< charts share no block of so many texels per side
   int max_pages = 1;
   double effort = 1;  ///< work spent on trying other orders, to the default; 0: the first that fits

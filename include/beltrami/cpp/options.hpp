@@ -75,6 +75,10 @@ enum class Stack : std::int32_t {
   kCopies = BELTRAMI_STACK_COPIES,
   kMirrored = BELTRAMI_STACK_MIRRORED
 };
+enum class Rectify : std::int32_t {
+  kNone = BELTRAMI_RECTIFY_NONE,
+  kGrids = BELTRAMI_RECTIFY_GRIDS
+};
 enum class Delaunay : std::int32_t { kOff = 0, kOn = 1 };
 
 /// The key of an option whose values have type T: std::int64_t, double, or the enum of a choice.
@@ -131,6 +135,8 @@ inline constexpr Real kStraightSeams{BELTRAMI_OPTION_STRAIGHT_SEAMS};
 inline constexpr Option<Effort> kEffort{BELTRAMI_OPTION_EFFORT};
 inline constexpr Real kFlatSeams{BELTRAMI_OPTION_FLAT_SEAMS};
 inline constexpr Option<Stack> kStack{BELTRAMI_OPTION_STACK};
+inline constexpr Option<Rectify> kRectify{BELTRAMI_OPTION_RECTIFY};
+inline constexpr Integer kSnapTexels{BELTRAMI_OPTION_SNAP_TEXELS};
 }  // namespace option
 
 /// The value of an option whose type is known when the program runs: an integer, a number, the enum

@@ -62,6 +62,30 @@ class Surface {
     take(surface_.pins, corners, corners.size(), "");
     return take(surface_.pin_uvs, uvs, corners.size(), "there is not one UV per pin");
   }
+  /// What is held of each pin, BELTRAMI_PIN_, and of lines their directions; after pins().
+  Surface& pin_kinds(const Indices<1>& kinds, const Reals<2>& directions) noexcept {
+    const std::size_t pins = static_cast<std::size_t>(surface_.pin_count);
+    take(surface_.pin_kinds, kinds, pins, "there is not one kind per pin");
+    return take(surface_.pin_directions, directions, pins, "there is not one direction per pin");
+  }
+  /// Edges that are to be straight with those that they meet, and BELTRAMI_PIN_U, V or LINE for
+  /// each.
+  Surface& straight_edges(const Indices<2>& edges, const Indices<1>& kinds) noexcept {
+    surface_.straight_edge_count = edges.size();
+    take(surface_.straight_edges, edges, edges.size(), "");
+    return take(surface_.straight_kinds, kinds, edges.size(), "there is not one kind per edge");
+  }
+  /// Faces whose charts become rectangles, with the corners that their borders have.
+  Surface& rectangles(const Indices<1>& faces) noexcept {
+    surface_.rectangle_count = faces.size();
+    return take(surface_.rectangles, faces, faces.size(), "");
+  }
+  /// The same with corners, four vertices for each.
+  Surface& rectangles(const Indices<1>& faces, const Indices<4>& corners) noexcept {
+    rectangles(faces);
+    return take(surface_.rectangle_corners, corners, faces.size(),
+                "there are not four corners per rectangle");
+  }
   /// One factor per vertex: what a seam costs there.
   Surface& vertex_paint(const Reals<1>& factors) noexcept {
     return take(surface_.vertex_paint, factors, vertices(), "there is not one factor per vertex");
@@ -105,9 +129,10 @@ class Surface {
   Result<beltrami_mesh> mesh() const {
     if (defect_ != nullptr) return Failure(Status::kInvalidArgument, defect_);
     const beltrami_buffer* others[] = {
-        &surface_.face_sizes,   &surface_.corner_uvs,    &surface_.face_labels,
-        &surface_.densities,    &surface_.seams,         &surface_.pins,
-        &surface_.vertex_paint, &surface_.painted_edges, &surface_.materials};
+        &surface_.face_sizes,     &surface_.corner_uvs,    &surface_.face_labels,
+        &surface_.densities,      &surface_.seams,         &surface_.pins,
+        &surface_.vertex_paint,   &surface_.painted_edges, &surface_.materials,
+        &surface_.straight_edges, &surface_.rectangles};
     for (const beltrami_buffer* other : others) {
       if (other->data != nullptr) {
         return Failure(Status::kInvalidArgument,

@@ -302,4 +302,16 @@ OPTIONS = (
         "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams.",
         True, False, False,
     ),
+    Option(
+        "rectify", "choice", "none", 0.0, 1.0,
+        ("none", "grids"),
+        "Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height).",
+        True, False, False,
+    ),
+    Option(
+        "snap_texels", "bool", False, 0.0, 1.0,
+        (),
+        "True turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room.",
+        True, False, False,
+    ),
 )

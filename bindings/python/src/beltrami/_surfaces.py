@@ -31,6 +31,9 @@ class Surface:
     vertex_paint: Array | None = None
     edge_paint: tuple[Array, Array] | None = None  # edges and factors
     materials: Array | None = None
+    pin_kinds: tuple[Array, Array] | None = None  # numbers BELTRAMI_PIN_, and directions
+    straight: tuple[Array, Array] | None = None  # edges and numbers BELTRAMI_PIN_
+    rectangles: tuple[Array, Array | None] | None = None  # faces and corners
 
     def struct(self) -> Any:
         """Return the ``beltrami_surface``, which is good as long as the arrays are."""
@@ -61,7 +64,23 @@ class Surface:
             surface.painted_edge_count = len(edges)
         if self.materials is not None:
             surface.materials = buffer(self.materials)
+        self._straighten(surface)
         return surface
+
+    def _straighten(self, surface: Any) -> None:
+        if self.pin_kinds is not None and len(self.pin_kinds[0]):
+            kinds, directions = self.pin_kinds
+            surface.pin_kinds, surface.pin_directions = buffer(kinds), buffer(directions)
+        if self.straight is not None and len(self.straight[0]):
+            edges, kinds = self.straight
+            surface.straight_edges, surface.straight_kinds = buffer(edges), buffer(kinds)
+            surface.straight_edge_count = len(edges)
+        if self.rectangles is not None and len(self.rectangles[0]):
+            faces, corners = self.rectangles
+            surface.rectangles = buffer(faces)
+            surface.rectangle_count = len(faces)
+            if corners is not None:
+                surface.rectangle_corners = buffer(corners)
 
     def explain(self, error: BeltramiError) -> None:
         """Has the message show an index as it was given, where one is out of range."""

@@ -19,6 +19,7 @@ PackChoice = Literal["pages", "none"]
 PackTurnsChoice = Literal["any", "quarter", "none"]
 EffortChoice = Literal["quick", "normal", "high"]
 StackChoice = Literal["none", "copies", "mirrored"]
+RectifyChoice = Literal["none", "grids"]
 
 #: Options that None leaves to the option `preset`.
 OF_PRESETS = (
@@ -96,6 +97,8 @@ class UnwrapOptions(TypedDict, total=False):
     effort: EffortChoice
     flat_seams: float
     stack: StackChoice
+    rectify: RectifyChoice
+    snap_texels: bool
 
 
 class PackOptions(TypedDict, total=False):

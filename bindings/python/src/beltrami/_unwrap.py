@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _hints, _polygons, _sharing, _trimesh
+from . import _arrays, _hints, _polygons, _sharing, _straight, _trimesh
 from ._atlas import Atlas, SceneAtlases
 from ._cancel import CancelToken
 from ._errors import BeltramiError, NotInjectiveWarning
@@ -28,6 +29,7 @@ from ._tables import (
     PackChoice,
     PackTurnsChoice,
     PresetChoice,
+    RectifyChoice,
     StackChoice,
     UnwrapOptions,
     WeldChoice,
@@ -50,7 +52,9 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
-    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    pins: tuple[npt.ArrayLike, ...] | None = None,
+    straight: tuple[npt.ArrayLike, Sequence[str] | str] | None = None,
+    rectangles: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     vertex_paint: npt.ArrayLike | None = None,
     edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     materials: npt.ArrayLike | None = None,
@@ -67,7 +71,9 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
-    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    pins: tuple[npt.ArrayLike, ...] | None = None,
+    straight: tuple[npt.ArrayLike, Sequence[str] | str] | None = None,
+    rectangles: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     vertex_paint: npt.ArrayLike | None = None,
     edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     materials: npt.ArrayLike | None = None,
@@ -84,7 +90,9 @@ def unwrap(
     face_labels: npt.ArrayLike | None = None,
     densities: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
-    pins: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    pins: tuple[npt.ArrayLike, ...] | None = None,
+    straight: tuple[npt.ArrayLike, Sequence[str] | str] | None = None,
+    rectangles: npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     vertex_paint: npt.ArrayLike | None = None,
     edge_paint: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     materials: npt.ArrayLike | None = None,
@@ -131,6 +139,8 @@ def unwrap(
     effort: EffortChoice = "normal",
     flat_seams: float | None = None,
     stack: StackChoice = "none",
+    rectify: RectifyChoice = "none",
+    snap_texels: bool = False,
     # end of options
     share_page: bool = False,
     progress: Progress = None,
@@ -170,7 +180,16 @@ def unwrap(
     pins : tuple of (k,) array_like of integers and (k, 2) array_like of floats, optional
         Corners to hold, counted from 0 face after face, and the UVs that they get, to the bit: a
         chart takes the scale of its pins. Raises `PinError`, with the corner, where no injective
-        map meets them.
+        map meets them. A third item has their kinds: ``"point"``, or ``"u"``, ``"v"`` or
+        ``"line"`` for one that slides with that held; a fourth, (k, 2), the directions of lines.
+    straight : tuple of (k, 2) array_like of integers and sequence of str, optional
+        Edges, by their vertices, that become straight with those of their kind that they meet, in
+        each chart that has them: ``"u"`` at one u, ``"v"`` at one v, ``"line"`` anywhere. One word
+        stands for all. Raises `PinError` where no injective map has them so.
+    rectangles : (k,) array_like of integers, optional
+        Faces whose charts become rectangles along the axes: grids where they are rows and columns
+        of quads, else with the four clear corners of their borders. A tuple names the corners as
+        well: (k, 4) vertices. Raises `PinError`, with the face, where that cannot be.
     vertex_paint : (n,) array_like of floats, optional
         With ``cut="auto"`` factors of what a seam costs at each vertex, finite and at least 0: less
         than 1 draws seams, more drives them off, and nothing is forced. They count from 0.05 to 20,
@@ -337,6 +356,14 @@ def unwrap(
         Whether components of one shape share texels: none, copies (those that a rigid motion
         carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
         with pins, max-charts, seam-budget or symmetric-seams.
+    rectify : {"none", "grids"}, default "none"
+        Which charts become rectangles along the axes: none, or grids (those that are rows and
+        columns of quads, as roads, tubes and cloths are: each column gets one width and each row
+        one height).
+    snap_texels : bool, default False
+        True turns each chart to the most of its border that is straight, then by quarters alone,
+        and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it:
+        nothing by more than half a texel. Charts then keep a texel more room.
 
     Returns
     -------
@@ -422,13 +449,15 @@ def unwrap(
         "effort": effort,
         "flat_seams": flat_seams,
         "stack": stack,
+        "rectify": rectify,
+        "snap_texels": snap_texels,
         # end of options
     }
     if faces is None and isinstance(vertices, (str, os.PathLike)):
         vertices = _trimesh.load(vertices)
     if faces is None and _trimesh.is_scene(vertices):
         of_cuts = (corner_uvs, face_labels, seams, vertex_paint, edge_paint, materials)
-        of_faces = (*of_cuts, densities, pins)
+        of_faces = (*of_cuts, densities, pins, straight, rectangles)
         if any(values is not None for values in of_faces):
             raise TypeError("a scene has several meshes: give what belongs to faces with each mesh")
         return _unwrap_scene(vertices, given, share_page, progress, cancel)
@@ -441,7 +470,8 @@ def unwrap(
         mesh, vertices, faces = vertices, vertices.vertices, vertices.faces
         if corner_uvs is None and cut == "islands":
             corner_uvs = _trimesh.corner_uvs(mesh)
-    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams, pins)
+    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams)
+    surface = _with_straight(surface, pins, straight, rectangles)
     surface = _with_hints(surface, vertex_paint, edge_paint, materials)
     with hook_for(progress) as hook:
         atlas = _unwrap(surface, given, hook, cancel, mesh)
@@ -456,7 +486,6 @@ def _surface(
     labels: Any,
     densities: Any,
     seams: Any,
-    pins: Any = None,
 ) -> Surface:
     points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
     return Surface(
@@ -466,7 +495,18 @@ def _surface(
         None if labels is None else _polygons.labels(labels, polygons),
         None if densities is None else _polygons.densities(densities, polygons),
         None if seams is None else _polygons.seams(seams),
-        None if pins is None else _polygons.pins(pins, polygons),
+    )
+
+
+def _with_straight(surface: Surface, pins: Any, straight: Any, rectangles: Any) -> Surface:
+    faces = surface.faces
+    if pins is not None:
+        *held, kinds = _straight.pins(pins, faces)
+        surface = replace(surface, pins=(held[0], held[1]), pin_kinds=kinds)
+    return replace(
+        surface,
+        straight=None if straight is None else _straight.edges(straight),
+        rectangles=None if rectangles is None else _straight.rectangles(rectangles, faces),
     )
 
 

@@ -20,6 +20,7 @@ from ._tables import (
     PackChoice,
     PackTurnsChoice,
     PresetChoice,
+    RectifyChoice,
     StackChoice,
     WeldChoice,
 )
@@ -75,6 +76,8 @@ def unwrap_batch(
     effort: EffortChoice = "normal",
     flat_seams: float | None = None,
     stack: StackChoice = "none",
+    rectify: RectifyChoice = "none",
+    snap_texels: bool = False,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -272,6 +275,14 @@ def unwrap_batch(
         Whether components of one shape share texels: none, copies (those that a rigid motion
         carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
         with pins, max-charts, seam-budget or symmetric-seams.
+    rectify : {"none", "grids"}, default "none"
+        Which charts become rectangles along the axes: none, or grids (those that are rows and
+        columns of quads, as roads, tubes and cloths are: each column gets one width and each row
+        one height).
+    snap_texels : bool, default False
+        True turns each chart to the most of its border that is straight, then by quarters alone,
+        and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it:
+        nothing by more than half a texel. Charts then keep a texel more room.
 
     Returns
     -------
@@ -345,6 +356,8 @@ def unwrap_batch(
         "effort": effort,
         "flat_seams": flat_seams,
         "stack": stack,
+        "rectify": rectify,
+        "snap_texels": snap_texels,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

@@ -47,7 +47,7 @@ pub use options::{
 pub use packer::{Packer, UvMesh};
 pub use packing::{Packing, PageSummary, Texel};
 pub use parameterization::{Parameterization, Stage, Status, Summary};
-pub use surface::{Edges, Integers, Reals, Surface};
+pub use surface::{Edges, Integers, PinKind, Quadruples, Reals, Surface};
 pub use unwrapper::Unwrapper;
 pub use verdict::{Certificate, Crossings, Distortion, Orientations};
 pub use view::{Index, Real, Scalar, View, ViewMut};

@@ -70,41 +70,71 @@ numbers! {
     Reals, Real
 }
 
-/// Pairs of vertices, borrowed: edges.
-///
-/// Converts from `&[[u32; 2]]`, `&[[u64; 2]]`, references to arrays and `Vec`s of these, and from
-/// [`View`]s of either.
-#[derive(Clone, Copy)]
-pub struct Edges<'a>(pub(crate) Buffer<'a>);
+macro_rules! tuples {
+    ($(#[$doc:meta])* $name:ident, $size:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub struct $name<'a>(pub(crate) Buffer<'a>);
 
-impl<'a, T: Index> From<View<'a, T, 2>> for Edges<'a> {
-    fn from(view: View<'a, T, 2>) -> Self {
-        Edges(view.erase())
-    }
+        impl<'a, T: Index> From<View<'a, T, $size>> for $name<'a> {
+            fn from(view: View<'a, T, $size>) -> Self {
+                $name(view.erase())
+            }
+        }
+
+        impl<'a, T: Index> From<&'a [[T; $size]]> for $name<'a> {
+            fn from(items: &'a [[T; $size]]) -> Self {
+                View::from(items).into()
+            }
+        }
+
+        impl<'a, T: Index> From<&'a Vec<[T; $size]>> for $name<'a> {
+            fn from(items: &'a Vec<[T; $size]>) -> Self {
+                items.as_slice().into()
+            }
+        }
+
+        impl<'a, T: Index, const LEN: usize> From<&'a [[T; $size]; LEN]> for $name<'a> {
+            fn from(items: &'a [[T; $size]; LEN]) -> Self {
+                items.as_slice().into()
+            }
+        }
+
+        impl std::fmt::Debug for $name<'_> {
+            fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.debug_struct(stringify!($name)).field("len", &self.0.len).finish()
+            }
+        }
+    };
+}
+tuples! {
+    /// Pairs of vertices, borrowed: edges.
+    ///
+    /// Converts from `&[[u32; 2]]`, `&[[u64; 2]]`, references to arrays and `Vec`s of these, and
+    /// from [`View`]s of either.
+    Edges, 2
+}
+tuples! {
+    /// Four vertices each, borrowed: corners of rectangles.
+    ///
+    /// Converts from `&[[u32; 4]]`, `&[[u64; 4]]`, references to arrays and `Vec`s of these, and
+    /// from [`View`]s of either.
+    Quadruples, 4
 }
 
-impl<'a, T: Index> From<&'a [[T; 2]]> for Edges<'a> {
-    fn from(items: &'a [[T; 2]]) -> Self {
-        View::from(items).into()
-    }
-}
-
-impl<'a, T: Index> From<&'a Vec<[T; 2]>> for Edges<'a> {
-    fn from(items: &'a Vec<[T; 2]>) -> Self {
-        items.as_slice().into()
-    }
-}
-
-impl<'a, T: Index, const LEN: usize> From<&'a [[T; 2]; LEN]> for Edges<'a> {
-    fn from(items: &'a [[T; 2]; LEN]) -> Self {
-        items.as_slice().into()
-    }
-}
-
-impl std::fmt::Debug for Edges<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("Edges").field("len", &self.0.len).finish()
-    }
+/// What is held of a pin, and what edges that are straight have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u32)]
+#[non_exhaustive]
+pub enum PinKind {
+    /// Both coordinates.
+    Point = sys::BELTRAMI_PIN_POINT as u32,
+    /// u: it may slide along v.
+    U = sys::BELTRAMI_PIN_U as u32,
+    /// v: it may slide along u.
+    V = sys::BELTRAMI_PIN_V as u32,
+    /// That it lies on a line, along which it may slide.
+    Line = sys::BELTRAMI_PIN_LINE as u32,
 }
 
 /// The corners of the faces.
@@ -141,6 +171,10 @@ pub struct Surface<'a> {
     densities: Option<Reals<'a>>,
     seams: Option<Edges<'a>>,
     pins: Option<(Integers<'a>, Uvs<'a>)>,
+    pin_kinds: Option<(Integers<'a>, Uvs<'a>)>,
+    straight_edges: Option<(Edges<'a>, Integers<'a>)>,
+    rectangles: Option<Integers<'a>>,
+    rectangle_corners: Option<Quadruples<'a>>,
     vertex_paint: Option<Reals<'a>>,
     edge_paint: Option<(Edges<'a>, Reals<'a>)>,
     materials: Option<Integers<'a>>,
@@ -172,6 +206,10 @@ impl<'a> Surface<'a> {
             densities: None,
             seams: None,
             pins: None,
+            pin_kinds: None,
+            straight_edges: None,
+            rectangles: None,
+            rectangle_corners: None,
             vertex_paint: None,
             edge_paint: None,
             materials: None,
@@ -211,6 +249,46 @@ impl<'a> Surface<'a> {
     /// are not as many UVs as corners.
     pub fn pins(mut self, corners: impl Into<Integers<'a>>, uvs: impl Into<Uvs<'a>>) -> Self {
         self.pins = Some((corners.into(), uvs.into()));
+        self
+    }
+
+    /// What is held of each pin, a [`PinKind`] as an integer, and a direction for each, which says
+    /// something of [`PinKind::Line`] alone. Unwrapping fails with
+    /// [`ErrorKind::InvalidArgument`](crate::ErrorKind::InvalidArgument) where there are not as many
+    /// as pins.
+    pub fn pin_kinds(
+        mut self,
+        kinds: impl Into<Integers<'a>>,
+        directions: impl Into<Uvs<'a>>,
+    ) -> Self {
+        self.pin_kinds = Some((kinds.into(), directions.into()));
+        self
+    }
+
+    /// Edges, by their vertices, that become straight with those of their kind that they meet, in
+    /// each chart that has them, and for each a [`PinKind`] as an integer, but not
+    /// [`PinKind::Point`]. Unwrapping fails with [`ErrorKind::Pins`](crate::ErrorKind::Pins) where
+    /// no injective map has them straight.
+    pub fn straight_edges(
+        mut self,
+        edges: impl Into<Edges<'a>>,
+        kinds: impl Into<Integers<'a>>,
+    ) -> Self {
+        self.straight_edges = Some((edges.into(), kinds.into()));
+        self
+    }
+
+    /// Faces whose charts become rectangles along the axes: grids of quads where they are rows and
+    /// columns of these, else with the four corners that their borders have. Unwrapping fails with
+    /// [`ErrorKind::Pins`](crate::ErrorKind::Pins), and the face, where it has none.
+    pub fn rectangles(mut self, faces: impl Into<Integers<'a>>) -> Self {
+        self.rectangles = Some(faces.into());
+        self
+    }
+
+    /// Four vertices of the border of each rectangle, its corners.
+    pub fn rectangle_corners(mut self, corners: impl Into<Quadruples<'a>>) -> Self {
+        self.rectangle_corners = Some(corners.into());
         self
     }
 
@@ -285,6 +363,17 @@ impl<'a> Surface<'a> {
         if let Some((pinned, uvs)) = &self.pins {
             require("UVs of pins", Some(uvs.len()), pinned.len(), "pin")?;
         }
+        let pins = self.pins.map_or(0, |(corners, _)| corners.0.len);
+        if let Some((kinds, directions)) = &self.pin_kinds {
+            require("kinds of pins", Some(kinds.len()), pins, "pin")?;
+            require("directions", Some(directions.len()), pins, "pin")?;
+        }
+        if let Some((edges, kinds)) = &self.straight_edges {
+            require("kinds", Some(kinds.len()), edges.0.len, "straight edge")?;
+        }
+        let rectangles = self.rectangles.map_or(0, |faces| faces.len());
+        let corners_of = self.rectangle_corners.map(|corners| corners.0.len);
+        require("quadruples of corners", corners_of, rectangles, "rectangle")?;
         let vertices = self.vertex_count();
         require("factors", self.vertex_paint.map(|paint| paint.len()), vertices, "vertex")?;
         if let Some((edges, factors)) = &self.edge_paint {
@@ -313,6 +402,14 @@ impl<'a> Surface<'a> {
             pins: optional(self.pins.map(|(corners, _)| corners.0)),
             pin_uvs: optional(self.pins.map(|(_, uvs)| uvs.0)),
             pin_count: self.pins.map_or(0, |(corners, _)| corners.0.len as u64),
+            pin_kinds: optional(self.pin_kinds.map(|(kinds, _)| kinds.0)),
+            pin_directions: optional(self.pin_kinds.map(|(_, directions)| directions.0)),
+            straight_edges: optional(self.straight_edges.map(|(edges, _)| edges.0)),
+            straight_kinds: optional(self.straight_edges.map(|(_, kinds)| kinds.0)),
+            straight_edge_count: self.straight_edges.map_or(0, |(edges, _)| edges.0.len as u64),
+            rectangles: optional(self.rectangles.map(|faces| faces.0)),
+            rectangle_corners: optional(self.rectangle_corners.map(|corners| corners.0)),
+            rectangle_count: rectangles as u64,
             vertex_paint: optional(self.vertex_paint.map(|paint| paint.0)),
             painted_edges: optional(self.edge_paint.map(|(edges, _)| edges.0)),
             edge_paint: optional(self.edge_paint.map(|(_, factors)| factors.0)),

@@ -7,7 +7,8 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use beltrami::{
     check_atlas, check_atlas_with, triangulate, AtlasRules, CancelToken, Control, Cut, Element,
-    ErrorKind, Method, Pack, Preset, Status, Surface, UnwrapOptions, Unwrapper, View, Weld,
+    ErrorKind, Method, Pack, PinKind, Preset, Status, Surface, UnwrapOptions, Unwrapper, View,
+    Weld,
 };
 use support::{sheet, single};
 
@@ -196,6 +197,39 @@ fn pins_are_met_or_named() {
     assert_eq!(error.kind, ErrorKind::Pins);
     assert!(matches!(error.element, Some(Element::Corner(0..=2))), "{error}");
     let error = unwrapper.unwrap(&surface.pins(&corners, &turned[..2])).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::InvalidArgument);
+}
+
+#[test]
+fn charts_become_rectangles_and_edges_straight() {
+    // Two rows of three squares, bent along the middle column.
+    let height = [0.0, 0.0, 0.4, 0.4];
+    let positions: Vec<[f64; 3]> = (0..12)
+        .map(|v| {
+            [f64::from(v % 4) + 0.2 * f64::from(v / 4), f64::from(v / 4), height[v as usize % 4]]
+        })
+        .collect();
+    let mut faces = Vec::new();
+    for a in [0_u32, 1, 2, 4, 5, 6] {
+        faces.extend([[a, a + 1, a + 5], [a, a + 5, a + 4]]);
+    }
+    let options = UnwrapOptions::new().cut(Cut::Minimal).pack(Pack::None);
+    let mut unwrapper = Unwrapper::with_options(&options).unwrap();
+    let surface = Surface::new(&positions, &faces);
+    let uv_of = |atlas: &beltrami::Atlas<'_>, vertex: u32| {
+        let corner = faces.iter().flatten().position(|&v| v == vertex).unwrap();
+        atlas.corner_uvs::<[f64; 2]>()[corner]
+    };
+    let (rectangle, corners) = ([0_u32], [[0_u32, 3, 11, 8]]);
+    let atlas =
+        unwrapper.unwrap(&surface.rectangles(&rectangle).rectangle_corners(&corners)).unwrap();
+    assert!(atlas.certificate().injective);
+    assert_eq!(uv_of(&atlas, 0)[1], uv_of(&atlas, 3)[1]);
+    assert_eq!(uv_of(&atlas, 3)[0], uv_of(&atlas, 11)[0]);
+    let (edges, kinds) = ([[0_u32, 1], [1, 2], [2, 3]], [PinKind::V as u32; 3]);
+    let atlas = unwrapper.unwrap(&surface.straight_edges(&edges, &kinds)).unwrap();
+    assert!((1..4).all(|v| uv_of(&atlas, v)[1] == uv_of(&atlas, 0)[1]));
+    let error = unwrapper.unwrap(&surface.straight_edges(&edges, &kinds[..2])).unwrap_err();
     assert_eq!(error.kind, ErrorKind::InvalidArgument);
 }
 

@@ -1,0 +1,47 @@
+// Rows of the option table: what is asked of the maps of charts.
+#pragma once
+
+#include <beltrami/beltrami.h>
+
+#include <iterator>
+
+#include "abi/option_members.h"
+#include "abi/option_table.h"
+
+namespace beltrami {
+
+inline constexpr const char* kRectifies[] = {"none", "grids"};
+
+inline constexpr OptionEntry kRectify = {
+    .key = BELTRAMI_OPTION_RECTIFY,
+    .type = BELTRAMI_TYPE_CHOICE,
+    .name = "rectify",
+    .summary =
+        "Which charts become rectangles along the axes: none, or grids (those that are rows "
+        "and columns of quads, as roads, tubes and cloths are: each column gets one width "
+        "and each row one height).",
+    .minimum = 0,
+    .maximum = std::size(kRectifies) - 1,
+    .choices = kRectifies,
+    .get = get<&Options::rectify>,
+    .set = set<&Options::rectify>,
+    .calls = BELTRAMI_CALL_UNWRAP,
+};
+
+inline constexpr OptionEntry kSnapTexels = {
+    .key = BELTRAMI_OPTION_SNAP_TEXELS,
+    .type = BELTRAMI_TYPE_INT,
+    .name = "snap-texels",
+    .summary =
+        "1 turns each chart to the most of its border that is straight, then by quarters "
+        "alone, and moves its straight borders onto the edges of texels, as lightmaps and "
+        "pixel art want it: nothing by more than half a texel. Charts then keep a texel more "
+        "room.",
+    .minimum = 0,
+    .maximum = 1,
+    .get = get<&Options::snap_texels>,
+    .set = set<&Options::snap_texels>,
+    .calls = BELTRAMI_CALL_UNWRAP,
+};
+
+}  // namespace beltrami
