@@ -250,6 +250,11 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
           "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
           ".obj")
       ->group("Pages");
+  command
+      ->add_flag("--merge-materials", arguments.merge_materials,
+                 "With --bake, to glTF: one material of all, and one set of pictures for it.\n"
+                 "Materials stay apart that differ in more than textures and factors")
+      ->group("Pages");
   add_masks(*command, arguments.masks);
   options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,
