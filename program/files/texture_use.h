@@ -34,6 +34,7 @@ struct TextureUse {
   std::string name;                ///< for people: "baseColorTexture of materials[2] 'wood'"
   std::string stem;                ///< for files: "wood_baseColor"
   std::string keyword;             ///< of MTL, in small letters: "map_kd"
+  char channel = 0;                ///< of MTL: the one that -imfchan names, or 0
   std::uint64_t material = 0;      ///< by its number in the file that has it
   std::vector<std::string> slots;  ///< where the material names it: JSON pointers, or keywords
   std::string image;               ///< for people: "images[3] 'wood.jpg'"

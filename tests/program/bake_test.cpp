@@ -275,7 +275,7 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   const TemporaryDirectory directory;
   directory.file("a.mtl",
                  "newmtl wood\nKd 0.8 0.2 0.1\nPr 0.5\nmap_Kd wood.png\n"
-                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Pr wood.png\n");
+                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Ns wood.png\n");
   directory.file("wood.png", png_of(16, smooth));
   const std::string in =
       directory.file("a.obj",
@@ -285,7 +285,7 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   const Outcome outcome =
       run({"unwrap", in, directory.path("out.glb"), "--bake", "--resolution", "64"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("map_Pr of material 'glass'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("map_Ns of material 'glass'"), std::string::npos) << outcome.err;
   const Parts parts(directory.read("out.glb"));
   ASSERT_EQ(parts.json["materials"].size(), 2u);
   const Json& wood = parts.json["materials"][0]["pbrMetallicRoughness"];
@@ -299,6 +299,49 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   EXPECT_NE(run({"unwrap", in, directory.path("o.glb"), "--write-seams", directory.path("s.txt")})
                 .err.find("--write-seams"),
             std::string::npos);
+}
+
+TEST(Bake, MapsOfMtlAreChannelsOfGltf) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl",
+                 "newmtl leaf\nPr 0.5\nmap_Kd c.png\nmap_Pr r.png\nmap_Pm -imfchan b m.png\n"
+                 "map_d d.png\nmap_Ke c.png\nnorm n.png\n");
+  const auto plain = [](double r, double g, double b) {
+    return [=](double, double) { return Texel{r, g, b}; };
+  };
+  directory.file("c.png", png_of(16, plain(200, 100, 50)));
+  directory.file("r.png", png_of(8, plain(90, 90, 90)));
+  directory.file("m.png", png_of(4, plain(1, 2, 150)));
+  directory.file("n.png", png_of(4, plain(128, 128, 255)));
+  const auto half = [](double x, double) { return x < 0.5 ? Texel{} : Texel{255, 255, 255}; };
+  directory.file("d.png", png_of(16, half));
+  const std::string in =
+      directory.file("a.obj",
+                     "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                     "vt 0 1\nusemtl leaf\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.glb")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("map_"), std::string::npos) << outcome.err;
+  const Parts parts(directory.read("out.glb"));
+  const Json& material = parts.json["materials"][0];
+  const Json& pbr = material["pbrMetallicRoughness"];
+  const auto texel = [&](const Json& info, std::size_t place) {
+    const Json& texture = parts.json["textures"][info["index"].get<std::size_t>()];
+    const Json& image = parts.json["images"][texture["source"].get<std::size_t>()];
+    const Pixels pixels = *read_image(parts.view(image["bufferView"]));
+    const auto width = static_cast<std::size_t>(pixels.components);
+    const auto first = pixels.values.begin() + static_cast<std::ptrdiff_t>(width * place);
+    return std::vector<std::uint8_t>(first, first + static_cast<std::ptrdiff_t>(width));
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(texel(pbr["metallicRoughnessTexture"], 5), (Bytes{255, 90, 150}));
+  EXPECT_EQ(texel(pbr["baseColorTexture"], 2), (Bytes{200, 100, 50, 0}));
+  EXPECT_EQ(texel(pbr["baseColorTexture"], 14), (Bytes{200, 100, 50, 255}));
+  EXPECT_EQ(texel(material["emissiveTexture"], 0), (Bytes{200, 100, 50}));
+  EXPECT_EQ(pbr["roughnessFactor"], 1.0);
+  EXPECT_EQ(pbr["metallicFactor"], 1.0);
+  EXPECT_EQ(material["alphaMode"], "MASK");
+  EXPECT_TRUE(material.contains("normalTexture"));
 }
 
 TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {
