@@ -168,8 +168,12 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
   command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
       ->required();
-  command->add_option("TEXTURE", arguments.texture, "Texture to read: .png or .jpg")->required();
-  command->add_option("OUT", arguments.output, "Texture to write: .png")->required();
+  command
+      ->add_option("TEXTURE", arguments.texture, "Texture to read: .png, .jpg, .webp, .hdr or .exr")
+      ->required();
+  command
+      ->add_option("OUT", arguments.output, "Texture to write: .png; .hdr or .exr of one of these")
+      ->required();
   command
       ->add_option(
           "--wrap", arguments.wrap,

@@ -18,6 +18,7 @@
 #include "files/gltf_file.h"
 #include "files/polygons.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/webp.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -48,7 +49,9 @@ std::string format_of_image(const std::string& bytes) {
   const std::string_view head = std::string_view(bytes).substr(0, 32);
   if (head.starts_with("\xABKTX 20")) return "KTX2";
   if (head.starts_with("\xABKTX 11")) return "KTX";
-  if (head.starts_with("RIFF") && head.substr(8).starts_with("WEBP")) return "WebP";
+  if (head.starts_with("RIFF") && head.substr(8).starts_with("WEBP")) {
+    return has_webp() ? "a WebP file that is damaged or moves" : "WebP";
+  }
   if (head.starts_with("\x76\x2F\x31\x01")) return "OpenEXR";
   if (head.starts_with("DDS ")) return "DDS";
   if (head.starts_with("#?RADIANCE") || head.starts_with("#?RGBE")) return "Radiance HDR";
@@ -63,7 +66,8 @@ std::string format_of_image(const std::string& bytes) {
 [[noreturn]] void refuse_image(const std::string& path, const TextureUse& use,
                                const std::string& bytes) {
   throw Failure(path + ": " + use.image + " (" + use.name + ") is " + format_of_image(bytes) +
-                ", and --bake reads PNG and JPEG: save it as one of these");
+                ", and --bake of this program reads PNG" + (has_webp() ? ", WebP" : "") +
+                " and JPEG: save it as one of these");
 }
 
 std::string one_digit(double value) {

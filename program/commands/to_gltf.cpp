@@ -309,7 +309,9 @@ class ToGltf {
 
   Json texture_info(const TextureUse& use, const std::string& bytes) {
     Json& json = document_.json;
-    const bool png = bytes.starts_with("\x89PNG");
+    const bool png = bytes.starts_with("\x89PNG"), jpeg = bytes.starts_with("\xFF\xD8");
+    // glTF itself has these two alone.
+    if (!png && !jpeg) return texture_info(use, png_bytes(*read_image(bytes)));
     json["images"].push_back({{"name", use.stem},
                               {"mimeType", png ? "image/png" : "image/jpeg"},
                               {"bufferView", document_.view(bytes)}});

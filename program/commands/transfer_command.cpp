@@ -22,7 +22,9 @@
 #include "files/polygons.h"
 #include "files/texture_use.h"
 #include "files/triangulate.h"
+#include "picture/light.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/webp.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -70,9 +72,26 @@ Pixels read_texture(const std::string& path) {
   if (is_gltf_name(path)) {
     throw Failure(path + ": textures are read from files of their own: save it as .png or .jpg");
   }
-  std::optional<Pixels> image = read_image(read_file(path));
-  if (!image) throw Failure(path + ": is no PNG or JPEG file that can be read");
-  return *std::move(image);
+  const std::string bytes = read_file(path);
+  std::optional<Pixels> image = read_image(bytes);
+  if (!image) image = read_light(bytes);
+  if (image) return *std::move(image);
+  std::string formats = "PNG, JPEG";
+  if (has_webp()) formats += ", WebP";
+  if (has_exr()) formats += ", EXR";
+  throw Failure(path + ": is no " + formats + " or HDR file that can be read");
+}
+
+/// Throws Failure where a picture has another format than its texture can be written in.
+void require_output(const std::string& path, bool light) {
+  const LightFormat format = light_format_of(path);
+  if (!light) return require_png_name(path);
+  if (format == LightFormat::kNone) {
+    throw Failure(path + ": the texture is in single precision: use the extension .exr or .hdr");
+  }
+  if (format == LightFormat::kExr && !has_exr()) {
+    throw Failure(path + ": this program is built without OpenEXR: use the extension .hdr");
+  }
 }
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
@@ -195,7 +214,9 @@ class Transfer {
   int run() {
     require_distinct({arguments_.old_mesh, arguments_.texture, arguments_.output});
     require_distinct({arguments_.new_mesh, arguments_.texture, arguments_.output});
-    require_png_name(arguments_.output);
+    if (light_format_of(arguments_.output) == LightFormat::kNone) {
+      require_png_name(arguments_.output);
+    }
     read_triangles();
     part_into_pages(to_, arguments_.new_mesh, "pack it first");
     if (shows_tiles()) {
@@ -295,6 +316,14 @@ class Transfer {
       call.positions = numbers_of(to_.places);
       call.source_positions = numbers_of(from_.places);
     }
+    const Pixels& known = call.images[pages_in_use(from_).front()];
+    const bool light = known.bytes == sizeof(float);
+    const LightFormat format = light_format_of(arguments_.output);
+    require_output(arguments_.output, light);
+    if (format == LightFormat::kHdr && known.components != 3) {
+      throw Failure(arguments_.output + ": HDR has three components, and the texture has " +
+                    std::to_string(known.components) + ": use the extension .exr");
+    }
     const Context context = make_context();
     const BakeOutcome outcome = call.run(context.get(), arguments_.new_mesh, {});
     const std::uint64_t covered = outcome.texels, without_source = outcome.without_source;
@@ -303,7 +332,7 @@ class Transfer {
       throw_if_interrupted();
       AtomicFile& file = outputs.emplace_back(
           pages.back() > 0 ? path_of_page(arguments_.output, pages[i]) : arguments_.output);
-      file.write(png_bytes(call.pages[i]));
+      file.write(light ? light_bytes(call.pages[i], format) : png_bytes(call.pages[i]));
       file.close();
     }
     require_sources(covered, without_source);

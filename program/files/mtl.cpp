@@ -223,8 +223,7 @@ std::vector<TextureUse> MaterialLibraries::textures() const {
     for (TextureUse& use : textures_of(i)) {
       const auto same = std::find_if(uses.begin(), uses.end(), [&](const TextureUse& known) {
         return known.material == i && known.image == use.image && known.meaning == use.meaning &&
-               known.transform == use.transform &&
-               known.reading.along_u == use.reading.along_u;
+               known.transform == use.transform && known.reading.along_u == use.reading.along_u;
       });
       if (same != uses.end()) {
         same->slots.push_back(use.slots.front());
