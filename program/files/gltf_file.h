@@ -99,7 +99,7 @@ std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::stri
 /// get the same UVs in these.
 ///
 /// Textures that were baked take the places of those that they were made of, and draw through
-/// `uv_set`; tangents go where a normal map is among them. Materials are merged as textures.merge
+/// `uv_set`; where a normal map is among them tangents are made anew. Materials are merged as textures.merge
 /// says, and primitives with it that share their vertices are joined. Without such, a note names
 /// the textures that no longer fit, and says what to do.
 ///

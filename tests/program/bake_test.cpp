@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <optional>
 #include <string>
@@ -223,10 +224,52 @@ TEST(Bake, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.directory.read("out.glb"), three.directory.read("out.glb"));
 }
 
-TEST(Bake, TangentsOfTheOldUvsGo) {
+TEST(Bake, TangentsAreThoseOfTheNewUvs) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["NORMAL"] = builder.vectors3({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1,
+                                           -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0});
+  add_texture(builder, png_of(16, smooth), "normalTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  EXPECT_EQ(model.outcome.err, "");
+  const Json& after = model.parts->primitive(0)["attributes"];
+  ASSERT_TRUE(after.contains("TANGENT"));
+  const Json& accessor = model.parts->json["accessors"][after["TANGENT"].get<std::size_t>()];
+  EXPECT_EQ(accessor["type"], "VEC4");
+  const std::string bytes = model.parts->view(accessor["bufferView"]);
+  for (std::size_t face = 0; face < model.after.polygons.size(); ++face) {
+    std::array<Uv, 3> uv = {BakedModel::at(model.after, face, 0, 0),
+                            BakedModel::at(model.after, face, 1, 0),
+                            BakedModel::at(model.after, face, 0, 1)};
+    const double u1 = uv[1][0] - uv[0][0], v1 = uv[0][1] - uv[1][1];
+    const double u2 = uv[2][0] - uv[0][0], v2 = uv[0][1] - uv[2][1];
+    const std::size_t vertex = model.after.polygons.corners()[3 * face];
+    std::array<float, 4> tangent{};
+    std::memcpy(tangent.data(), &bytes.at(16 * vertex), 16);
+    std::array<double, 3> along{};
+    double length = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto p = [&](std::size_t k) {
+        return model.after.positions[3 * model.after.polygons.corners()[3 * face + k] + d];
+      };
+      along[d] = v2 * (p(1) - p(0)) - v1 * (p(2) - p(0));
+      length += along[d] * along[d];
+    }
+    EXPECT_GT(u1 * v2 - u2 * v1, 0);
+    EXPECT_EQ(tangent[3], 1);
+    for (std::size_t d = 0; d < 3; ++d) {
+      EXPECT_NEAR(tangent[d], along[d] / std::sqrt(length), 0.02) << face;
+    }
+  }
+}
+
+TEST(Bake, WithoutNormalsTangentsOfTheOldUvsGo) {
   GltfBuilder builder = rich_square();
-  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
-  builder.json["meshes"][0]["primitives"][0].erase("targets");
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive.erase("targets");
+  primitive["attributes"].erase("NORMAL");
   add_texture(builder, png_of(16, smooth), "normalTexture");
   const BakedModel model(builder);
   ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;

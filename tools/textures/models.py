@@ -43,6 +43,7 @@ class Grid:
 
     positions: list[Point] = field(default_factory=list)
     normals: list[Point] = field(default_factory=list)
+    tangents: list[tuple[float, float, float, float]] = field(default_factory=list)
     uvs: list[Uv] = field(default_factory=list)
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
 
@@ -66,8 +67,14 @@ class Grid:
                 c, d = surface(s1, t1 + step), surface(s1, t1 - step)
                 along = [x - y for x, y in zip(a, b)]
                 up = [x - y for x, y in zip(c, d)]
-                self.normals.append(_unit(_cross(along, up)))
+                normal = _unit(_cross(along, up))
+                self.normals.append(normal)
                 self.uvs.append(uv(s, t))
+                # Of UVs whose axes are those of the grid.
+                side = 1.0 if uv(s1 + step, t)[0] > uv(s1 - step, t)[0] else -1.0
+                inward = sum(x * n for x, n in zip(along, normal))
+                x, y, z = _unit([side * (x - inward * n) for x, n in zip(along, normal)])
+                self.tangents.append((x, y, z, side))
         for j in range(rows):
             for i in range(columns):
                 k = first + j * (columns + 1) + i
@@ -77,6 +84,10 @@ class Grid:
     def attributes(self) -> dict[str, Sequence[Sequence[float]]]:
         """Return what a primitive has."""
         return {"POSITION": self.positions, "NORMAL": self.normals, "TEXCOORD_0": self.uvs}
+
+    def with_tangents(self) -> dict[str, Sequence[Sequence[float]]]:
+        """Return the same for normal maps: without tangents each viewer has another idea of them."""
+        return {**self.attributes(), "TANGENT": self.tangents}
 
 
 def _soft(x: float, width: float) -> float:
@@ -153,7 +164,7 @@ def mirrored() -> Model:
     grid = Grid()
     grid.add(lambda s, t: _ball(s / 2, t), 32, 32, lambda s, t: (0.05 + 0.9 * s, 1 - t))
     grid.add(lambda s, t: _ball(0.5 + s / 2, t), 32, 32, lambda s, t: (0.95 - 0.9 * s, 1 - t))
-    gltf.primitive(grid.attributes(), grid.triangles, material)
+    gltf.primitive(grid.with_tangents(), grid.triangles, material)
     return Model(gltf, "two halves with mirrored UVs, colours and normals")
 
 
@@ -190,7 +201,7 @@ def normals() -> Model:
         return (radius * math.sin(a), 2 * t, radius * math.cos(a))
 
     grid = Grid().add(vase, 48, 48)
-    gltf.primitive(grid.attributes(), grid.triangles, material)
+    gltf.primitive(grid.with_tangents(), grid.triangles, material)
     return Model(gltf, "a normal map with a scale, and metal that varies")
 
 
@@ -308,7 +319,7 @@ def merged() -> Model:
             24,
             lambda s, t: (1.9 * s, 1 - t),
         )
-        gltf.primitive(grid.attributes(), grid.triangles, gltf.material(**look))
+        gltf.primitive(grid.with_tangents(), grid.triangles, gltf.material(**look))
     return Model(
         gltf,
         "three materials that become one",

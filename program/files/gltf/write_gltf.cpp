@@ -16,6 +16,7 @@
 #include "files/gltf/model.h"
 #include "files/gltf/rebuild.h"
 #include "files/gltf/split.h"
+#include "files/gltf/tangents.h"
 #include "files/gltf/textures.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
@@ -84,6 +85,7 @@ class Writer {
                                  0,
                                  Target::kVertices}));
     }
+    add_tangents();
     for (const Primitive& primitive : model_.primitives) {
       throw_if_interrupted();
       edit_primitive(primitive);
@@ -108,6 +110,26 @@ class Writer {
     return document_.count("accessors") + added_.size() - 1;
   }
 
+  /// Of the vertex sets of primitives whose normal maps are baked. Viewers that would make their
+  /// own do so each in another way.
+  void add_tangents() {
+    tangents_of_set_.assign(model_.sets.size(), kNone);
+    std::vector<std::string> bytes;
+    for (const Primitive& place : model_.primitives) {
+      const Item primitive = model_.primitive(place.mesh, place.primitive);
+      if (tangents_of_set_[place.set] != kNone || !turns_directions(primitive)) continue;
+      // What has no normals is drawn flat, and its tangents are of no account.
+      if (!primitive.object("attributes")->find("NORMAL")) continue;
+      if (bytes.empty()) bytes = tangents_of(file_, split_);
+      tangents_of_set_[place.set] = add({{{"componentType", static_cast<int>(Component::kF32)},
+                                          {"count", bytes[place.set].size() / 16},
+                                          {"type", "VEC4"}},
+                                         bytes[place.set],
+                                         0,
+                                         Target::kVertices});
+    }
+  }
+
   void edit_primitive(const Primitive& place) {
     const Item before = model_.primitive(place.mesh, place.primitive);
     Json& mesh = json_["meshes"][place.mesh];
@@ -119,6 +141,9 @@ class Writer {
 
     edit_attributes(primitive["attributes"], false, set, tangents);
     add_uvs(primitive["attributes"], uvs_of_set_[set]);
+    if (turns_directions(before) && tangents_of_set_[set] != kNone) {
+      primitive["attributes"]["TANGENT"] = tangents_of_set_[set];
+    }
     if (primitive.contains("targets")) {
       for (Json& target : primitive["targets"]) edit_attributes(target, true, set, tangents);
     }
@@ -212,7 +237,7 @@ class Writer {
       if (name == uv_name_) {
         if (morph) not_kept_.insert("morphs of UVs");
       } else if (name == "TANGENT" && !tangents) {
-        not_kept_.insert("tangents");
+        if (morph || tangents_of_set_[set] == kNone) not_kept_.insert("tangents");
       } else {
         edited[name] = copied(*whole_of(value), set, name == "POSITION");
       }
@@ -356,7 +381,9 @@ class Writer {
   Split split_;
   Json json_;
   std::vector<NewAccessor> added_;
+  static constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> uvs_of_set_;
+  std::vector<std::uint64_t> tangents_of_set_;  ///< or kNone
   std::vector<std::map<std::uint64_t, std::uint64_t>> new_numbers_;  ///< per set, of old accessors
   std::set<std::string> not_kept_;
   std::vector<std::string> notes_;
