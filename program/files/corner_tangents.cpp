@@ -51,8 +51,7 @@ std::vector<std::array<double, 4>> corner_tangents(const CornersWithUvs& corners
     const double* uv = &corners.uvs[2 * first];
     const double u1 = uv[2] - uv[0], v1 = uv[3] - uv[1], u2 = uv[4] - uv[0], v2 = uv[5] - uv[1];
     const double side = u1 * v2 - u2 * v1 < 0 ? -1 : 1;
-    const Vector3 along =
-        normalized((side * v2) * (p[1] - p[0]) - (side * v1) * (p[2] - p[0]), {});
+    const Vector3 along = normalized((side * v2) * (p[1] - p[0]) - (side * v1) * (p[2] - p[0]), {});
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector3 n = normalized(vector_at(corners.normals, first + k), {});
       const std::uint32_t number = numbers.number(

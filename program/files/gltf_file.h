@@ -99,9 +99,9 @@ std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::stri
 /// get the same UVs in these.
 ///
 /// Textures that were baked take the places of those that they were made of, and draw through
-/// `uv_set`; where a normal map is among them tangents are made anew. Materials are merged as textures.merge
-/// says, and primitives with it that share their vertices are joined. Without such, a note names
-/// the textures that no longer fit, and says what to do.
+/// `uv_set`; where a normal map is among them tangents are made anew. Materials are merged as
+/// textures.merge says, and primitives with it that share their vertices are joined. Without such,
+/// a note names the textures that no longer fit, and says what to do.
 ///
 /// Preconditions: file.gltf, and its faces are where they were, though their corners may have
 /// turned; `path` is of glTF. Throws Failure as require_uv_set does, and for what is too large

@@ -227,8 +227,8 @@ TEST(Bake, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(Bake, TangentsAreThoseOfTheNewUvs) {
   GltfBuilder builder = bent_strip(kTwoHalves);
   Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
-  attributes["NORMAL"] = builder.vectors3({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1,
-                                           -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0});
+  attributes["NORMAL"] = builder.vectors3(
+      {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0});
   add_texture(builder, png_of(16, smooth), "normalTexture");
   const BakedModel model(builder);
   ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;

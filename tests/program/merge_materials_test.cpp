@@ -173,6 +173,14 @@ TEST(MergeMaterials, WhatMayHaveTheirNumbersKeepsThem) {
   EXPECT_EQ(materials[0], materials[1]);
 }
 
+TEST(MergeMaterials, WithoutMaterialsThereIsNothingToDo) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  builder.json["meshes"][0]["primitives"][0].erase("material");
+  const BakedModel model(builder, {"--merge-materials"});
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  EXPECT_FALSE(model.parts->json.contains("materials"));
+}
+
 TEST(MergeMaterials, VariantsAndOtherFormatsAreRefused) {
   GltfBuilder builder = two_materials(kWholeTwice);
   builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"] = {

@@ -26,8 +26,8 @@ from typing import Any
 
 from models import MODELS, Model
 
-#: Decibels of the pictures of a model before and after, at least: errors of 2.5 of 255 in the mean, which nobody
-#: sees. The models have new textures at about the density of the old ones.
+#: Decibels of the pictures of a model before and after, at least: errors of 2.5 of 255 in the
+#: mean, which nobody sees. New textures have about the density of the old ones.
 LEAST_PSNR = 40.0
 RESOLUTION = 1024
 #: Seconds for the browser to draw all; it takes a few.
@@ -88,7 +88,11 @@ class Page:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         with tempfile.TemporaryDirectory() as profile:
             words = [browser, "--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader"]
-            words += ["--use-angle=swiftshader", "--ignore-gpu-blocklist", f"--user-data-dir={profile}"]
+            words += [
+                "--use-angle=swiftshader",
+                "--ignore-gpu-blocklist",
+                f"--user-data-dir={profile}",
+            ]
             words += [f"http://127.0.0.1:{server.server_port}/viewer.html"]
             with subprocess.Popen(
                 words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -104,7 +108,16 @@ def make(name: str, model: Model, program: Path, folder: Path) -> None:
     """Write a model before and after."""
     before, after = folder / f"{name}.before.glb", folder / f"{name}.after.glb"
     before.write_bytes(model.gltf.glb())
-    words = [str(program), "unwrap", str(before), str(after), "--bake", "--effort", "quick", "--quiet"]
+    words = [
+        str(program),
+        "unwrap",
+        str(before),
+        str(after),
+        "--bake",
+        "--effort",
+        "quick",
+        "--quiet",
+    ]
     words += ["--resolution", str(RESOLUTION), *model.options]
     subprocess.run(words, check=True)
 
@@ -145,10 +158,12 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         views = []
+        about = {}
         for name in arguments.models or MODELS:
             model = MODELS[name]()
             make(name, model, arguments.program, folder)
             views.append({"name": name, "views": model.views})
+            about[name] = model.about
             for error in errors_of(folder / f"{name}.after.glb", arguments.modules):
                 bad.append(f"{name}: {error}")
         (folder / "models.json").write_text(json.dumps(views))
@@ -156,7 +171,7 @@ def main() -> None:
         page.draw(browser)
         for result in page.results:
             worst = min(view["psnr"] for view in result["views"])
-            print(f"{result['name']:12} {worst:5.1f} dB  {MODELS[result['name']].__doc__}")
+            print(f"{result['name']:12} {worst:5.1f} dB  {about[result['name']]}")
             if worst < LEAST_PSNR:
                 bad.append(f"{result['name']}: {worst:.1f} dB, less than {LEAST_PSNR}")
             if arguments.out:

@@ -61,7 +61,7 @@ class Grid:
             for i in range(columns + 1):
                 s, t = i / columns, j / rows
                 self.positions.append(surface(s, t))
-                # Where an axis has no length, as at a pole, the place beside it says which way is out.
+                # At a pole, where an axis has no length, the place beside it says what is out.
                 s1, t1 = min(max(s, step), 1 - step), min(max(t, step), 1 - step)
                 a, b = surface(s1 + step, t1), surface(s1 - step, t1)
                 c, d = surface(s1, t1 + step), surface(s1, t1 - step)
@@ -78,7 +78,10 @@ class Grid:
         for j in range(rows):
             for i in range(columns):
                 k = first + j * (columns + 1) + i
-                self.triangles += [(k, k + 1, k + columns + 2), (k, k + columns + 2, k + columns + 1)]
+                self.triangles += [
+                    (k, k + 1, k + columns + 2),
+                    (k, k + columns + 2, k + columns + 1),
+                ]
         return self
 
     def attributes(self) -> dict[str, Sequence[Sequence[float]]]:
@@ -86,7 +89,7 @@ class Grid:
         return {"POSITION": self.positions, "NORMAL": self.normals, "TEXCOORD_0": self.uvs}
 
     def with_tangents(self) -> dict[str, Sequence[Sequence[float]]]:
-        """Return the same for normal maps: without tangents each viewer has another idea of them."""
+        """Return the same for normal maps, of which viewers have ideas of their own."""
         return {**self.attributes(), "TANGENT": self.tangents}
 
 
@@ -138,7 +141,7 @@ def _tube(radius: float, height: float) -> Surface:
 
 
 def floor() -> Model:
-    """A floor whose tiles repeat."""
+    """Make a floor whose tiles repeat."""
     gltf = Gltf()
     base = gltf.texture(png(256, _tiles))
     material = gltf.material(pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0})
@@ -153,7 +156,7 @@ def floor() -> Model:
 
 
 def mirrored() -> Model:
-    """A head of which both halves show one half of the picture."""
+    """Make a head of which both halves show one half of the picture."""
     gltf = Gltf()
     base = gltf.texture(png(512, _paint()))
     bumps = gltf.texture(png(512, _bumps(10, 0.8)))
@@ -169,30 +172,42 @@ def mirrored() -> Model:
 
 
 def tiles() -> Model:
-    """Pages side by side, as the tiles of UDIM."""
+    """Make pages side by side, as the tiles of UDIM."""
     gltf = Gltf()
     for page in range(2):
         base = gltf.texture(png(256, _paint(2.0 * page)))
-        material = gltf.material(pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0})
+        material = gltf.material(
+            pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0}
+        )
         grid = Grid().add(
-            lambda s, t, page=page: _ball((s + page) / 2, t),  # type: ignore[misc]
+            lambda s, t, page=page: _ball((s + page) / 2, t),
             32,
             32,
-            lambda s, t, page=page: (page + 0.02 + 0.96 * s, 1 - t),  # type: ignore[misc]
+            lambda s, t, page=page: (page + 0.02 + 0.96 * s, 1 - t),
         )
         gltf.primitive(grid.attributes(), grid.triangles, material)
     return Model(gltf, "two pages on two tiles, with a material each")
 
 
 def normals() -> Model:
-    """A vase with a normal map and metal."""
+    """Make a vase with a normal map and metal."""
     gltf = Gltf()
     bumps = gltf.texture(png(512, _bumps(8, 0.7)), scale=0.8)
     rough = gltf.texture(
-        png(256, lambda x, y: (1.0, 0.5 + 0.2 * math.sin(8 * math.pi * x), 0.4 + 0.3 * math.sin(6 * math.pi * y)))
+        png(
+            256,
+            lambda x, y: (
+                1.0,
+                0.5 + 0.2 * math.sin(8 * math.pi * x),
+                0.4 + 0.3 * math.sin(6 * math.pi * y),
+            ),
+        )
     )
     material = gltf.material(
-        pbrMetallicRoughness={"metallicRoughnessTexture": rough, "baseColorFactor": [0.9, 0.7, 0.4, 1]},
+        pbrMetallicRoughness={
+            "metallicRoughnessTexture": rough,
+            "baseColorFactor": [0.9, 0.7, 0.4, 1],
+        },
         normalTexture=bumps,
     )
 
@@ -206,7 +221,7 @@ def normals() -> Model:
 
 
 def foliage() -> Model:
-    """Leaves on crossed sheets, cut out of them."""
+    """Make leaves on crossed sheets, cut out of them."""
 
     def leaf(x: float, y: float) -> Sequence[float]:
         across = abs(x - 0.5)
@@ -217,25 +232,27 @@ def foliage() -> Model:
     gltf = Gltf()
     base = gltf.texture(png(256, leaf), 33071)
     material = gltf.material(
-        pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0, "roughnessFactor": 0.9},
+        pbrMetallicRoughness={
+            "baseColorTexture": base,
+            "metallicFactor": 0,
+            "roughnessFactor": 0.9,
+        },
         alphaMode="BLEND",
         doubleSided=True,
     )
     grid = Grid()
     for turn in range(3):
         c, s0 = math.cos(turn * math.pi / 3), math.sin(turn * math.pi / 3)
-        grid.add(lambda s, t, c=c, d=s0: ((s - 0.5) * c, t, (s - 0.5) * d), 6, 6)  # type: ignore[misc]
+        grid.add(lambda s, t, c=c, d=s0: ((s - 0.5) * c, t, (s - 0.5) * d), 6, 6)
     gltf.primitive(grid.attributes(), grid.triangles, material)
     return Model(gltf, "leaves with an alpha")
 
 
 def sets() -> Model:
-    """A pot with a picture for each of two sets of UVs."""
+    """Make a pot with a picture for each of two sets of UVs."""
     gltf = Gltf()
     base = gltf.texture(png(256, _tiles))
-    shade = gltf.texture(
-        png(256, lambda x, y: (0.5 + 0.5 * y, 0.0, 0.0)), texCoord=1
-    )
+    shade = gltf.texture(png(256, lambda x, y: (0.5 + 0.5 * y, 0.0, 0.0)), texCoord=1)
     light = gltf.texture(
         png(256, lambda x, y: (0.0, 0.0, 0.3 + 0.3 * math.sin(4 * math.pi * x))), texCoord=1
     )
@@ -253,7 +270,7 @@ def sets() -> Model:
 
 
 def skinned() -> Model:
-    """A tube that two bones bend."""
+    """Make a tube that two bones bend."""
     gltf = Gltf()
     base = gltf.texture(png(512, _paint()))
     material = gltf.material(pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0})
@@ -264,7 +281,7 @@ def skinned() -> Model:
     attributes["WEIGHTS_0"] = [(1 - w, w, 0, 0) for w in weights]
     gltf.primitive(attributes, grid.triangles, material)
     one = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
-    moved = one[:13] + [-1, 0, 1]
+    moved = [*one[:13], -1, 0, 1]
     gltf.json["skins"] = [{"joints": [1, 2], "inverseBindMatrices": gltf.accessor([one, moved])}]
     bend = 0.5
     gltf.json["nodes"] = [
@@ -277,7 +294,7 @@ def skinned() -> Model:
 
 
 def morphed() -> Model:
-    """A ball half way to another shape."""
+    """Make a ball half way to another shape."""
     gltf = Gltf()
     base = gltf.texture(png(512, _paint(1)))
     material = gltf.material(pbrMetallicRoughness={"baseColorTexture": base, "metallicFactor": 0})
@@ -290,7 +307,7 @@ def morphed() -> Model:
 
 
 def merged() -> Model:
-    """Three materials that become one."""
+    """Make three materials that become one."""
     gltf = Gltf()
     looks: list[Json] = [
         {
@@ -312,9 +329,7 @@ def merged() -> Model:
     ]
     for k, look in enumerate(looks):
         grid = Grid().add(
-            lambda s, t, k=k: tuple(  # type: ignore[misc]
-                0.55 * x + d for x, d in zip(_ball(s, t), (1.2 * k, 0, 0))
-            ),
+            lambda s, t, k=k: tuple(0.55 * x + d for x, d in zip(_ball(s, t), (1.2 * k, 0, 0))),
             32,
             24,
             lambda s, t: (1.9 * s, 1 - t),
@@ -329,7 +344,7 @@ def merged() -> Model:
 
 
 def transformed() -> Model:
-    """A picture that the material turns and scales, with colours of vertices and a coat."""
+    """Make a picture that the material turns and scales, with colours of vertices and a coat."""
     gltf = Gltf()
     gltf.json["extensionsUsed"] = ["KHR_texture_transform", "KHR_materials_clearcoat"]
     turn = {"KHR_texture_transform": {"offset": [0.2, 0.1], "rotation": 0.6, "scale": [2, 1.5]}}

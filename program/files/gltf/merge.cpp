@@ -137,6 +137,7 @@ class Planner {
   }
 
   MergePlan plan() {
+    if (all_.empty()) return {};
     for (const Parted& material : all_) {
       const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const auto& group) {
         return group.front()->rest == material.rest;
@@ -370,6 +371,7 @@ void merge_materials(Json& json, const Model& model, const MergePlan& plan) {
 }
 
 void drop_merged(Json& json, const MergePlan& plan) {
+  if (plan.materials.empty()) return;
   Json& materials = json["materials"];
   const bool shorter = may_renumber(json);
   std::vector<std::uint64_t> numbers(materials.size());

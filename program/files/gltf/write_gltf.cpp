@@ -383,7 +383,7 @@ class Writer {
   std::vector<NewAccessor> added_;
   static constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> uvs_of_set_;
-  std::vector<std::uint64_t> tangents_of_set_;  ///< or kNone
+  std::vector<std::uint64_t> tangents_of_set_;                       ///< or kNone
   std::vector<std::map<std::uint64_t, std::uint64_t>> new_numbers_;  ///< per set, of old accessors
   std::set<std::string> not_kept_;
   std::vector<std::string> notes_;
