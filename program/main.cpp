@@ -90,8 +90,13 @@ constexpr const char* kTransfer =
     "it is refused where most do not. The pages of OLD, where there are several, are "
     "name.1001.png,\n"
     "name.1002.png and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
+    "With 'normals' OUT is a normal map of what the fine mesh OLD has and the coarse mesh NEW has\n"
+    "not, along the tangents of MikkTSpace; with 'heights' it is how far OLD is from NEW along "
+    "the\n"
+    "normals of NEW.\n\n"
     "  beltrami unwrap painted.obj better.obj\n"
-    "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
+    "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4\n"
+    "  beltrami transfer scan.ply coarse.glb normals bumps.png --resolution 2048";
 
 constexpr const char* kReportHelp =
     "Write a report; - prints it on standard output instead of the summary";
@@ -169,10 +174,13 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
       ->required();
   command
-      ->add_option("TEXTURE", arguments.texture, "Texture to read: .png, .jpg, .webp, .hdr or .exr")
+      ->add_option("TEXTURE", arguments.texture,
+                   "Texture to read: .png, .jpg, .webp, .hdr or .exr; or 'normals' or 'heights'\n"
+                   "of OLD itself, which needs no UVs then")
       ->required();
   command
-      ->add_option("OUT", arguments.output, "Texture to write: .png; .hdr or .exr of one of these")
+      ->add_option("OUT", arguments.output,
+                   "Texture to write: .png; .hdr or .exr of one of these; heights also as .exr")
       ->required();
   command
       ->add_option(
