@@ -208,6 +208,21 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   return command;
 }
 
+void add_bake(CLI::App& command, UnwrapArguments& arguments) {
+  command
+      .add_flag(
+          "--bake", arguments.bake,
+          "Bake the textures of the materials of IN (OBJ or glTF) for the new UVs, on a page\n"
+          "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
+          ".obj")
+      ->group("Pages");
+  command
+      .add_flag("--merge-materials", arguments.merge_materials,
+                "With --bake, to glTF: one material of all, and one set of pictures for it.\n"
+                "Materials stay apart that differ in more than textures and factors")
+      ->group("Pages");
+}
+
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
@@ -255,18 +270,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
                    "after another count from 0, UVs are in the unit of IN")
       ->group("Charts")
       ->type_name("FILE");
-  command
-      ->add_flag(
-          "--bake", arguments.bake,
-          "Bake the textures of the materials of IN (OBJ or glTF) for the new UVs, on a page\n"
-          "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
-          ".obj")
-      ->group("Pages");
-  command
-      ->add_flag("--merge-materials", arguments.merge_materials,
-                 "With --bake, to glTF: one material of all, and one set of pictures for it.\n"
-                 "Materials stay apart that differ in more than textures and factors")
-      ->group("Pages");
+  add_bake(*command, arguments);
   add_masks(*command, arguments.masks);
   options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,
