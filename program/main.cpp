@@ -91,8 +91,13 @@ constexpr const char* kTransfer =
     "it is refused where most do not. The pages of OLD, where there are several, are "
     "name.1001.png,\n"
     "name.1002.png and so on for TEXTURE name.png, and so are those of NEW for OUT.\n\n"
+    "With 'normals' OUT is a normal map of what the fine mesh OLD has and the coarse mesh NEW has\n"
+    "not, along the tangents of MikkTSpace; with 'heights' it is how far OLD is from NEW along "
+    "the\n"
+    "normals of NEW.\n\n"
     "  beltrami unwrap painted.obj better.obj\n"
-    "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4";
+    "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4\n"
+    "  beltrami transfer scan.ply coarse.glb normals bumps.png --resolution 2048";
 
 constexpr const char* kReportHelp =
     "Write a report; - prints it on standard output instead of the summary";
@@ -169,8 +174,15 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command->add_option("OLD", arguments.old_mesh, "Mesh with the UVs of TEXTURE")->required();
   command->add_option("NEW", arguments.new_mesh, "The mesh with other UVs, or another of its shape")
       ->required();
-  command->add_option("TEXTURE", arguments.texture, "Texture to read: .png or .jpg")->required();
-  command->add_option("OUT", arguments.output, "Texture to write: .png")->required();
+  command
+      ->add_option("TEXTURE", arguments.texture,
+                   "Texture to read: .png, .jpg, .webp, .hdr or .exr; or 'normals' or 'heights'\n"
+                   "of OLD itself, which needs no UVs then")
+      ->required();
+  command
+      ->add_option("OUT", arguments.output,
+                   "Texture to write: .png; .hdr or .exr of one of these; heights also as .exr")
+      ->required();
   command
       ->add_option(
           "--wrap", arguments.wrap,
@@ -195,6 +207,21 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
                   "\n\nExit codes: 0 done, 2 unusable arguments or files, 4 out of memory or an\n"
                   "internal failure, 130 cancelled.");
   return command;
+}
+
+void add_bake(CLI::App& command, UnwrapArguments& arguments) {
+  command
+      .add_flag(
+          "--bake", arguments.bake,
+          "Bake the textures of the materials of IN (OBJ or glTF) for the new UVs, on a page\n"
+          "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
+          ".obj")
+      ->group("Pages");
+  command
+      .add_flag("--merge-materials", arguments.merge_materials,
+                "With --bake, to glTF: one material of all, and one set of pictures for it.\n"
+                "Materials stay apart that differ in more than textures and factors")
+      ->group("Pages");
 }
 
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
@@ -254,13 +281,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
           "one u, at one v or on a line with those that it meets; all count from 0")
       ->group("Charts")
       ->type_name("FILE");
-  command
-      ->add_flag(
-          "--bake", arguments.bake,
-          "Bake the textures of the materials of IN (OBJ or glTF) for the new UVs, on a page\n"
-          "of --resolution texels each, and write them with OUT: in .glb, beside .gltf and\n"
-          ".obj")
-      ->group("Pages");
+  add_bake(*command, arguments);
   add_masks(*command, arguments.masks);
   options.add_to(*command);
   command->add_flag("--triangulate", arguments.triangulate,

@@ -12,11 +12,13 @@
 
 #include "commands/bake_call.h"
 #include "commands/command.h"
+#include "commands/merged_images.h"
 #include "files/column.h"
 #include "files/gltf/uri.h"
 #include "files/gltf_file.h"
 #include "files/polygons.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/webp.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -47,7 +49,9 @@ std::string format_of_image(const std::string& bytes) {
   const std::string_view head = std::string_view(bytes).substr(0, 32);
   if (head.starts_with("\xABKTX 20")) return "KTX2";
   if (head.starts_with("\xABKTX 11")) return "KTX";
-  if (head.starts_with("RIFF") && head.substr(8).starts_with("WEBP")) return "WebP";
+  if (head.starts_with("RIFF") && head.substr(8).starts_with("WEBP")) {
+    return has_webp() ? "a WebP file that is damaged or moves" : "WebP";
+  }
   if (head.starts_with("\x76\x2F\x31\x01")) return "OpenEXR";
   if (head.starts_with("DDS ")) return "DDS";
   if (head.starts_with("#?RADIANCE") || head.starts_with("#?RGBE")) return "Radiance HDR";
@@ -62,7 +66,8 @@ std::string format_of_image(const std::string& bytes) {
 [[noreturn]] void refuse_image(const std::string& path, const TextureUse& use,
                                const std::string& bytes) {
   throw Failure(path + ": " + use.image + " (" + use.name + ") is " + format_of_image(bytes) +
-                ", and --bake reads PNG and JPEG: save it as one of these");
+                ", and --bake of this program reads PNG" + (has_webp() ? ", WebP" : "") +
+                " and JPEG: save it as one of these");
 }
 
 std::string one_digit(double value) {
@@ -92,7 +97,8 @@ struct TextureBake::Places {
   std::vector<double> old_uvs, new_uvs;  ///< per corner
 };
 
-TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file_(file) {
+TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool merges)
+    : file_(file) {
   const MeshFormat format = file.gltf ? MeshFormat::kGltf : format_of(file.path);
   if (format == MeshFormat::kObj && format_of(output) == MeshFormat::kObj) {
     libraries_ = std::make_unique<MaterialLibraries>(file, true);
@@ -101,10 +107,19 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file
         "--bake: textures are those of materials of OBJ and glTF, and OUT has the format "
         "of IN: write .obj for .obj, and .gltf or .glb for glTF");
   }
-  for (TextureUse& use : libraries_ ? libraries_->textures() : gltf_textures(file)) {
-    const std::string bytes = image_of(use);
-    if (!is_image(bytes)) refuse_image(file.path, use, bytes);
-    baked_.push_back({std::move(use), {}, {}, {}});
+  if (merges) {
+    merge_ = gltf_merge(file);
+    for (const MergedTexture& merged : merge_->textures) {
+      for (const MergedPart& part : merged.parts) {
+        if (part.texture) require_image(*part.texture);
+      }
+      baked_.push_back({merged.use, {}, {}, {}});
+    }
+  } else {
+    for (TextureUse& use : libraries_ ? libraries_->textures() : gltf_textures(file)) {
+      require_image(use);
+      baked_.push_back({std::move(use), {}, {}, {}});
+    }
   }
   name_files(output);
   if (!libraries_ || baked_.empty()) return;
@@ -118,6 +133,18 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output) : file
 
 std::string TextureBake::image_of(const TextureUse& use) const {
   return libraries_ ? libraries_->image(use) : gltf_image(file_, use);
+}
+
+void TextureBake::require_image(const TextureUse& use) const {
+  const std::string bytes = image_of(use);
+  if (!is_image(bytes)) refuse_image(file_.path, use, bytes);
+}
+
+Pixels TextureBake::pixels_of(const TextureUse& use) const {
+  const std::string bytes = image_of(use);
+  std::optional<Pixels> image = read_image(bytes);
+  if (!image) refuse_image(file_.path, use, bytes);
+  return *std::move(image);
 }
 
 void TextureBake::name_files(const std::string& output) {
@@ -190,17 +217,18 @@ std::vector<double> TextureBake::old_uvs(std::uint64_t uv_set) const {
   return found;
 }
 
-TextureBake::Places TextureBake::places_of(const TextureUse& use) const {
+TextureBake::Places TextureBake::places_of(std::uint64_t material, const TextureUse* use) const {
   const std::vector<bool> has =
-      libraries_ ? libraries_->faces_of(use.material) : gltf_faces_of(file_, use.material);
-  const std::vector<double> uvs = old_uvs(use.uv_set);
-  const auto [a, b, c, d, e, f] = use.transform;
+      libraries_ ? libraries_->faces_of(material) : gltf_faces_of(file_, material);
+  const std::vector<double> uvs = use != nullptr ? old_uvs(use->uv_set) : std::vector<double>();
+  const auto [a, b, c, d, e, f] = use != nullptr ? use->transform : TextureUse{}.transform;
   Places places;
   for (std::size_t first = 0; first < corners_.size(); first += 3) {
     if (!has[file_.polygons.of_corner(corners_[first])]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = 2 * (first + k);
-      const double u = uvs[at], v = uvs[at + 1];
+      // What has no texture shows one texel.
+      const double u = uvs.empty() ? 0.5 : uvs[at], v = uvs.empty() ? 0.5 : uvs[at + 1];
       places.corners.push_back(corners_[first + k]);
       places.old_uvs.insert(places.old_uvs.end(), {a * u + b * v + c, d * u + e * v + f});
       places.new_uvs.insert(places.new_uvs.end(), {new_uvs_[at], new_uvs_[at + 1]});
@@ -238,45 +266,85 @@ std::vector<double> normals_of_corners(const MeshFile& file,
   return found;
 }
 
-/// What the axes of normals are found by.
-void add_axes(const MeshFile& file, const TextureUse& use,
+/// What the axes of normals are found by, behind what is there.
+void add_axes(const MeshFile& file, const TextureUse* use,
               const std::vector<std::uint32_t>& corners, BakeCall& call) {
+  const auto append = [&](std::vector<double>& to, const std::vector<double>& values,
+                          std::size_t width) {
+    // What only some have is not a number elsewhere.
+    if (values.empty() && to.empty()) return;
+    to.resize(call.positions.size() / 3 * width - width * corners.size(), kNone);
+    to.insert(to.end(), values.begin(), values.end());
+    to.resize(call.positions.size() / 3 * width, kNone);
+  };
   if (file.gltf) {
     // Viewers find tangents in the coordinates of the mesh itself.
-    call.positions = of_corners(file, gltf_attribute(file, "POSITION", 3), corners, 3);
-    call.normals = of_corners(file, gltf_attribute(file, "NORMAL", 3), corners, 3);
+    const auto of_gltf = [&](const char* name, std::size_t width) {
+      return of_corners(file, gltf_attribute(file, name, width), corners, width);
+    };
+    const std::vector<double> positions = of_gltf("POSITION", 3);
+    call.positions.insert(call.positions.end(), positions.begin(), positions.end());
+    append(call.normals, of_gltf("NORMAL", 3), 3);
     // Those of a file are for the UVs of its normal map as they are, without a transform.
-    if (use.transform == TextureUse{}.transform) {
-      call.tangents = of_corners(file, gltf_attribute(file, "TANGENT", 4), corners, 4);
-    }
+    const bool plain = use != nullptr && use->transform == TextureUse{}.transform;
+    append(call.tangents, plain ? of_gltf("TANGENT", 4) : std::vector<double>(), 4);
   } else {
     call.positions = of_corners(file, file.positions, corners, 3);
-    call.normals = normals_of_corners(file, corners);
+    append(call.normals, normals_of_corners(file, corners), 3);
   }
 }
 
 }  // namespace
 
-void TextureBake::bake_one(BakedTexture& baked, beltrami_context* context, int side,
-                           const BakeProgress& progress, Report& report) {
-  const std::string bytes = image_of(baked.use);
+BakeCall TextureBake::call_of(TextureUse& use) const {
   BakeCall call;
-  std::optional<Pixels> image = read_image(bytes);
-  if (!image) refuse_image(file_.path, baked.use, bytes);
-  if (baked.use.meaning == Meaning::kRelief) {
-    baked.use.meaning = shows_directions(*image) ? Meaning::kDirections : Meaning::kNumbers;
+  Pixels image = pixels_of(use);
+  if (use.meaning == Meaning::kRelief) {
+    use.meaning = shows_directions(image) ? Meaning::kDirections : Meaning::kNumbers;
   }
-  if (image->components < 3 && baked.use.meaning == Meaning::kDirections) {
-    baked.use.meaning = Meaning::kNumbers;  // a grey image has no directions
+  if (image.components < 3 && use.meaning == Meaning::kDirections) {
+    use.meaning = Meaning::kNumbers;  // a grey image has no directions
   }
-  call.images.push_back(*std::move(image));
-  call.meaning = baked.use.meaning;
-  call.reading = baked.use.reading;
-  call.side = side;
-  Places places = places_of(baked.use);
-  if (call.meaning == Meaning::kDirections) add_axes(file_, baked.use, places.corners, call);
+  call.images.push_back(std::move(image));
+  call.meaning = use.meaning;
+  call.reading = use.reading;
+  Places places = places_of(use.material, &use);
+  if (call.meaning == Meaning::kDirections) add_axes(file_, &use, places.corners, call);
   call.old_uvs = std::move(places.old_uvs);
   call.new_uvs = std::move(places.new_uvs);
+  return call;
+}
+
+BakeCall TextureBake::merged_call(const MergedTexture& merged, TextureUse& use) const {
+  BakeCall call;
+  call.meaning = use.meaning;
+  std::vector<MergedImage> images;
+  for (const MergedPart& part : merged.parts) {
+    const TextureUse* texture = part.texture ? &*part.texture : nullptr;
+    Places places = places_of(part.material, texture);
+    if (call.meaning == Meaning::kDirections) add_axes(file_, texture, places.corners, call);
+    call.new_uvs.insert(call.new_uvs.end(), places.new_uvs.begin(), places.new_uvs.end());
+    call.old_pages.insert(call.old_pages.end(), places.new_uvs.size() / 6, images.size());
+    MergedImage& image = images.emplace_back();
+    image.pixels = texture != nullptr ? pixels_of(*texture) : plain_image(call.meaning);
+    if (texture != nullptr) image.reading = texture->reading;
+    image.uvs = std::move(places.old_uvs);
+    apply_factors(image.pixels, call.meaning, part);
+  }
+  call.reading = unite(images, file_.path + ": " + use.name);
+  use.reading.nearest = call.reading.nearest;
+  for (MergedImage& image : images) {
+    call.old_uvs.insert(call.old_uvs.end(), image.uvs.begin(), image.uvs.end());
+    call.images.push_back(std::move(image.pixels));
+  }
+  return call;
+}
+
+void TextureBake::bake_one(std::size_t number, beltrami_context* context, int side,
+                           const BakeProgress& progress, Report& report) {
+  BakedTexture& baked = baked_[number];
+  BakeCall call = merge_ ? merged_call(merge_->textures[number], baked.use) : call_of(baked.use);
+  call.side = side;
   const BakeOutcome outcome = call.run(context, file_.path + ": " + baked.use.name, progress);
   if (2 * outcome.without_source > outcome.texels) {
     throw Failure(file_.path + ": " + baked.use.name +
@@ -300,9 +368,10 @@ void TextureBake::run(beltrami_context* context, int side, const BakeProgress& p
     throw_if_interrupted();
     const auto part = [&](double share) { progress((double(i) + share) / double(baked_.size())); };
     part(0);
-    bake_one(baked_[i], context, side, part, report);
+    bake_one(i, context, side, part, report);
   }
   report.textures = {baked_.size(), texels_, without_source_};
+  if (merge_ && !merge_->note.empty()) report.notes.push_back(merge_->note);
   if (baked_.empty()) {
     report.notes.emplace_back("no material has a texture, so that --bake has nothing to do");
   } else if (coarser_ > kMuchCoarser) {
@@ -312,6 +381,13 @@ void TextureBake::run(beltrami_context* context, int side, const BakeProgress& p
                            std::to_string(static_cast<int>(std::min(wanted, 32768.0))) +
                            " keeps them");
   }
+}
+
+GltfTextures TextureBake::take_textures() {
+  GltfTextures textures;
+  textures.baked = std::move(baked_);
+  if (merge_) textures.merge = merge_->plan;
+  return textures;
 }
 
 void TextureBake::write_obj_parts(MeshFile& written, std::deque<AtomicFile>& outputs) const {

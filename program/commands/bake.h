@@ -6,16 +6,18 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands/bake_call.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
+#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/mtl.h"
 #include "files/texture_use.h"
+#include "picture/stb_in_one_place.h"
 
 namespace beltrami::cli {
 
@@ -25,7 +27,8 @@ class TextureBake {
   /// Lists the textures of `file`, looks into each image, and finds names beside `output` for the
   /// new ones. Throws Failure for images that cannot be read, and for formats without materials.
   /// `file` must outlive the object, with its vertices as they are. `output` is of its format.
-  TextureBake(const MeshFile& file, const std::string& output);
+  /// `merges` materials, of glTF.
+  TextureBake(const MeshFile& file, const std::string& output, bool merges);
 
   /// The files that will be written beside the output.
   std::vector<std::string> paths() const;
@@ -39,7 +42,7 @@ class TextureBake {
   void run(beltrami_context* context, int side, const BakeProgress& progress, Report& report);
 
   /// For write_outputs, of glTF.
-  std::vector<BakedTexture> take_textures() { return std::move(baked_); }
+  GltfTextures take_textures();
   /// Writes the images and the library of an OBJ file, and has the mesh that is written name that.
   void write_obj_parts(MeshFile& written, std::deque<AtomicFile>& outputs) const;
 
@@ -47,10 +50,14 @@ class TextureBake {
   struct Places;  ///< of the triangles of one texture
 
   std::string image_of(const TextureUse& use) const;
+  Pixels pixels_of(const TextureUse& use) const;
+  void require_image(const TextureUse& use) const;
   void name_files(const std::string& output);
   std::vector<double> old_uvs(std::uint64_t uv_set) const;
-  Places places_of(const TextureUse& use) const;
-  void bake_one(BakedTexture& baked, beltrami_context* context, int side,
+  Places places_of(std::uint64_t material, const TextureUse* use) const;
+  BakeCall call_of(TextureUse& use) const;
+  BakeCall merged_call(const MergedTexture& merged, TextureUse& use) const;
+  void bake_one(std::size_t number, beltrami_context* context, int side,
                 const BakeProgress& progress, Report& report);
 
   const MeshFile& file_;
@@ -58,6 +65,7 @@ class TextureBake {
   std::string library_path_;                      ///< of the new one
   std::vector<double> obj_uvs_;                   ///< u v of each corner of the faces, of OBJ
   std::vector<BakedTexture> baked_;
+  std::optional<MaterialMerge> merge_;  ///< its textures are those of baked_
   std::vector<std::uint32_t> corners_;  ///< three for each triangle, in the winding of the file
   std::vector<double> new_uvs_;         ///< u v for each of these
   double coarser_ = 1;  ///< at most so many texels of an old side are one of a new one

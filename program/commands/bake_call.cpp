@@ -41,7 +41,9 @@ beltrami_image view_of(const Pixels& image) {
           static_cast<std::uint64_t>(image.width),
           static_cast<std::uint64_t>(image.height),
           0,
-          image.bytes == 2 ? BELTRAMI_U16 : BELTRAMI_U8,
+          image.bytes == 4   ? BELTRAMI_F32
+          : image.bytes == 2 ? BELTRAMI_U16
+                             : BELTRAMI_U8,
           static_cast<std::uint32_t>(image.components)};
 }
 
@@ -94,6 +96,7 @@ BakeOutcome BakeCall::run(beltrami_context* context, const std::string& name,
   all.height = static_cast<int>(page_count) * side;
   all.components = known->components;
   all.bytes = known->bytes;
+  const bool half = known->half;
   pages.assign(page_count, {});
   const std::size_t size = all.row_size() * static_cast<std::size_t>(side);
   all.values.resize(size * page_count);
@@ -118,6 +121,7 @@ BakeOutcome BakeCall::run(beltrami_context* context, const std::string& name,
     pages[i].width = pages[i].height = side;
     pages[i].components = all.components;
     pages[i].bytes = all.bytes;
+    pages[i].half = half;
     if (pages.size() == 1) {
       pages[i].values = std::move(all.values);
     } else {

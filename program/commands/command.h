@@ -27,16 +27,17 @@ struct FlattenArguments {
 
 struct UnwrapArguments {
   std::string input, output;
-  std::string seams, pins;      ///< paths, or "" for none
-  std::string straighten;       ///< path of what is to be straight, or ""
-  std::string paint;            ///< path of factors of seams, or ""
-  std::string labels;           ///< what labels faces, or ""
-  std::string materials;        ///< what draws seams to where it differs, or ""
-  std::string written_seams;    ///< path, or ""
-  std::string report, picture;  ///< paths, or "" for none
-  std::string masks;            ///< folder and name of the masks of pages, or ""
-  std::uint32_t uv_set = 0;     ///< of glTF: TEXCOORD_ and this number
-  bool bake = false;            ///< the textures of materials, for the new UVs
+  std::string seams, pins;       ///< paths, or "" for none
+  std::string straighten;        ///< path of what is to be straight, or ""
+  std::string paint;             ///< path of factors of seams, or ""
+  std::string labels;            ///< what labels faces, or ""
+  std::string materials;         ///< what draws seams to where it differs, or ""
+  std::string written_seams;     ///< path, or ""
+  std::string report, picture;   ///< paths, or "" for none
+  std::string masks;             ///< folder and name of the masks of pages, or ""
+  std::uint32_t uv_set = 0;      ///< of glTF: TEXCOORD_ and this number
+  bool bake = false;             ///< the textures of materials, for the new UVs
+  bool merge_materials = false;  ///< with that, into one
   Reach reach = Reach::kItsFolder;
   bool triangulate = false;  ///< write the triangles that were computed on
   bool quiet = false;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands/mtl_images.h"
 #include "files/column.h"
 #include "files/gltf/item.h"
 #include "files/gltf/little.h"
@@ -192,51 +193,125 @@ class ToGltf {
       for (std::size_t f = 0; f < has.size(); ++f) {
         if (has[f]) material_of_face_[f] = number;
       }
-      for (const TextureUse& use : libraries.textures()) {
-        if (use.material == i) add_texture(libraries, use, number);
-      }
+      add_textures(libraries, libraries.textures_of(i), number);
     }
     if (json["materials"].empty()) json.erase("materials");
   }
 
-  void add_texture(const MaterialLibraries& libraries, const TextureUse& use,
-                   std::uint64_t material) {
+  /// A map of a material that can be read.
+  struct Map {
+    const TextureUse* use;
     std::string bytes;
-    try {
-      bytes = libraries.image(use);
-    } catch (const Failure& failure) {
-      if (failure.exit_code == kExitCancelled) throw;
+  };
+
+  void add_textures(const MaterialLibraries& libraries, const std::vector<TextureUse>& uses,
+                    std::uint64_t material) {
+    std::vector<Map> maps;
+    for (const TextureUse& use : uses) {
+      std::string bytes;
+      try {
+        bytes = libraries.image(use);
+      } catch (const Failure& failure) {
+        if (failure.exit_code == kExitCancelled) throw;
+      }
+      if (with_uvs_ != nullptr && is_image(bytes)) {
+        maps.push_back({&use, std::move(bytes)});
+      } else {
+        not_kept_.push_back(use.name);
+      }
     }
+    const std::vector<const TextureUse*> packed = add_packed(maps, material);
+    for (const Map& map : maps) {
+      if (std::find(packed.begin(), packed.end(), map.use) == packed.end() &&
+          !add_texture(map, material)) {
+        not_kept_.push_back(map.use->name);
+      }
+    }
+  }
+
+  /// Maps that glTF has in channels of one image. Returns those that became part of one.
+  std::vector<const TextureUse*> add_packed(const std::vector<Map>& maps, std::uint64_t material) {
+    std::vector<const TextureUse*> done;
+    const auto find = [&](const char* keyword, const TextureUse* like) -> const Map* {
+      for (const Map& map : maps) {
+        if (map.use->keyword != keyword) continue;
+        const bool alike = like == nullptr || (map.use->transform == like->transform &&
+                                               map.use->reading.along_u == like->reading.along_u);
+        if (alike) return &map;
+      }
+      return nullptr;
+    };
+    const auto channel = [&](const Map* map, bool matte) -> std::optional<Pixels> {
+      const std::optional<Pixels> image = map != nullptr ? read_image(map->bytes) : std::nullopt;
+      if (!image) return std::nullopt;
+      done.push_back(map->use);
+      return channel_of(*image, map->use->channel, matte);
+    };
+    const auto pbr = [&]() -> Json& {
+      return document_.json["materials"][material]["pbrMetallicRoughness"];
+    };
+    const auto put = [&](const char* place, const Map* map, const Pixels& image) {
+      Json info = texture_info(*map->use, png_bytes(image));
+      pbr()[place] = std::move(info);
+    };
+    const Map* rough = find("map_pr", nullptr);
+    const Map* metal = find("map_pm", rough != nullptr ? rough->use : nullptr);
+    const auto roughness = channel(rough, false), metalness = channel(metal, false);
+    if (roughness || metalness) {
+      put("metallicRoughnessTexture", roughness ? rough : metal,
+          roughness_and_metal(roughness, metalness));
+      // As for colours, what is beside a picture is of no account.
+      if (roughness) pbr()["roughnessFactor"] = 1.0;
+      if (metalness) pbr()["metallicFactor"] = 1.0;
+    }
+    const Map* opacity = find("map_d", nullptr);
+    const auto alpha = channel(opacity, true);
+    if (!alpha) return done;
+    const Map* base = find("map_kd", opacity->use);
+    const std::optional<Pixels> colour = base != nullptr ? read_image(base->bytes) : std::nullopt;
+    put("baseColorTexture", opacity, colour_and_alpha(colour, *alpha));
+    if (colour) {
+      done.push_back(base->use);
+      for (std::size_t k = 0; k < 3; ++k) pbr()["baseColorFactor"][k] = 1.0;
+    }
+    pbr()["baseColorFactor"][3] = 1.0;
+    document_.json["materials"][material]["alphaMode"] = is_cut_out(*alpha) ? "MASK" : "BLEND";
+    return done;
+  }
+
+  bool add_texture(const Map& map, std::uint64_t material) {
+    const auto& [use, bytes] = map;
     // Found anew at each use: what is added to the document moves its parts.
     const auto own = [&]() -> Json& { return document_.json["materials"][material]; };
     const auto pbr = [&]() -> Json& { return own()["pbrMetallicRoughness"]; };
     const auto add = [&](const auto& place, const char* slot) {
       if (place().contains(slot)) return false;
-      Json info = texture_info(use, bytes);
+      Json info = texture_info(*use, bytes);
       place()[slot] = std::move(info);
       return true;
     };
-    bool added = false;
-    if (with_uvs_ != nullptr && is_image(bytes)) {
-      if (use.keyword == "map_kd") {
-        added = add(pbr, "baseColorTexture");
-        // Exporters leave any colour beside a picture, and viewers of OBJ show the picture alone.
-        for (std::size_t k = 0; k < 3; ++k) pbr()["baseColorFactor"][k] = 1.0;
-      } else if (use.keyword == "map_ke") {
-        added = add(own, "emissiveTexture");
-        if (added) own()["emissiveFactor"] = {1.0, 1.0, 1.0};
-      } else if (use.meaning == Meaning::kDirections || use.meaning == Meaning::kRelief) {
-        const std::optional<Pixels> image = read_image(bytes);
-        const bool directions = use.meaning == Meaning::kDirections;
-        added = image && (directions || shows_directions(*image)) && add(own, "normalTexture");
-      }
+    if (use->keyword == "map_kd") {
+      if (!add(pbr, "baseColorTexture")) return false;
+      // Exporters leave any colour beside a picture, and viewers of OBJ show the picture alone.
+      for (std::size_t k = 0; k < 3; ++k) pbr()["baseColorFactor"][k] = 1.0;
+      return true;
     }
-    if (!added) not_kept_.push_back(use.name);
+    if (use->keyword == "map_ke") {
+      if (!add(own, "emissiveTexture")) return false;
+      own()["emissiveFactor"] = {1.0, 1.0, 1.0};
+      return true;
+    }
+    if (use->meaning == Meaning::kDirections) return add(own, "normalTexture");
+    if (use->meaning != Meaning::kRelief) return false;
+    const std::optional<Pixels> image = read_image(bytes);
+    return image && shows_directions(*image) && add(own, "normalTexture");
   }
 
   Json texture_info(const TextureUse& use, const std::string& bytes) {
     Json& json = document_.json;
-    const bool png = bytes.starts_with("\x89PNG");
+    const bool png = bytes.starts_with("\x89PNG"), jpeg = bytes.starts_with("\xFF\xD8");
+    // glTF itself has these two alone.
+    if (!png && !jpeg) return texture_info(use, png_bytes(*read_image(bytes)));
     json["images"].push_back({{"name", use.stem},
                               {"mimeType", png ? "image/png" : "image/jpeg"},
                               {"bufferView", document_.view(bytes)}});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "commands/bake_call.h"
 #include "commands/command.h"
+#include "commands/detail.h"
 #include "commands/pages.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
@@ -22,7 +24,9 @@
 #include "files/polygons.h"
 #include "files/texture_use.h"
 #include "files/triangulate.h"
+#include "picture/light.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/webp.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -70,9 +74,26 @@ Pixels read_texture(const std::string& path) {
   if (is_gltf_name(path)) {
     throw Failure(path + ": textures are read from files of their own: save it as .png or .jpg");
   }
-  std::optional<Pixels> image = read_image(read_file(path));
-  if (!image) throw Failure(path + ": is no PNG or JPEG file that can be read");
-  return *std::move(image);
+  const std::string bytes = read_file(path);
+  std::optional<Pixels> image = read_image(bytes);
+  if (!image) image = read_light(bytes);
+  if (image) return *std::move(image);
+  std::string formats = "PNG, JPEG";
+  if (has_webp()) formats += ", WebP";
+  if (has_exr()) formats += ", EXR";
+  throw Failure(path + ": is no " + formats + " or HDR file that can be read");
+}
+
+/// Throws Failure where a picture has another format than its texture can be written in.
+void require_output(const std::string& path, bool light) {
+  const LightFormat format = light_format_of(path);
+  if (!light) return require_png_name(path);
+  if (format == LightFormat::kNone) {
+    throw Failure(path + ": the texture is in single precision: use the extension .exr or .hdr");
+  }
+  if (format == LightFormat::kExr && !has_exr()) {
+    throw Failure(path + ": this program is built without OpenEXR: use the extension .hdr");
+  }
 }
 
 /// The triangles of a mesh: where they are in space, and on the pages of a texture.
@@ -159,6 +180,12 @@ bool same_places(const MeshFile& from, const MeshFile& to, double tolerance) {
   return true;
 }
 
+std::string format_number(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
 /// The diagonal of the box around a mesh.
 double size_of(const Textured& mesh) {
   SpacePoint low = mesh.places.empty() ? SpacePoint{} : mesh.places.front(), high = low;
@@ -195,7 +222,12 @@ class Transfer {
   int run() {
     require_distinct({arguments_.old_mesh, arguments_.texture, arguments_.output});
     require_distinct({arguments_.new_mesh, arguments_.texture, arguments_.output});
-    require_png_name(arguments_.output);
+    if (const std::optional<Detail> detail = detail_named(arguments_.texture)) {
+      return run_detail(*detail);
+    }
+    if (light_format_of(arguments_.output) == LightFormat::kNone) {
+      require_png_name(arguments_.output);
+    }
     read_triangles();
     part_into_pages(to_, arguments_.new_mesh, "pack it first");
     if (shows_tiles()) {
@@ -279,31 +311,40 @@ class Transfer {
     call.gutter = static_cast<std::uint64_t>(arguments_.margin);
     call.old_uvs = numbers_of(from_.uvs);
     call.old_pages = from_.pages;
-    call.new_uvs = numbers_of(to_.uvs);
+    call.new_uvs = new_uvs();
     call.page_count = pages.size();
-    for (const std::uint64_t page : to_.pages) {
-      const auto found = std::lower_bound(pages.begin(), pages.end(), page);
-      call.new_pages.push_back(page == kNoPage ? kNoPage
-                                               : static_cast<std::uint64_t>(found - pages.begin()));
-    }
-    for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
-      // What shows nothing may have no numbers.
-      if (to_.pages[t] == kNoPage)
-        std::fill_n(call.new_uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
-    }
+    call.new_pages = new_pages(pages);
     if (elsewhere_) {
       call.positions = numbers_of(to_.places);
       call.source_positions = numbers_of(from_.places);
     }
+    const Pixels& known = call.images[pages_in_use(from_).front()];
+    const bool light = known.bytes == sizeof(float);
+    const LightFormat format = light_format_of(arguments_.output);
+    require_output(arguments_.output, light);
+    if (format == LightFormat::kHdr && known.components != 3) {
+      throw Failure(arguments_.output + ": HDR has three components, and the texture has " +
+                    std::to_string(known.components) + ": use the extension .exr");
+    }
     const Context context = make_context();
     const BakeOutcome outcome = call.run(context.get(), arguments_.new_mesh, {});
+    std::vector<std::string> files;
+    for (const Pixels& page : call.pages) {
+      files.push_back(light ? light_bytes(page, format) : png_bytes(page));
+    }
+    return write_files(pages, files, outcome, "");
+  }
+
+  /// Puts a file for each page in place, and prints the summary, with a line of one kind of output.
+  int write_files(const std::vector<std::uint64_t>& pages, const std::vector<std::string>& files,
+                  const BakeOutcome& outcome, const std::string& line) {
     const std::uint64_t covered = outcome.texels, without_source = outcome.without_source;
     std::deque<AtomicFile> outputs;
     for (std::size_t i = 0; i < pages.size(); ++i) {
       throw_if_interrupted();
       AtomicFile& file = outputs.emplace_back(
           pages.back() > 0 ? path_of_page(arguments_.output, pages[i]) : arguments_.output);
-      file.write(png_bytes(call.pages[i]));
+      file.write(files[i]);
       file.close();
     }
     require_sources(covered, without_source);
@@ -320,8 +361,65 @@ class Transfer {
       summary += "no source  " + std::to_string(without_source) + " of " + std::to_string(covered) +
                  " texels, which nothing of OLD is near\n";
     }
-    summary += "written    " + one_line(arguments_.output) + "\n";
+    summary += line + "written    " + one_line(arguments_.output) + "\n";
     return print(summary, "the summary", kExitInjective);
+  }
+
+  /// What OLD itself has, which needs no UVs and no texture.
+  int run_detail(Detail detail) {
+    const LightFormat format = light_format_of(arguments_.output);
+    if (format == LightFormat::kNone) require_png_name(arguments_.output);
+    const bool exact = format == LightFormat::kExr;
+    if (format == LightFormat::kHdr || (exact && !has_exr())) {
+      throw Failure(arguments_.output + ": " + arguments_.texture + " are written as .png" +
+                    (has_exr() ? " or .exr" : ": this program is built without OpenEXR"));
+    }
+    const MeshFile from = read_mesh(arguments_.old_mesh, Content::kSurface, arguments_.reach);
+    const MeshFile to = read_mesh(arguments_.new_mesh, Content::kAll, arguments_.reach);
+    const std::vector<std::uint32_t> corners = triangle_corners(to);
+    to_ = textured(to, corners);
+    part_into_pages(to_, arguments_.new_mesh, "pack it first");
+    elsewhere_ = true;
+    constexpr int kUsual = 1024;  // where nothing says how many texels there are
+    side_ = arguments_.resolution > 0 ? arguments_.resolution : kUsual;
+    const std::vector<std::uint64_t> pages = pages_in_use(to_);
+    if (pages.empty()) throw Failure(arguments_.new_mesh + ": no face has UVs that are numbers");
+    const DetailLayout layout = {new_uvs(), new_pages(pages), pages.size(), side_};
+    const Context context = make_context();
+    const DetailPages made =
+        bake_detail(detail, detail_mesh(from, triangle_corners(from)), detail_mesh(to, corners),
+                    layout, context.get(), arguments_.new_mesh);
+    double scale = 0;
+    const std::vector<Pixels> deep = in_16_bits(made.pages, detail, scale);
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < pages.size(); ++i) {
+      files.push_back(exact ? light_bytes(made.pages[i], format) : png_bytes(deep[i]));
+    }
+    std::string line;
+    if (detail == Detail::kHeights) {
+      line = "heights    up to " + format_number(scale) + " in the unit of OLD" +
+             (exact ? "" : ", for which white stands; 0 is grey") + "\n";
+    }
+    return write_files(pages, files, made.outcome, line);
+  }
+
+  /// Of each corner, and where a triangle shows nothing some numbers.
+  std::vector<double> new_uvs() const {
+    std::vector<double> uvs = numbers_of(to_.uvs);
+    for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
+      if (to_.pages[t] == kNoPage) std::fill_n(uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
+    }
+    return uvs;
+  }
+
+  /// Of each triangle, among `pages`.
+  std::vector<std::uint64_t> new_pages(const std::vector<std::uint64_t>& pages) const {
+    std::vector<std::uint64_t> found;
+    for (const std::uint64_t page : to_.pages) {
+      const auto at = std::lower_bound(pages.begin(), pages.end(), page);
+      found.push_back(page == kNoPage ? kNoPage : static_cast<std::uint64_t>(at - pages.begin()));
+    }
+    return found;
   }
 
   /// A texture of which most was made up is no transfer, and nobody would look for it in one.

@@ -46,6 +46,7 @@ void note_options(const UnwrapArguments& arguments, const Options& options, Repo
   report.options.emplace_back("triangulate", arguments.triangulate);
   report.options.emplace_back("masks", arguments.masks);
   report.options.emplace_back("bake", arguments.bake);
+  report.options.emplace_back("merge-materials", arguments.merge_materials);
   report.threads = options.integer(BELTRAMI_OPTION_THREADS);
 }
 
@@ -105,6 +106,11 @@ class Unwrapping {
       if (!path.empty()) require_writable(path);
     }
     if (!arguments_.masks.empty()) require_writable(path_of_page(arguments_.masks, 0));
+    if (arguments_.merge_materials && !(arguments_.bake && writes_gltf())) {
+      throw Failure(
+          "--merge-materials: the textures of several materials become one set by --bake, in "
+          "glTF: add --bake, and write .glb or .gltf");
+    }
     if (on_pages()) return;
     if (!arguments_.masks.empty()) {
       throw Failure("--masks: there are masks of pages alone: do without --pack none and --pins");
@@ -152,7 +158,7 @@ class Unwrapping {
       }
     }
     if (arguments_.bake) {
-      bake_.emplace(file_, arguments_.output);
+      bake_.emplace(file_, arguments_.output, arguments_.merge_materials);
       for (const std::string& path : bake_->paths()) {
         require_distinct({path, arguments_.report, arguments_.picture, arguments_.written_seams});
         require_writable(path);
@@ -324,11 +330,12 @@ class Unwrapping {
     StageClock clock(report_, "write");
     std::deque<AtomicFile> outputs;
     GltfTextures textures;
-    textures.advice = "--bake makes them anew";
     if (bake_) {
       bake_->write_obj_parts(file_, outputs);
-      textures.baked = bake_->take_textures();
-    } else if (!file_.gltf) {
+      textures = bake_->take_textures();
+    }
+    textures.advice = "--bake makes them anew";
+    if (!bake_ && !file_.gltf) {
       const std::string misfit = textures_that_misfit(file_);
       if (!misfit.empty()) {
         report_.notes.push_back(misfit + ", which are replaced: " + textures.advice);

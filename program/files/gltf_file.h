@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@
 #include "files/texture_use.h"
 
 namespace beltrami::cli {
+
+namespace gltf {
+struct MergePlan;
+}
 
 /// What write_gltf wants written.
 struct GltfOutput {
@@ -41,6 +46,14 @@ struct GltfOutput {
 struct GltfTextures {
   std::vector<BakedTexture> baked;
   const char* advice = "beltrami transfer makes them anew";  ///< where none is baked
+  std::shared_ptr<const gltf::MergePlan> merge;              ///< of materials, or null
+};
+
+/// Materials that become one, or as few as what cannot be baked leaves.
+struct MaterialMerge {
+  std::vector<MergedTexture> textures;  ///< which are to be baked for it
+  std::shared_ptr<const gltf::MergePlan> plan;
+  std::string note;  ///< why several are left, or ""
 };
 
 /// u v per vertex of TEXCOORD_`uv_set`, NaN in primitives without; empty where none has it. glTF's
@@ -54,6 +67,11 @@ std::vector<double> gltf_attribute(const MeshFile& file, const char* name, std::
 
 /// The textures of the materials that triangles have. Precondition: file.gltf.
 std::vector<TextureUse> gltf_textures(const MeshFile& file);
+/// How the materials that triangles have are merged. They share their pictures; what glTF has in
+/// textures and in factors of them is baked, and materials stay apart that differ in anything else,
+/// such as alpha modes. Throws Failure for a file with variants of materials. Precondition:
+/// file.gltf.
+MaterialMerge gltf_merge(const MeshFile& file);
 /// Per face, whether it has this material, as its own or as a variant. Precondition: file.gltf.
 std::vector<bool> gltf_faces_of(const MeshFile& file, std::uint64_t material);
 /// The files that it was read from, and those of its images. Precondition: file.gltf.
@@ -81,8 +99,9 @@ std::vector<std::string> gltf_output_paths(const MeshFile& file, const std::stri
 /// get the same UVs in these.
 ///
 /// Textures that were baked take the places of those that they were made of, and draw through
-/// `uv_set`; tangents go where a normal map is among them. Without such, a note names the textures
-/// that no longer fit, and says what to do.
+/// `uv_set`; where a normal map is among them tangents are made anew. Materials are merged as
+/// textures.merge says, and primitives with it that share their vertices are joined. Without such,
+/// a note names the textures that no longer fit, and says what to do.
 ///
 /// Preconditions: file.gltf, and its faces are where they were, though their corners may have
 /// turned; `path` is of glTF. Throws Failure as require_uv_set does, and for what is too large

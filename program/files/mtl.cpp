@@ -132,6 +132,7 @@ void MaterialLibraries::read_library(const std::string& path) {
           if (count < 0 && !number) break;
           if (count < 0) numbers[static_cast<std::size_t>(i)] = *number;
           if (option == "-clamp") line.clamps = word == "on";
+          if (option == "-imfchan") line.channel = word.front();
           text += ' ' + std::string(word);
           rest = after;
         }
@@ -193,31 +194,40 @@ std::string MaterialLibraries::value(std::uint64_t material, std::string_view ke
   return {};
 }
 
+std::vector<TextureUse> MaterialLibraries::textures_of(std::uint64_t number) const {
+  std::vector<TextureUse> uses;
+  const Material& material = materials_[number];
+  for (const Line& line : material.lines) {
+    if (line.keyword.empty() || line.name.empty()) continue;
+    TextureUse& use = uses.emplace_back();
+    use.name = line.keyword + " of material '" + one_line(material.name) + "'";
+    use.stem = material.name + "_" + lower(line.keyword);
+    use.keyword = lower(line.keyword);
+    use.channel = line.channel;
+    use.material = number;
+    use.slots = {slot(material, line)};
+    use.image = line.name;
+    use.transform = line.transform;
+    const Beyond beyond = line.clamps ? Beyond::kClamp : Beyond::kRepeat;
+    use.reading = {beyond, beyond};
+    use.meaning = *meaning_of(use.keyword);
+  }
+  return uses;
+}
+
 std::vector<TextureUse> MaterialLibraries::textures() const {
   std::vector<TextureUse> uses;
   const std::vector<bool> used = materials_in_use();
   for (std::uint64_t i = 0; i < materials_.size(); ++i) {
-    const Material& material = materials_[i];
-    for (const Line& line : material.lines) {
-      if (!used[i] || line.keyword.empty() || line.name.empty()) continue;
-      TextureUse use;
-      use.name = line.keyword + " of material '" + one_line(material.name) + "'";
-      use.stem = material.name + "_" + lower(line.keyword);
-      use.keyword = lower(line.keyword);
-      use.material = i;
-      use.image = line.name;
-      use.transform = line.transform;
-      const Beyond beyond = line.clamps ? Beyond::kClamp : Beyond::kRepeat;
-      use.reading = {beyond, beyond};
-      use.meaning = *meaning_of(lower(line.keyword));
+    if (!used[i]) continue;
+    for (TextureUse& use : textures_of(i)) {
       const auto same = std::find_if(uses.begin(), uses.end(), [&](const TextureUse& known) {
         return known.material == i && known.image == use.image && known.meaning == use.meaning &&
-               known.transform == use.transform && known.reading.along_u == beyond;
+               known.transform == use.transform && known.reading.along_u == use.reading.along_u;
       });
       if (same != uses.end()) {
-        same->slots.push_back(slot(material, line));
+        same->slots.push_back(use.slots.front());
       } else {
-        use.slots = {slot(material, line)};
         uses.push_back(std::move(use));
       }
     }

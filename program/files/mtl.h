@@ -25,6 +25,8 @@ class MaterialLibraries {
   std::string value(std::uint64_t material, std::string_view keyword) const;
   /// Every texture that follows UVs, of the materials that faces have.
   std::vector<TextureUse> textures() const;
+  /// Those of one material, each by itself also where two show one image alike.
+  std::vector<TextureUse> textures_of(std::uint64_t material) const;
   /// Per face, whether it has this material.
   std::vector<bool> faces_of(std::uint64_t material) const;
   /// The bytes of the image of a texture. Throws Failure where there is none within reach.
@@ -44,6 +46,7 @@ class MaterialLibraries {
     std::string name;     ///< of its image
     std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};
     bool clamps = false;
+    char channel = 0;
   };
   struct Material {
     std::string name, library;  ///< path of the latter

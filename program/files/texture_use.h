@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,7 @@ struct TextureUse {
   std::string name;                ///< for people: "baseColorTexture of materials[2] 'wood'"
   std::string stem;                ///< for files: "wood_baseColor"
   std::string keyword;             ///< of MTL, in small letters: "map_kd"
+  char channel = 0;                ///< of MTL: the one that -imfchan names, or 0
   std::uint64_t material = 0;      ///< by its number in the file that has it
   std::vector<std::string> slots;  ///< where the material names it: JSON pointers, or keywords
   std::string image;               ///< for people: "images[3] 'wood.jpg'"
@@ -41,6 +44,27 @@ struct TextureUse {
   std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};
   Reading reading;
   Meaning meaning = Meaning::kNumbers;
+};
+
+/// The material of a texture that all materials share.
+inline constexpr std::uint64_t kEveryMaterial = std::numeric_limits<std::uint64_t>::max();
+
+/// What a picture of several materials has of one of them.
+struct MergedPart {
+  std::uint64_t material = 0;  ///< whose faces show it
+  /// Nothing: it is white all over; of directions, flat.
+  std::optional<TextureUse> texture;
+  /// Of red, green, blue and alpha. Colours are multiplied by them, in linear light; of directions
+  /// the first one is the scale. Of numbers green and blue are multiplied, and red goes towards 1
+  /// as far as the first one is below it: it is occlusion.
+  std::array<double, 4> factors = {1, 1, 1, 1};
+  bool opaque = false;  ///< its alpha says nothing
+};
+
+/// One picture for several materials. Those of the `use` are the slots that it is put in.
+struct MergedTexture {
+  TextureUse use;
+  std::vector<MergedPart> parts;
 };
 
 /// A texture for new UVs.

@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
@@ -35,18 +36,26 @@ void* reallocate(void* old, std::size_t size) {
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_PNG
+#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MALLOC(size) allocate(size)
 #define STBI_REALLOC(old, size) reallocate(old, size)
 #define STBI_FREE(old) std::free(old)
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBIW_MALLOC(size) allocate(size)
+#define STBIW_REALLOC(old, size) reallocate(old, size)
+#define STBIW_FREE(old) std::free(old)
 #include <stb_easy_font.h>
 #include <stb_image.h>
+#include <stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
 
 #include "picture/deflate.h"
 #include "picture/stb_in_one_place.h"
+#include "picture/webp.h"
 
 namespace beltrami::cli {
 
@@ -147,17 +156,58 @@ std::string png_bytes(const Pixels& image) {
   return png_file(image.width, image.height, image.components, image.bytes, swapped.data());
 }
 
-bool is_image(std::string_view bytes) {
-  // More texels than 16384 x 16384 would be gigabytes, which a small file may ask for.
-  constexpr double kMostTexels = 268435456;
+namespace {
+
+/// Whether stb's reader may read this.
+bool is_known(std::string_view bytes) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return false;
   int width = 0, height = 0, components = 0;
   return stbi_info_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                                static_cast<int>(bytes.size()), &width, &height, &components) != 0 &&
-         double(width) * height <= kMostTexels;
+         double(width) * height <= double(kMostTexels);
+}
+
+bool is_hdr(std::string_view bytes) {
+  return bytes.starts_with("#?");
+}
+
+}  // namespace
+
+bool is_image(std::string_view bytes) {
+  return (!is_hdr(bytes) && is_known(bytes)) || is_webp(bytes);
+}
+
+std::optional<Pixels> read_hdr(std::string_view bytes) {
+  if (!is_hdr(bytes) || !is_known(bytes)) return std::nullopt;
+  Pixels image;
+  image.components = 3;
+  image.bytes = sizeof(float);
+  int stored = 0;
+  void* pixels = stbi_loadf_from_memory(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                        static_cast<int>(bytes.size()), &image.width, &image.height,
+                                        &stored, image.components);
+  if (pixels == nullptr) return std::nullopt;
+  const std::unique_ptr<void, void (*)(void*)> owner(pixels, &std::free);
+  const auto* first = static_cast<const std::uint8_t*>(pixels);
+  image.values.assign(first, first + image.row_size() * static_cast<std::size_t>(image.height));
+  return image;
+}
+
+std::string hdr_bytes(const Pixels& image) {
+  std::string bytes;
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                          static_cast<std::size_t>(size));
+  };
+  std::vector<float> values(image.values.size() / sizeof(float));
+  std::memcpy(values.data(), image.values.data(), image.values.size());
+  stbi_write_hdr_to_func(append, &bytes, image.width, image.height, image.components,
+                         values.data());
+  return bytes;
 }
 
 std::optional<Pixels> read_image(std::string_view bytes) {
+  if (is_webp(bytes)) return read_webp(bytes);
   if (!is_image(bytes)) return std::nullopt;
   Pixels image;
   const auto* file = reinterpret_cast<const std::uint8_t*>(bytes.data());

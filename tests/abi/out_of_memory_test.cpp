@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <vector>
 
@@ -283,6 +284,42 @@ TEST(OutOfMemory, APackingAnswersWhereverMemoryEnds) {
       beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 2);
   ASSERT_EQ(sparse, BELTRAMI_OK);
   expect_status_wherever_memory_ends(pack, 1L << 40, results);
+}
+
+TEST(OutOfMemory, ABakingAnswersWhereverMemoryEnds) {
+  // Normals of an image that is made smaller, and places of another surface.
+  const std::vector<double> old_uvs = {0, 0, 3, 0, 3, 3, 0, 0, 3, 3, 0, 3};
+  const std::vector<double> new_uvs = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1};
+  const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
+  const std::vector<std::uint8_t> texels(3 * 16 * 16, 99);
+  std::vector<std::uint8_t> pixels(3 * 8 * 8);
+  const beltrami_image image = {texels.data(), 16, 16, 0, BELTRAMI_U8, 3};
+  const Context context = create();
+  for (const bool elsewhere : {false, true}) {
+    auto job = sized<beltrami_bake_job>();
+    job.images = &image;
+    job.image_count = 1;
+    job.pixels = elsewhere ? BELTRAMI_PIXELS_SRGB : BELTRAMI_PIXELS_NORMALS;
+    job.face_count = 2;
+    job.new_uvs = {new_uvs.data(), 0, BELTRAMI_F64, 0};
+    job.old_uvs = {old_uvs.data(), 0, BELTRAMI_F64, 0};
+    job.positions = {positions.data(), 0, BELTRAMI_F64, 0};
+    if (elsewhere) {
+      job.source_face_count = 2;
+      job.source_positions = job.positions;
+    }
+    job.resolution = 8;
+    job.gutter = std::numeric_limits<std::uint64_t>::max();
+    job.page_count = 1;
+    auto baked = sized<beltrami_baked>();
+    baked.pixels = pixels.data();
+    const auto bake = [&] { return beltrami_bake(context.get(), &job, &baked, nullptr, nullptr); };
+    // After an error pixels hold anything: what matters is that the next baking makes them.
+    expect_status_wherever_memory_ends(bake, 1L << 40, [&] {
+      EXPECT_EQ(bake(), BELTRAMI_OK);
+      return pixels;
+    });
+  }
 }
 
 TEST(OutOfMemory, ThreadsAnswer) {

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "baked_model.h"
 #include "commands/bake_call.h"
 #include "commands/command.h"
 #include "files/mesh_file.h"
@@ -25,138 +27,6 @@
 
 namespace beltrami::cli {
 namespace {
-
-using Texel = std::array<double, 3>;
-using Uv = std::array<double, 2>;
-/// What is shown at a place of [0, 1]^2, from 0 to 255, rows from the top.
-using Shown = std::function<Texel(double x, double y)>;
-
-constexpr double kPi = 3.14159265358979323846;
-
-std::string png_of(int side, const Shown& shown) {
-  std::vector<std::uint8_t> values;
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      for (const double value : shown((column + 0.5) / side, (row + 0.5) / side)) {
-        values.push_back(static_cast<std::uint8_t>(value + 0.5));
-      }
-    }
-  }
-  return png_bytes(side, side, 3, values.data());
-}
-
-Texel smooth(double x, double y) {
-  const double a = 2 * kPi * x, b = 2 * kPi * y;
-  return {128 + 100 * std::sin(a), 128 + 100 * std::cos(b), 128 + 60 * std::sin(a + b)};
-}
-
-/// An image between its texels, repeated; `uv` with its V axis down, as in glTF.
-Texel read_at(const Pixels& image, const Uv& uv) {
-  const double x = uv[0] * image.width - 0.5, y = uv[1] * image.height - 0.5;
-  const double left = std::floor(x), top = std::floor(y);
-  Texel found{};
-  for (int j = 0; j < 2; ++j) {
-    for (int i = 0; i < 2; ++i) {
-      const auto wrapped = [](double at, int count) {
-        return static_cast<std::size_t>(at - count * std::floor(at / count));
-      };
-      const std::size_t texel = wrapped(top + j, image.height) * std::size_t(image.width) +
-                                wrapped(left + i, image.width);
-      const double weight = (i ? x - left : 1 - x + left) * (j ? y - top : 1 - y + top);
-      for (std::size_t k = 0; k < 3; ++k) found[k] += weight * image.values[3 * texel + k];
-    }
-  }
-  return found;
-}
-
-/// A strip of two squares in space, bent by a right angle, each with UVs of its own.
-GltfBuilder bent_strip(std::initializer_list<float> uvs) {
-  GltfBuilder builder;
-  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0,
-                                               1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0})},
-                {"TEXCOORD_0", builder.vectors2(uvs)}},
-               builder.indices<std::uint8_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}));
-  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
-  return builder;
-}
-
-/// Adds an image, and has the material show it in a slot.
-void add_texture(GltfBuilder& builder, const std::string& png, const std::string& slot,
-                 const Json& sampler = Json::object(), const Json& extension = Json()) {
-  auto& json = builder.json;
-  const int view = builder.view(png);
-  json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
-  json["samplers"].push_back(sampler);
-  const std::size_t number = json["images"].size() - 1;
-  json["textures"].push_back({{"source", number}, {"sampler", number}});
-  Json info = {{"index", number}};
-  if (!extension.is_null()) info["extensions"] = {{"KHR_texture_transform", extension}};
-  Json& material = json["materials"][0];
-  (slot == "baseColorTexture" ? material["pbrMetallicRoughness"] : material)[slot] = info;
-}
-
-/// A GLB file before and after.
-class BakedModel {
- public:
-  explicit BakedModel(const GltfBuilder& builder, std::vector<std::string> options = {})
-      : before(read_gltf(builder.glb(), "a.glb", Content::kUvs)) {
-    const std::string in = directory.file("in.glb", builder.glb()), out = directory.path("out.glb");
-    std::vector<std::string> words = {"unwrap", in, out, "--bake", "--resolution", "256"};
-    words.insert(words.end(), options.begin(), options.end());
-    outcome = run(words);
-    if (outcome.exit_code != 0) return;
-    parts.emplace(directory.read("out.glb"));
-    after = read_gltf(directory.read("out.glb"), "out.glb", Content::kUvs);
-  }
-
-  Pixels image(const Json& info) const {
-    const Json& texture = parts->json["textures"][info["index"].get<std::size_t>()];
-    const Json& found = parts->json["images"][texture["source"].get<std::size_t>()];
-    return *read_image(parts->view(found["bufferView"]));
-  }
-  Pixels base_colour() const {
-    return image(parts->json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]);
-  }
-  /// Calls visit(old UV, new UV) at places on faces, both with the V axis down.
-  void visit(const std::function<void(std::size_t face, const Uv&, const Uv&)>& visit) const {
-    for (std::size_t face = 0; face < before.polygons.size(); ++face) {
-      for (double a = 0.02; a < 1; a += 0.06) {
-        for (double b = 0.02; a + b < 0.99; b += 0.06) {
-          visit(face, at(before, face, a, b), at(after, face, a, b));
-        }
-      }
-    }
-  }
-  static Uv at(const MeshFile& file, std::size_t face, double a, double b) {
-    const std::array<double, 3> weights = {1 - a - b, a, b};
-    Uv uv{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t vertex = file.polygons.corners()[3 * face + k];
-      uv[0] += weights[k] * file.uvs[2 * vertex];
-      uv[1] += weights[k] * (1 - file.uvs[2 * vertex + 1]);
-    }
-    return uv;
-  }
-  /// In decibels, of what the model shows now against `shown` at the old UVs.
-  double psnr(const Pixels& now, const std::function<Texel(const Uv&)>& shown) const {
-    double sum = 0;
-    int count = 0;
-    visit([&](std::size_t, const Uv& old_uv, const Uv& new_uv) {
-      const Texel is = read_at(now, new_uv), was = shown(old_uv);
-      for (std::size_t k = 0; k < 3; ++k) sum += (is[k] - was[k]) * (is[k] - was[k]);
-      count += 3;
-    });
-    return 10 * std::log10(255 * 255 / (sum / count + 1e-12));
-  }
-
-  TemporaryDirectory directory;
-  MeshFile before, after;
-  Outcome outcome;
-  std::optional<Parts> parts;
-};
-
-const std::initializer_list<float> kTwoHalves = {0,   0, .5f, 0, .5f, 1, 0,   1,
-                                                 .5f, 0, 1,   0, 1,   1, .5f, 1};
 
 TEST(Bake, ASmoothTextureShowsTheSameAtTheNewUvs) {
   GltfBuilder builder = bent_strip(kTwoHalves);
@@ -354,10 +224,52 @@ TEST(Bake, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(one.directory.read("out.glb"), three.directory.read("out.glb"));
 }
 
-TEST(Bake, TangentsOfTheOldUvsGo) {
+TEST(Bake, TangentsAreThoseOfTheNewUvs) {
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["NORMAL"] = builder.vectors3(
+      {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0});
+  add_texture(builder, png_of(16, smooth), "normalTexture");
+  const BakedModel model(builder);
+  ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+  EXPECT_EQ(model.outcome.err, "");
+  const Json& after = model.parts->primitive(0)["attributes"];
+  ASSERT_TRUE(after.contains("TANGENT"));
+  const Json& accessor = model.parts->json["accessors"][after["TANGENT"].get<std::size_t>()];
+  EXPECT_EQ(accessor["type"], "VEC4");
+  const std::string bytes = model.parts->view(accessor["bufferView"]);
+  for (std::size_t face = 0; face < model.after.polygons.size(); ++face) {
+    std::array<Uv, 3> uv = {BakedModel::at(model.after, face, 0, 0),
+                            BakedModel::at(model.after, face, 1, 0),
+                            BakedModel::at(model.after, face, 0, 1)};
+    const double u1 = uv[1][0] - uv[0][0], v1 = uv[0][1] - uv[1][1];
+    const double u2 = uv[2][0] - uv[0][0], v2 = uv[0][1] - uv[2][1];
+    const std::size_t vertex = model.after.polygons.corners()[3 * face];
+    std::array<float, 4> tangent{};
+    std::memcpy(tangent.data(), &bytes.at(16 * vertex), 16);
+    std::array<double, 3> along{};
+    double length = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto p = [&](std::size_t k) {
+        return model.after.positions[3 * model.after.polygons.corners()[3 * face + k] + d];
+      };
+      along[d] = v2 * (p(1) - p(0)) - v1 * (p(2) - p(0));
+      length += along[d] * along[d];
+    }
+    EXPECT_GT(u1 * v2 - u2 * v1, 0);
+    EXPECT_EQ(tangent[3], 1);
+    for (std::size_t d = 0; d < 3; ++d) {
+      EXPECT_NEAR(tangent[d], along[d] / std::sqrt(length), 0.02) << face;
+    }
+  }
+}
+
+TEST(Bake, WithoutNormalsTangentsOfTheOldUvsGo) {
   GltfBuilder builder = rich_square();
-  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
-  builder.json["meshes"][0]["primitives"][0].erase("targets");
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive.erase("targets");
+  primitive["attributes"].erase("NORMAL");
   add_texture(builder, png_of(16, smooth), "normalTexture");
   const BakedModel model(builder);
   ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
@@ -371,9 +283,10 @@ TEST(Bake, FormatsThatCannotBeReadAreNamed) {
   add_texture(builder, "RIFF\1\1\1\1WEBPVP8 ", "baseColorTexture");
   const BakedModel model(builder);
   EXPECT_EQ(model.outcome.exit_code, kExitUnusable);
-  EXPECT_NE(model.outcome.err.find("images[0] (baseColorTexture of materials[0]) is WebP"),
+  EXPECT_NE(model.outcome.err.find("images[0] (baseColorTexture of materials[0]) is "),
             std::string::npos)
       << model.outcome.err;
+  EXPECT_NE(model.outcome.err.find("WebP"), std::string::npos) << model.outcome.err;
 }
 
 TEST(Bake, SeveralPagesAreRefused) {
@@ -406,7 +319,7 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   const TemporaryDirectory directory;
   directory.file("a.mtl",
                  "newmtl wood\nKd 0.8 0.2 0.1\nPr 0.5\nmap_Kd wood.png\n"
-                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Pr wood.png\n");
+                 "newmtl glass\nKd 0 0 1\nd 0.25\nmap_Ns wood.png\n");
   directory.file("wood.png", png_of(16, smooth));
   const std::string in =
       directory.file("a.obj",
@@ -416,7 +329,7 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   const Outcome outcome =
       run({"unwrap", in, directory.path("out.glb"), "--bake", "--resolution", "64"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("map_Pr of material 'glass'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("map_Ns of material 'glass'"), std::string::npos) << outcome.err;
   const Parts parts(directory.read("out.glb"));
   ASSERT_EQ(parts.json["materials"].size(), 2u);
   const Json& wood = parts.json["materials"][0]["pbrMetallicRoughness"];
@@ -430,6 +343,49 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
   EXPECT_NE(run({"unwrap", in, directory.path("o.glb"), "--write-seams", directory.path("s.txt")})
                 .err.find("--write-seams"),
             std::string::npos);
+}
+
+TEST(Bake, MapsOfMtlAreChannelsOfGltf) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl",
+                 "newmtl leaf\nPr 0.5\nmap_Kd c.png\nmap_Pr r.png\nmap_Pm -imfchan b m.png\n"
+                 "map_d d.png\nmap_Ke c.png\nnorm n.png\n");
+  const auto plain = [](double r, double g, double b) {
+    return [=](double, double) { return Texel{r, g, b}; };
+  };
+  directory.file("c.png", png_of(16, plain(200, 100, 50)));
+  directory.file("r.png", png_of(8, plain(90, 90, 90)));
+  directory.file("m.png", png_of(4, plain(1, 2, 150)));
+  directory.file("n.png", png_of(4, plain(128, 128, 255)));
+  const auto half = [](double x, double) { return x < 0.5 ? Texel{} : Texel{255, 255, 255}; };
+  directory.file("d.png", png_of(16, half));
+  const std::string in =
+      directory.file("a.obj",
+                     "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                     "vt 0 1\nusemtl leaf\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.glb")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("map_"), std::string::npos) << outcome.err;
+  const Parts parts(directory.read("out.glb"));
+  const Json& material = parts.json["materials"][0];
+  const Json& pbr = material["pbrMetallicRoughness"];
+  const auto texel = [&](const Json& info, std::size_t place) {
+    const Json& texture = parts.json["textures"][info["index"].get<std::size_t>()];
+    const Json& image = parts.json["images"][texture["source"].get<std::size_t>()];
+    const Pixels pixels = *read_image(parts.view(image["bufferView"]));
+    const auto width = static_cast<std::size_t>(pixels.components);
+    const auto first = pixels.values.begin() + static_cast<std::ptrdiff_t>(width * place);
+    return std::vector<std::uint8_t>(first, first + static_cast<std::ptrdiff_t>(width));
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(texel(pbr["metallicRoughnessTexture"], 5), (Bytes{255, 90, 150}));
+  EXPECT_EQ(texel(pbr["baseColorTexture"], 2), (Bytes{200, 100, 50, 0}));
+  EXPECT_EQ(texel(pbr["baseColorTexture"], 14), (Bytes{200, 100, 50, 255}));
+  EXPECT_EQ(texel(material["emissiveTexture"], 0), (Bytes{200, 100, 50}));
+  EXPECT_EQ(pbr["roughnessFactor"], 1.0);
+  EXPECT_EQ(pbr["metallicFactor"], 1.0);
+  EXPECT_EQ(material["alphaMode"], "MASK");
+  EXPECT_TRUE(material.contains("normalTexture"));
 }
 
 TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {

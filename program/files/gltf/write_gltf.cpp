@@ -12,9 +12,11 @@
 #include "files/gltf/item.h"
 #include "files/gltf/little.h"
 #include "files/gltf/materials.h"
+#include "files/gltf/merge.h"
 #include "files/gltf/model.h"
 #include "files/gltf/rebuild.h"
 #include "files/gltf/split.h"
+#include "files/gltf/tangents.h"
 #include "files/gltf/textures.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
@@ -60,6 +62,7 @@ class Writer {
   Writer(const MeshFile& file, std::uint32_t uv_set, const GltfTextures& textures)
       : file_(file),
         baked_(textures.baked),
+        merge_(textures.merge.get()),
         advice_(textures.advice),
         model_(model_of(file)),
         document_(model_.document),
@@ -82,12 +85,18 @@ class Writer {
                                  0,
                                  Target::kVertices}));
     }
+    add_tangents();
     for (const Primitive& primitive : model_.primitives) {
       throw_if_interrupted();
       edit_primitive(primitive);
     }
     edit_textures();
+    if (merge_ != nullptr) merge_materials(json_, model_, *merge_);
     const std::vector<NewImage> images = put_textures(json_, baked_, uv_set_);
+    if (merge_ != nullptr) {
+      drop_merged(json_, *merge_);
+      join_primitives();
+    }
     return rebuild(document_, json_, std::move(added_), images);
   }
 
@@ -101,6 +110,26 @@ class Writer {
     return document_.count("accessors") + added_.size() - 1;
   }
 
+  /// Of the vertex sets of primitives whose normal maps are baked. Viewers that would make their
+  /// own do so each in another way.
+  void add_tangents() {
+    tangents_of_set_.assign(model_.sets.size(), kNone);
+    std::vector<std::string> bytes;
+    for (const Primitive& place : model_.primitives) {
+      const Item primitive = model_.primitive(place.mesh, place.primitive);
+      if (tangents_of_set_[place.set] != kNone || !turns_directions(primitive)) continue;
+      // What has no normals is drawn flat, and its tangents are of no account.
+      if (!primitive.object("attributes")->find("NORMAL")) continue;
+      if (bytes.empty()) bytes = tangents_of(file_, split_);
+      tangents_of_set_[place.set] = add({{{"componentType", static_cast<int>(Component::kF32)},
+                                          {"count", bytes[place.set].size() / 16},
+                                          {"type", "VEC4"}},
+                                         bytes[place.set],
+                                         0,
+                                         Target::kVertices});
+    }
+  }
+
   void edit_primitive(const Primitive& place) {
     const Item before = model_.primitive(place.mesh, place.primitive);
     Json& mesh = json_["meshes"][place.mesh];
@@ -112,6 +141,9 @@ class Writer {
 
     edit_attributes(primitive["attributes"], false, set, tangents);
     add_uvs(primitive["attributes"], uvs_of_set_[set]);
+    if (turns_directions(before) && tangents_of_set_[set] != kNone) {
+      primitive["attributes"]["TANGENT"] = tangents_of_set_[set];
+    }
     if (primitive.contains("targets")) {
       for (Json& target : primitive["targets"]) edit_attributes(target, true, set, tangents);
     }
@@ -171,7 +203,8 @@ class Writer {
   bool turns_directions(const Item& primitive) const {
     const std::vector<std::uint64_t> own = materials_of(primitive);
     return std::any_of(baked_.begin(), baked_.end(), [&](const BakedTexture& texture) {
-      return texture.use.meaning == Meaning::kDirections &&
+      if (texture.use.meaning != Meaning::kDirections) return false;
+      return texture.use.material == kEveryMaterial ||
              std::find(own.begin(), own.end(), texture.use.material) != own.end();
     });
   }
@@ -204,7 +237,7 @@ class Writer {
       if (name == uv_name_) {
         if (morph) not_kept_.insert("morphs of UVs");
       } else if (name == "TANGENT" && !tangents) {
-        not_kept_.insert("tangents");
+        if (morph || tangents_of_set_[set] == kNone) not_kept_.insert("tangents");
       } else {
         edited[name] = copied(*whole_of(value), set, name == "POSITION");
       }
@@ -269,37 +302,77 @@ class Writer {
       same = split_.corners[c] == model_.local[file_.polygons.corners()[c]];
     }
     if (same || first == end) return;  // points to vertices that kept their places
-    const std::uint64_t count = model_.sets[place.set].count + split_.copies[place.set].size();
-    const std::optional<std::uint64_t> number = before.whole("indices");
+    primitive["indices"] = indices_of({&place}, before.whole("indices"));
+    if (strip) primitive["mode"] = kTriangles;
+  }
+
+  /// New indices of the faces of `places`, which have one vertex set; described as `old` was.
+  std::uint64_t indices_of(const std::vector<const Primitive*>& places,
+                           const std::optional<std::uint64_t>& old) {
+    const std::uint32_t set = places.front()->set;
+    const std::uint64_t vertices = model_.sets[set].count + split_.copies[set].size();
     Json json = {{"componentType", 0}, {"count", 0}, {"type", "SCALAR"}};
     Component least = Component::kU16;
-    if (number) {
-      const Item old = document_.entry("accessors", *number);
-      json = described(old);
+    if (old) {
+      const Item accessor = document_.entry("accessors", *old);
+      json = described(accessor);
       for (const char* key : {"min", "max"}) json.erase(key);
-      least = static_cast<Component>(old.required("componentType"));
+      least = static_cast<Component>(accessor.required("componentType"));
     }
-    const Component type = index_type(count, least);
+    const Component type = index_type(vertices, least);
     json["componentType"] = static_cast<int>(type);
-    json["count"] = end - first;
     std::string bytes;
-    bytes.reserve((end - first) * size_of(type));
-    for (std::uint64_t c = first; c < end; ++c) {
-      const std::uint32_t vertex = split_.corners[c];
-      if (type == Component::kU8) {
-        append_little(bytes, static_cast<std::uint8_t>(vertex));
-      } else if (type == Component::kU16) {
-        append_little(bytes, static_cast<std::uint16_t>(vertex));
-      } else {
-        append_little(bytes, vertex);
+    for (const Primitive* place : places) {
+      const std::uint64_t first = 3 * place->first_face, end = first + 3 * place->face_count;
+      bytes.reserve(bytes.size() + (end - first) * size_of(type));
+      for (std::uint64_t c = first; c < end; ++c) {
+        const std::uint32_t vertex = split_.corners[c];
+        if (type == Component::kU8) {
+          append_little(bytes, static_cast<std::uint8_t>(vertex));
+        } else if (type == Component::kU16) {
+          append_little(bytes, static_cast<std::uint16_t>(vertex));
+        } else {
+          append_little(bytes, vertex);
+        }
       }
     }
-    primitive["indices"] = add({std::move(json), std::move(bytes), 0, Target::kIndices});
-    if (strip) primitive["mode"] = kTriangles;
+    json["count"] = bytes.size() / size_of(type);
+    return add({std::move(json), std::move(bytes), 0, Target::kIndices});
+  }
+
+  /// Primitives of a mesh that differ in their indices alone become one.
+  void join_primitives() {
+    std::vector<std::vector<const Primitive*>> groups;
+    std::map<std::string, std::size_t> known;
+    for (const Primitive& place : model_.primitives) {
+      Json key = json_["meshes"][place.mesh]["primitives"][place.primitive];
+      key.erase("indices");
+      key["mode"] = {place.mesh, place.set};
+      const auto [found, is_new] = known.try_emplace(key.dump(), groups.size());
+      if (is_new) groups.emplace_back();
+      groups[found->second].push_back(&place);
+    }
+    std::set<std::pair<std::uint32_t, std::uint32_t>> gone;
+    for (const auto& group : groups) {
+      if (group.size() == 1) continue;
+      const Primitive& first = *group.front();
+      Json& primitive = json_["meshes"][first.mesh]["primitives"][first.primitive];
+      primitive["indices"] =
+          indices_of(group, model_.primitive(first.mesh, first.primitive).whole("indices"));
+      primitive.erase("mode");
+      for (std::size_t i = 1; i < group.size(); ++i) {
+        gone.emplace(group[i]->mesh, group[i]->primitive);
+      }
+    }
+    // From behind, so that the numbers of those before stay.
+    for (auto place = gone.rbegin(); place != gone.rend(); ++place) {
+      json_["meshes"][place->first]["primitives"].erase(place->second);
+    }
   }
 
   const MeshFile& file_;
   const std::vector<BakedTexture>& baked_;
+  const MergePlan* merge_;  ///< or null
   std::string advice_;
   const Model& model_;
   const Document& document_;
@@ -308,7 +381,9 @@ class Writer {
   Split split_;
   Json json_;
   std::vector<NewAccessor> added_;
+  static constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> uvs_of_set_;
+  std::vector<std::uint64_t> tangents_of_set_;                       ///< or kNone
   std::vector<std::map<std::uint64_t, std::uint64_t>> new_numbers_;  ///< per set, of old accessors
   std::set<std::string> not_kept_;
   std::vector<std::string> notes_;
