@@ -258,6 +258,11 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
+  command
+      ->add_option("--html", arguments.html,
+                   "Write a page for browsers that shows the model beside its layout; it is one\n"
+                   "file, and needs no network")
+      ->type_name("FILE.html");
   add_reach(*command, arguments.reach);
   command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kPages + "\n\n" + kKept +
