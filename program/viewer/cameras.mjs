@@ -43,7 +43,8 @@ export class ModelCamera extends Camera {
   constructor(geometry, frame = [0.848, 0, -0.53, -0.159, 0.954, -0.254, 0.506, 0.3, 0.809]) {
     super();
     this.geometry = geometry;
-    this.first = [unit(frame.slice(0, 3)), unit(frame.slice(3, 6)), unit(frame.slice(6, 9))];
+    const toward = unit(frame.slice(6, 9)), right = unit(cross(frame.slice(3, 6), toward));
+    this.first = [right, cross(toward, right), toward];
     const up = this.first[1], longest = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
     this.up = [0, 0, 0];
     this.up[longest] = Math.sign(up[longest]) || 1;
