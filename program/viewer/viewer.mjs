@@ -91,7 +91,7 @@ export class Viewer {
       return { box, label, dot, index, pointers: new Map() };
     });
     this.panels = element('div', { class: 'bv-panels' }, this.canvas, ...this.panes.map((pane) => pane.box));
-    this.about = element('output', { class: 'bv-about', 'aria-live': 'polite' }, HINT);
+    this.about = element('output', { class: 'bv-about', 'aria-live': 'polite' });
     this.figures = element('dl', { class: 'bv-figures' });
     this.root.classList.add('bv');
     this.root.append(this.bar, this.panels, element('div', { class: 'bv-line' }, this.about, this.legend), this.figures, this.keys);

@@ -25,7 +25,7 @@ class Page {
     this.root = root;
     this.viewer = new Viewer(root);
     this.file = make('input', { type: 'file', accept: '.obj,.stl,.ply,.glb', hidden: true, onchange: () => this.open(this.file.files[0]) });
-    this.slider = make('input', { type: 'range', min: '0', max: '1', step: '0.01', 'aria-label': 'Distortion that is aimed at', oninput: () => this.#slid() });
+    this.slider = make('input', { type: 'range', min: '0', max: '1', step: '0.005', 'aria-label': 'Distortion that is aimed at', oninput: () => this.#slid() });
     this.slider.value = String(Math.log(0.05 / LEAST_EXCESS) / Math.log(MOST_EXCESS / LEAST_EXCESS));
     this.aimed = make('output');
     this.effort = make('select', { onchange: () => this.#later() }, ...['quick', 'normal', 'high'].map((word) => make('option', {}, word)));

@@ -103,7 +103,7 @@ export function example() {
       const angle = 2 * Math.PI * j / around;
       p.forEach((x, k) => positions.push(x + 0.42 * (Math.cos(angle) * side[k] + Math.sin(angle) * up[k])));
       const a = i * around + j, b = i * around + (j + 1) % around, next = (row) => (row + around) % (along * around);
-      indices.push(a, b, next(b), next(a));
+      indices.push(a, next(a), next(b), b);
     }
   }
   return { positions: new Float64Array(positions), indices: new Uint32Array(indices), faceSizes: new Uint32Array(along * around).fill(4), source: { format: 'knot' } };
