@@ -435,8 +435,7 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   note_options(arguments, options, report);
   return run_guarded(report, arguments.report,
                      {arguments.input, arguments.output, arguments.seams, arguments.pins,
-                      arguments.paint, arguments.written_seams, arguments.picture,
-                      arguments.html},
+                      arguments.paint, arguments.written_seams, arguments.picture, arguments.html},
                      [&] { return Unwrapping(arguments, options, report).run(); });
 }
 

@@ -17,7 +17,8 @@
 namespace beltrami::cli {
 namespace {
 
-/// Numbers of 32 bits, which deflate finds more in where the first bytes of all stand together, then the second ones.
+/// Numbers of 32 bits, which deflate finds more in where the first bytes of all stand together,
+/// then the second ones.
 class Planes {
  public:
   explicit Planes(std::size_t count) : count_(count), bytes_(4 * count, '\0') {}
@@ -54,7 +55,8 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// The middle of the box around the vertices in use: far from the origin single precision has few digits.
+/// The middle of the box around the vertices in use: far from the origin single precision has few
+/// digits.
 Vector3 middle_of(const TriangleView& mesh) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vector3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};

@@ -20,8 +20,8 @@ struct HtmlMesh {
   std::string arrays;       ///< base64
 };
 
-/// `mesh` with finite UVs, `energies` (symmetric Dirichlet) and `charts` of its triangles. The viewer gets
-/// single precision. Throws std::bad_alloc.
+/// `mesh` with finite UVs, `energies` (symmetric Dirichlet) and `charts` of its triangles. The
+/// viewer gets single precision. Throws std::bad_alloc.
 HtmlMesh html_mesh(const TriangleView& mesh, const std::vector<double>& energies,
                    const std::vector<std::uint32_t>& charts);
 

@@ -5,8 +5,8 @@
 
 namespace beltrami::cli {
 
-/// A page of HTML that needs nothing else: kReportPlace stands once where JSON is to come, and after it once
-/// kArraysPlace, where arrays are.
+/// A page of HTML that needs nothing else: kReportPlace stands once where JSON is to come, and
+/// after it once kArraysPlace, where arrays are.
 std::string_view report_page();
 
 inline constexpr std::string_view kReportPlace = "@report@";

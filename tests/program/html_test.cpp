@@ -55,8 +55,8 @@ std::vector<std::uint32_t> words_of(const std::string& text, std::size_t count) 
   const std::string packed = from_base64(text);
   std::vector<Bytef> planes(4 * count + 1);
   uLongf size = planes.size();
-  const int status = uncompress(planes.data(), &size,
-                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+  const int status = uncompress(planes.data(), &size, reinterpret_cast<const Bytef*>(packed.data()),
+                                packed.size());
   if (status != Z_OK || size != 4 * count) return {};
   std::vector<std::uint32_t> words(count);
   for (std::size_t i = 0; i < 4 * count; ++i) {
@@ -126,13 +126,13 @@ TEST(Html, HoldsTheAtlas) {
 TEST(Html, NeedsNothingElse) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquare);
-  ASSERT_EQ(run({"unwrap", in, directory.path("out.obj"), "--html", directory.path("p.html")})
-                .exit_code,
-            0);
+  ASSERT_EQ(
+      run({"unwrap", in, directory.path("out.obj"), "--html", directory.path("p.html")}).exit_code,
+      0);
   const std::string page = directory.read("p.html");
   EXPECT_EQ(page.rfind("<!doctype html>", 0), 0u);
-  for (const char* part : {"http://", "https://", "src=", "<link", "import ", "@report@", "@arrays@",
-                           "@viewer"}) {
+  for (const char* part :
+       {"http://", "https://", "src=", "<link", "import ", "@report@", "@arrays@", "@viewer"}) {
     EXPECT_EQ(page.find(part), std::string::npos) << part;
   }
 }
@@ -150,8 +150,8 @@ TEST(Html, ShowsTriangulatedFacesInTheirCharts) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kCubeOfQuads), page = directory.path("p.html");
   const auto charts = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"unwrap", in,       directory.path("out.obj"), "--hard-angle",
-                                      "60",     "--html", page};
+    std::vector<std::string> words = {
+        "unwrap", in, directory.path("out.obj"), "--hard-angle", "60", "--html", page};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(run(words).exit_code, 0);
     return shown_by(directory.read("p.html")).charts;
