@@ -68,7 +68,7 @@ def test_the_program_writes_the_same_page(tmp_path):
     vertices, faces = grid(4)
     atlas = beltrami.unwrap(vertices, faces)
     atlas.html(tmp_path / "ours.html")
-    with open(tmp_path / "in.obj", "w", encoding="utf-8") as file:
+    with (tmp_path / "in.obj").open("w", encoding="utf-8") as file:
         file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices.tolist())
         file.writelines(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces.tolist())
     names = ["in.obj", "out.obj", "--html", "theirs.html", "--quiet"]

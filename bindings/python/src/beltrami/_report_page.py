@@ -1,4 +1,4 @@
-"""The page for browsers that shows a model beside its layout, as ``beltrami unwrap --html`` writes it."""
+"""The page for browsers that ``beltrami unwrap --html`` writes: a model beside its layout."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def write(atlas: Any, path: str | os.PathLike[str]) -> None:
     said = json.dumps({"mesh": mesh, "report": _report(atlas, Path(path).stem)}, allow_nan=False)
     # A script of HTML ends at "</script": in JSON this sign is in strings alone.
     said = said.replace("<", "\\u003c")
-    with open(path, "w", encoding="utf-8", newline="\n") as file:
+    with Path(path).open("w", encoding="utf-8", newline="\n") as file:
         file.write(before + said + between + arrays + after)
 
 
