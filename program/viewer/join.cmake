@@ -19,6 +19,13 @@ file(READ ${CMAKE_CURRENT_LIST_DIR}/viewer.css style)
 file(READ ${CMAKE_CURRENT_LIST_DIR}/report.html page)
 string(REPLACE "@viewer.css@" "${style}" page "${page}")
 string(REPLACE "@viewer@" "${viewer}" page "${page}")
+set(before "")
+if(EXISTS ${PAGE} AND EXISTS ${BYTES})
+  file(READ ${PAGE} before)
+endif()
+if(page STREQUAL before)
+  return() # so that nothing is compiled again
+endif()
 file(WRITE ${PAGE} "${page}")
 
 file(READ ${PAGE} bytes HEX)
