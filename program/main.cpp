@@ -196,25 +196,21 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   return command;
 }
 
-CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
-  CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
-  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
-      ->required();
-  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
-      ->required();
+/// What says where charts end, and where that is written.
+void add_seams(CLI::App& command, UnwrapArguments& arguments) {
   command
-      ->add_option("--seams", arguments.seams,
-                   "Edges to cut: a text of pairs of vertex numbers, counted from 0")
+      .add_option("--seams", arguments.seams,
+                  "Edges to cut: a text of pairs of vertex numbers, counted from 0")
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option("--labels", arguments.labels,
-                   "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
-                   "or a property of the faces of a PLY file")
+      .add_option("--labels", arguments.labels,
+                  "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
+                  "or a property of the faces of a PLY file")
       ->group("Charts")
       ->type_name("NAME");
   command
-      ->add_option(
+      .add_option(
           "--paint", arguments.paint,
           "What draws seams, with --cut auto: a text with a line for each, 'v VERTEX FACTOR'\n"
           "or 'e VERTEX VERTEX FACTOR' for an edge; vertices count from 0, and a seam costs\n"
@@ -222,15 +218,24 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option("--materials", arguments.materials,
-                   "Draw seams, with --cut auto, to where these differ: named as for --labels")
+      .add_option("--materials", arguments.materials,
+                  "Draw seams, with --cut auto, to where these differ: named as for --labels")
       ->group("Charts")
       ->type_name("NAME");
   command
-      ->add_option("--write-seams", arguments.written_seams,
-                   "Write the seams, those given and those found, as --seams reads them")
+      .add_option("--write-seams", arguments.written_seams,
+                  "Write the seams, those given and those found, as --seams reads them")
       ->group("Charts")
       ->type_name("FILE");
+}
+
+CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
+  CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
+      ->required();
+  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
+      ->required();
+  add_seams(*command, arguments);
   command
       ->add_option(
           "--uv-set", arguments.uv_set,
