@@ -224,25 +224,21 @@ void add_bake(CLI::App& command, UnwrapArguments& arguments) {
       ->group("Pages");
 }
 
-CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
-  CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
-  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
-      ->required();
-  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
-      ->required();
+/// What says where charts end, what they are held to, and where that is written.
+void add_seams(CLI::App& command, UnwrapArguments& arguments) {
   command
-      ->add_option("--seams", arguments.seams,
-                   "Edges to cut: a text of pairs of vertex numbers, counted from 0")
+      .add_option("--seams", arguments.seams,
+                  "Edges to cut: a text of pairs of vertex numbers, counted from 0")
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option("--labels", arguments.labels,
-                   "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
-                   "or a property of the faces of a PLY file")
+      .add_option("--labels", arguments.labels,
+                  "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
+                  "or a property of the faces of a PLY file")
       ->group("Charts")
       ->type_name("NAME");
   command
-      ->add_option(
+      .add_option(
           "--paint", arguments.paint,
           "What draws seams, with --cut auto: a text with a line for each, 'v VERTEX FACTOR'\n"
           "or 'e VERTEX VERTEX FACTOR' for an edge; vertices count from 0, and a seam costs\n"
@@ -250,22 +246,17 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option("--materials", arguments.materials,
-                   "Draw seams, with --cut auto, to where these differ: named as for --labels")
+      .add_option("--materials", arguments.materials,
+                  "Draw seams, with --cut auto, to where these differ: named as for --labels")
       ->group("Charts")
       ->type_name("NAME");
   command
-      ->add_option("--write-seams", arguments.written_seams,
-                   "Write the seams, those given and those found, as --seams reads them")
+      .add_option("--write-seams", arguments.written_seams,
+                  "Write the seams, those given and those found, as --seams reads them")
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--uv-set", arguments.uv_set,
-          "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
-      ->type_name("NUMBER");
-  command
-      ->add_option("--pins", arguments.pins,
+      .add_option("--pins", arguments.pins,
                    "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
                    "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
                    "after another count from 0, UVs are in the unit of IN; - for a number leaves\n"
@@ -273,7 +264,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
       ->group("Charts")
       ->type_name("FILE");
   command
-      ->add_option(
+      .add_option(
           "--straighten", arguments.straighten,
           "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
           "a face as a rectangle (and its corners, four vertices, where its border has no\n"
@@ -281,6 +272,20 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
           "one u, at one v or on a line with those that it meets; all count from 0")
       ->group("Charts")
       ->type_name("FILE");
+}
+
+CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
+  CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
+  command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
+      ->required();
+  command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
+      ->required();
+  add_seams(*command, arguments);
+  command
+      ->add_option(
+          "--uv-set", arguments.uv_set,
+          "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
+      ->type_name("NUMBER");
   add_bake(*command, arguments);
   add_masks(*command, arguments.masks);
   options.add_to(*command);
@@ -290,6 +295,11 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("--report", arguments.report, kReportHelp)->type_name("FILE.json");
   command->add_option("--picture", arguments.picture, "Write a picture of the atlas")
       ->type_name("FILE.png");
+  command
+      ->add_option("--html", arguments.html,
+                   "Write a page for browsers that shows the model beside its layout; it is one\n"
+                   "file, and needs no network")
+      ->type_name("FILE.html");
   add_reach(*command, arguments.reach);
   command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
   command->footer(std::string(kAnyMesh) + "\n\n" + kSeams + "\n\n" + kPages + "\n\n" + kKept +

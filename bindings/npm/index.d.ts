@@ -67,6 +67,8 @@ export interface Atlas {
   readonly cornerPages: Uint32Array;
   /** The chart of each face; 4294967295 for a face without area. */
   readonly faceCharts: Uint32Array;
+  /** Three corners for each triangle that was computed on, in the orientation in which it is positive. */
+  readonly triangles: Uint32Array;
   /** The seams, as pairs of vertices. */
   readonly seams: Uint32Array;
   readonly charts: Chart[];

@@ -181,6 +181,7 @@ class Beltrami {
         uvVertexOrigins: whole(this.c.beltrami_get_uv_vertex_origins, report.uvVertices),
         cornerPages: whole(this.c.beltrami_get_corner_pages, given.corners),
         faceCharts: whole(this.c.beltrami_get_face_charts, given.faces),
+        triangles: whole(this.c.beltrami_get_triangles, 3 * report.triangles),
         seams: whole(this.c.beltrami_get_seams, 2 * report.seams),
         charts,
         report,

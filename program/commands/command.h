@@ -34,6 +34,7 @@ struct UnwrapArguments {
   std::string materials;         ///< what draws seams to where it differs, or ""
   std::string written_seams;     ///< path, or ""
   std::string report, picture;   ///< paths, or "" for none
+  std::string html;              ///< path of a page for browsers, or ""
   std::string masks;             ///< folder and name of the masks of pages, or ""
   std::uint32_t uv_set = 0;      ///< of glTF: TEXCOORD_ and this number
   bool bake = false;             ///< the textures of materials, for the new UVs

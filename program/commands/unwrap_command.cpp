@@ -24,6 +24,7 @@
 #include "files/split_mesh.h"
 #include "files/straight.h"
 #include "files/surface_view.h"
+#include "picture/html.h"
 #include "picture/picture.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -95,12 +96,15 @@ class Unwrapping {
     }
     for (const std::string& mesh : {arguments_.input, arguments_.output}) {
       require_distinct({mesh, arguments_.seams, arguments_.pins, arguments_.paint,
-                        arguments_.straighten, arguments_.report, arguments_.picture});
+                        arguments_.straighten, arguments_.report, arguments_.picture,
+                        arguments_.html});
       require_distinct({mesh, arguments_.written_seams, arguments_.pins, arguments_.paint,
-                        arguments_.straighten, arguments_.report, arguments_.picture});
+                        arguments_.straighten, arguments_.report, arguments_.picture,
+                        arguments_.html});
     }
     const std::vector<std::string> written = {arguments_.output, arguments_.written_seams,
-                                              arguments_.report, arguments_.picture};
+                                              arguments_.report, arguments_.picture,
+                                              arguments_.html};
     if (!arguments_.quiet || arguments_.print_report) require_apart_from_stdout(written);
     for (const std::string& path : written) {
       if (!path.empty()) require_writable(path);
@@ -160,7 +164,8 @@ class Unwrapping {
     if (arguments_.bake) {
       bake_.emplace(file_, arguments_.output, arguments_.merge_materials);
       for (const std::string& path : bake_->paths()) {
-        require_distinct({path, arguments_.report, arguments_.picture, arguments_.written_seams});
+        require_distinct({path, arguments_.report, arguments_.picture, arguments_.html,
+                          arguments_.written_seams});
         require_writable(path);
       }
     }
@@ -286,6 +291,15 @@ class Unwrapping {
     set_corner_uvs(file_, uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
     triangles_.resize(3 * report_.atlas->triangles);
     require(beltrami_get_triangles(context_.get(), triangles_.data(), BELTRAMI_U32, 0));
+    if (!arguments_.html.empty()) fetch_charts();
+  }
+
+  void fetch_charts() {
+    std::vector<std::uint32_t> of_faces(file_.polygons.size());
+    require(beltrami_get_face_charts(context_.get(), of_faces.data(), BELTRAMI_U32, 0));
+    for (std::size_t i = 0; i < triangles_.size(); i += 3) {
+      charts_.push_back(of_faces[file_.polygons.of_corner(triangles_[i])]);
+    }
   }
 
   void triangulate() {
@@ -346,8 +360,14 @@ class Unwrapping {
     if (!arguments_.masks.empty()) write_masks(context_.get(), arguments_.masks, outputs);
     clock.finish();
 
-    if (!arguments_.picture.empty()) write_picture(outputs.emplace_back(arguments_.picture));
+    HtmlMesh shown;
+    if (!arguments_.picture.empty() || !arguments_.html.empty()) shown = write_pictures(outputs);
     report_.seconds = seconds_so_far();
+    if (!arguments_.html.empty()) {
+      AtomicFile& page = outputs.emplace_back(arguments_.html);
+      write_html(shown, to_json(report_), [&](std::string_view part) { page.write(part); });
+      page.close();
+    }
     if (!arguments_.report.empty()) {
       outputs.emplace_back(arguments_.report).write(to_json(report_));
       outputs.back().close();
@@ -379,9 +399,8 @@ class Unwrapping {
     output.close();
   }
 
-  void write_picture(AtomicFile& file) {
-    bar_.show(1, "picture");
-    StageClock clock(report_, "picture");
+  /// The picture, and what the page for browsers shows.
+  HtmlMesh write_pictures(std::deque<AtomicFile>& outputs) {
     MeshFile scaled = file_;
     if (report_.packing) {  // energies are those of the surface's own scale
       const beltrami_packing& packing = *report_.packing;
@@ -389,9 +408,22 @@ class Unwrapping {
       for (double& x : scaled.corner_uvs.values) x *= unit;
     }
     const SplitMesh split(scaled, triangles_);
-    file.write(encode_png(render_picture(split.view(), face_energies(split.view()))));
-    file.close();
+    const std::vector<double> energies = face_energies(split.view());
+    if (!arguments_.picture.empty()) {
+      bar_.show(1, "picture");
+      StageClock clock(report_, "picture");
+      AtomicFile& file = outputs.emplace_back(arguments_.picture);
+      file.write(encode_png(render_picture(split.view(), energies)));
+      file.close();
+      clock.finish();
+    }
+    if (arguments_.html.empty()) return {};
+    bar_.show(1, "html");
+    StageClock clock(report_, "html");
+    const SplitMesh on_pages(file_, triangles_);
+    HtmlMesh shown = html_mesh(on_pages.view(), energies, charts_);
     clock.finish();
+    return shown;
   }
 
   void require(beltrami_status status) const {
@@ -420,6 +452,7 @@ class Unwrapping {
   Straight straight_;
   std::optional<TextureBake> bake_;
   std::vector<std::uint32_t> triangles_;  ///< corners of the file's faces
+  std::vector<std::uint32_t> charts_;     ///< of the triangles, where the page wants them
 };
 
 }  // namespace
@@ -433,7 +466,7 @@ int unwrap_command(const UnwrapArguments& arguments, Options& options) {
   return run_guarded(
       report, arguments.report,
       {arguments.input, arguments.output, arguments.seams, arguments.pins, arguments.paint,
-       arguments.straighten, arguments.written_seams, arguments.picture},
+       arguments.straighten, arguments.written_seams, arguments.picture, arguments.html},
       [&] { return Unwrapping(arguments, options, report).run(); });
 }
 

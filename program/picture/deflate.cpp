@@ -17,9 +17,10 @@ constexpr int kWindowBits = 15, kMemoryLevel = 9;
 struct Stream {
   z_stream state{};
 
-  Stream() {
+  explicit Stream(Repetitions repetitions) {
+    const int strategy = repetitions == Repetitions::kAll ? Z_DEFAULT_STRATEGY : Z_RLE;
     const int made =
-        deflateInit2(&state, Z_BEST_SPEED, Z_DEFLATED, kWindowBits, kMemoryLevel, Z_RLE);
+        deflateInit2(&state, Z_BEST_SPEED, Z_DEFLATED, kWindowBits, kMemoryLevel, strategy);
     if (made != Z_OK) throw std::bad_alloc();
   }
   ~Stream() { deflateEnd(&state); }
@@ -29,8 +30,8 @@ struct Stream {
 
 }  // namespace
 
-std::string zlib_bytes(std::string_view bytes) {
-  Stream stream;
+std::string zlib_bytes(std::string_view bytes, Repetitions repetitions) {
+  Stream stream(repetitions);
   std::string all;
   // zlib reads the bytes alone, though its type does not say so.
   stream.state.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));

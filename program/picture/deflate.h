@@ -1,4 +1,4 @@
-// Compression of pictures by zlib.
+// Compression by zlib.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,15 @@
 
 namespace beltrami::cli {
 
-/// `bytes` in the format of zlib (RFC 1950), with repetitions of the byte before alone: the gutters
-/// and flats of filtered pictures are such. A general search for repetitions took ten times as long
-/// and made pictures with detail no smaller. Throws std::bad_alloc.
-std::string zlib_bytes(std::string_view bytes);
+/// Which repetitions are looked for.
+enum class Repetitions {
+  kOfOneByte,  ///< the gutters and flats of filtered pictures; a search for all took ten times as
+               ///< long and made pictures with detail no smaller
+  kAll         ///< a quick search
+};
+
+/// `bytes` in the format of zlib (RFC 1950). Throws std::bad_alloc.
+std::string zlib_bytes(std::string_view bytes, Repetitions repetitions = Repetitions::kOfOneByte);
 
 /// Of a chunk of PNG.
 std::uint32_t crc32(std::string_view bytes);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "files/vector3.h"
+#include "picture/edges.h"
 #include "picture/raster.h"
 #include "picture/stb_in_one_place.h"
 #include "picture/view.h"
@@ -105,30 +106,6 @@ class Fit {
   std::array<double, 2> low_ = {INFINITY, INFINITY}, high_ = {-INFINITY, -INFINITY};
   double scale_ = 0, center_x_ = 0, center_y_ = 0;
 };
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-struct Edges {
-  std::vector<Edge> inner, boundary;
-};
-
-Edges find_edges(const TriangleView& mesh) {
-  std::vector<Edge> all;
-  all.reserve(mesh.faces.size());
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const std::uint32_t a = mesh.faces[i], b = mesh.faces[i % 3 == 2 ? i - 2 : i + 1];
-    all.emplace_back(std::min(a, b), std::max(a, b));
-  }
-  std::sort(all.begin(), all.end());
-  Edges edges;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t next = i + 1;
-    while (next < all.size() && all[next] == all[i]) ++next;
-    (next == i + 1 ? edges.boundary : edges.inner).push_back(all[i]);
-    i = next;
-  }
-  return edges;
-}
 
 Vector3 position_of(const TriangleView& mesh, std::uint32_t vertex) {
   const double* p = &mesh.positions[3 * std::size_t{vertex}];

@@ -127,6 +127,7 @@ def main() -> None:
                 made.append(pack(TARGETS[name], build(TARGETS[name], arguments.jobs)))
         if WASM in wanted or "npm" in wanted:
             made.append(npm.pack(build(TARGETS[WASM], arguments.jobs), DIST, OUT, version()))
+            made.append(npm.pack_page(DIST, OUT, version()))
         if "wheels" in wanted:
             if not any((DIST / "stage" / t.name).exists() for t in TARGETS.values() if t.wheel):
                 sys.exit("dist: wheels are made of targets: name one that has some, too")

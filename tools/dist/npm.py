@@ -1,4 +1,4 @@
-"""The npm package: the library as WebAssembly, with what JavaScript needs to call it."""
+"""The npm package, the library as WebAssembly with what JavaScript needs to call it; and the page that uses it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from wasm import runtime
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "bindings" / "npm"
 FILES = ["index.mjs", "index.d.ts", "tables.mjs", "README.md"]
+VIEWER = ROOT / "program" / "viewer"
 STACK = 8 << 20  # bytes: as threads of Linux have
 MOST_BYTES = 1_500_000  # of the package
 
@@ -55,3 +56,19 @@ def pack(build: Path, dist: Path, out: Path, version: str) -> Path:
     if packed.stat().st_size > MOST_BYTES:
         raise checks.CheckError(f"{packed.name} has {packed.stat().st_size} bytes")
     return packed
+
+
+def pack_page(dist: Path, out: Path, version: str) -> Path:
+    """Assemble the page that unwraps in browsers, of the package in `dist`, and pack it; return the file."""
+    stage = dist / "stage" / "page"
+    shutil.rmtree(stage, ignore_errors=True)
+    shutil.copytree(PACKAGE / "page", stage)
+    (stage / "viewer").mkdir()
+    for path in sorted(VIEWER.iterdir()):
+        if path.suffix in {".mjs", ".css"}:
+            shutil.copy(path, stage / "viewer")
+    joined = ["-DPAGE=report.html", f"-DBYTES={dist / 'report_page.inc'}"]
+    script = str(VIEWER / "join.cmake")
+    subprocess.run(["cmake", *joined, "-P", script], cwd=stage / "viewer", check=True)
+    shutil.copytree(dist / "stage" / WASM, stage / "beltrami")
+    return archive.pack(stage, out / f"beltrami-{version}-page.zip", f"beltrami-{version}-page")

@@ -51,6 +51,8 @@ def pack(target: Target, dist: Path, out: Path, version: str) -> Path:
     for path in sorted((PACKAGE / "src" / "beltrami").iterdir()):
         if path.is_file():
             files[f"beltrami/{path.name}"] = (path.read_bytes(), 0o644)
+    page = dist / target.name / "program" / "viewer" / "report.html"
+    files[f"beltrami/{page.name}"] = (page.read_bytes(), 0o644)
     if target.windows:
         module = _module(target, work, stage / "lib" / "libbeltrami.dll.a", dist)
         compiled = {

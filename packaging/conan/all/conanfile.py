@@ -1,7 +1,8 @@
 import os
 
 from conan import ConanFile
-from conan.tools.build import check_min_cppstd
+from conan.errors import ConanInvalidConfiguration
+from conan.tools.build import check_min_cppstd, stdcpp_library
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, get, rmdir
 from conan.tools.microsoft import is_msvc
@@ -36,6 +37,8 @@ class BeltramiConan(ConanFile):
 
     def validate(self):
         check_min_cppstd(self, 20)
+        if is_msvc(self):
+            raise ConanInvalidConfiguration("the library has vectors of GCC: build it with Clang")
 
     def build_requirements(self):
         self.tool_requires("cmake/[>=3.25 <4]")
@@ -45,6 +48,7 @@ class BeltramiConan(ConanFile):
 
     def generate(self):
         toolchain = CMakeToolchain(self)
+        toolchain.cache_variables["BELTRAMI_EXACT"] = "cgal"
         toolchain.cache_variables["BELTRAMI_BUILD_STATIC"] = False
         toolchain.cache_variables["BELTRAMI_BUILD_PROGRAM"] = False
         toolchain.cache_variables["BELTRAMI_BUILD_TESTS"] = False
@@ -73,7 +77,10 @@ class BeltramiConan(ConanFile):
         if self.options.shared:
             if self.settings.os == "Windows":
                 self.cpp_info.defines = ["BELTRAMI_SHARED"]
-        elif self.settings.os in ("Linux", "FreeBSD"):
-            self.cpp_info.system_libs = ["m", "pthread", "stdc++"]
-        elif not is_msvc(self) and self.settings.os == "Macos":
-            self.cpp_info.system_libs = ["c++"]
+            return
+        # Programs in C link the C++ library of the profile, whichever that is.
+        runtime = stdcpp_library(self)
+        if runtime:
+            self.cpp_info.system_libs.append(runtime)
+        if self.settings.os in ("Linux", "FreeBSD"):
+            self.cpp_info.system_libs += ["m", "pthread"]

@@ -6,7 +6,7 @@ vcpkg_from_github(
     HEAD_REF main
 )
 
-set(solver eigen)
+set(solver native)
 if("cholmod" IN_LIST FEATURES)
     set(solver cholmod)
 endif()
@@ -16,6 +16,7 @@ vcpkg_cmake_configure(
     SOURCE_PATH "${SOURCE_PATH}"
     OPTIONS
         -DBELTRAMI_SOLVER=${solver}
+        -DBELTRAMI_EXACT=cgal
         -DBELTRAMI_BUILD_STATIC=OFF
         -DBELTRAMI_BUILD_PROGRAM=OFF
         -DBELTRAMI_BUILD_TESTS=OFF

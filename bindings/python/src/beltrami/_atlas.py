@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from . import _html, _trimesh
+from . import _html, _report_page, _trimesh
 from ._arrays import Array
 from ._tables import (
     AtlasCertificate,
@@ -198,6 +199,25 @@ class Atlas:
         """
         faces = self.uv_triangles if triangles else self.uv_faces
         return self.vertices[self.origins], faces, self.uvs
+
+    def html(self, path: str | os.PathLike[str]) -> None:
+        """Write a page for browsers that shows the model beside its layout, and the figures.
+
+        It is one file, and needs no network: ``beltrami unwrap --html`` writes the same. The model
+        shows a checkerboard, its distortion, its charts or a picture of yours. Numbers are in
+        single precision there.
+
+        Parameters
+        ----------
+        path : str or path
+            Of the file to write, which is replaced. The page is named after it.
+
+        Raises
+        ------
+        OSError
+            Where the file cannot be written.
+        """
+        _report_page.write(self, path)
 
     def _repr_html_(self) -> str:
         """Return a picture of the layout and its figures, as notebooks show them."""
