@@ -395,10 +395,11 @@ static void edit(beltrami_context* context) {
   static const uint64_t zero[1] = {0};
   beltrami_surface surface = describe_surface();
   beltrami_buffer edges = integers(inner), first = integers(zero), places;
+  double place[2];
   uint64_t mark = 0;
   int calls = 0;
   memset(&places, 0, sizeof places);
-  places.data = uvs;
+  places.data = place;
   places.type = BELTRAMI_F64;
   REQUIRE(beltrami_session_update(context, 0, 0, NULL, NULL) == BELTRAMI_E_INVALID_STATE);
   REQUIRE(beltrami_session_begin(context, &surface, count_calls, &calls) == BELTRAMI_OK);
@@ -415,8 +416,8 @@ static void edit(beltrami_context* context) {
   corner_uvs[3 * FACES][0] = -7;
   REQUIRE(beltrami_get_session_uvs(context, corner_uvs, BELTRAMI_F64, 0) == BELTRAMI_OK);
   REQUIRE(corner_uvs[3 * FACES][0] == -7);
-  uvs[0][0] = corner_uvs[0][0] + 1;
-  uvs[0][1] = corner_uvs[0][1];
+  place[0] = corner_uvs[0][0] + 1;
+  place[1] = corner_uvs[0][1];
   REQUIRE(beltrami_session_set_pins(context, &first, &places, 1) == BELTRAMI_OK);
   REQUIRE(beltrami_session_update(context, 0, 2, count_calls, &calls) >= BELTRAMI_OK);
   ARM(session);
@@ -428,7 +429,7 @@ static void edit(beltrami_context* context) {
   REQUIRE(beltrami_get_session_changes(context, numbers, BELTRAMI_U64, corner_uvs, BELTRAMI_F64) ==
           BELTRAMI_OK);
   REQUIRE(numbers[1] == 1 && numbers[3 * FACES] == 7 && corner_uvs[3 * FACES][0] == -7);
-  REQUIRE(corner_uvs[0][0] == uvs[0][0] && corner_uvs[0][1] == uvs[0][1]);
+  REQUIRE(corner_uvs[0][0] == place[0] && corner_uvs[0][1] == place[1]);
   ARM(chart);
   REQUIRE(beltrami_get_session_chart(context, 0, &chart.value) == BELTRAMI_OK);
   ALIVE(chart);

@@ -133,19 +133,56 @@ class Editor:
     # ---- Edits ----------------------------------------------------------------------------
 
     def open_seams(self, edges: npt.ArrayLike) -> None:
-        """Open seams at edges, (k, 2) vertices.
+        """Open seams at edges; what meets no border and no other seam opens nothing yet.
 
-        A seam that meets no border and no other seam opens nothing until it does. Raises
-        InvalidArgumentError where a pair is no edge, or inside a polygon: nothing is noted then.
+        Parameters
+        ----------
+        edges : (k, 2) array_like of integers
+            Their vertices.
+
+        Raises
+        ------
+        InvalidArgumentError
+            Where a pair is no edge, or inside a polygon: nothing is noted then.
+        IndexOutOfRangeError, TypeError, ValueError
+            For vertices that there are not, and other arrays.
         """
         self._context.edit("set_seams", _integers("edges", edges, 2), 1)
 
     def close_seams(self, edges: npt.ArrayLike) -> None:
-        """Close seams at edges, (k, 2) vertices. Raises InvalidArgumentError as `open_seams`."""
+        """Close seams at edges.
+
+        Parameters
+        ----------
+        edges : (k, 2) array_like of integers
+            Their vertices.
+
+        Raises
+        ------
+        InvalidArgumentError
+            Where a pair is no edge, or inside a polygon: nothing is noted then.
+        IndexOutOfRangeError, TypeError, ValueError
+            For vertices that there are not, and other arrays.
+        """
         self._context.edit("set_seams", _integers("edges", edges, 2), 0)
 
     def set_pins(self, corners: npt.ArrayLike, uvs: npt.ArrayLike) -> None:
-        """Set pins, (k,) corners and (k, 2) UVs, in place of all before; none takes them off."""
+        """Set pins in place of all before.
+
+        Parameters
+        ----------
+        corners : (k,) array_like of integers
+            Corners, counted from 0, face after face; none takes all pins off.
+        uvs : (k, 2) array_like of floats
+            Where they are to be; with the option `float32` numbers of that type.
+
+        Raises
+        ------
+        InvalidArgumentError, IndexOutOfRangeError, NonFiniteError
+            With the corner.
+        TypeError, ValueError
+            For arrays of other shapes or types.
+        """
         places = np.asarray(uvs, np.float64).reshape(-1, 2)
         numbers = _integers("corners", corners, None)
         if len(places) != len(numbers):
@@ -153,15 +190,52 @@ class Editor:
         self._context.set_pins(numbers, np.ascontiguousarray(places))
 
     def select(self, faces: npt.ArrayLike | None) -> None:
-        """Let these faces move alone, (k,) numbers, or with None all; their charts are due."""
+        """Let some faces move alone; their charts are due.
+
+        Parameters
+        ----------
+        faces : (k,) array_like of integers | None
+            Numbers of faces; None lets all move.
+
+        Raises
+        ------
+        IndexOutOfRangeError, TypeError, ValueError
+            For faces that there are not, and other arrays.
+        """
         self._context.edit("select", _integers("faces", [] if faces is None else faces, None))
 
     def lock(self, charts: npt.ArrayLike, locked: bool = True) -> None:
-        """Lock charts, (k,) numbers, or unlock them: locked ones stay whatever happens."""
+        """Lock charts, which then stay whatever happens, or unlock them.
+
+        Parameters
+        ----------
+        charts : (k,) array_like of integers
+            Numbers of charts.
+        locked : bool, default True
+            False unlocks them.
+
+        Raises
+        ------
+        InvalidArgumentError, TypeError, ValueError
+            For charts that there are not, and other arrays.
+        """
         self._context.edit("lock", _integers("charts", charts, None), int(locked))
 
     def renew(self, charts: npt.ArrayLike, cold: bool = False) -> None:
-        """Have the next update map charts anew, (k,) numbers; `cold`: from nothing."""
+        """Have the next update map charts anew, where they are.
+
+        Parameters
+        ----------
+        charts : (k,) array_like of integers
+            Numbers of charts.
+        cold : bool, default False
+            True starts from nothing instead of the map that is there.
+
+        Raises
+        ------
+        InvalidArgumentError, TypeError, ValueError
+            For charts that there are not, and other arrays.
+        """
         self._context.edit("renew", _integers("charts", charts, None), int(cold))
 
     # ---- Maps -----------------------------------------------------------------------------
@@ -199,11 +273,31 @@ class Editor:
         return self._changes(status)
 
     def pack(self, charts: npt.ArrayLike | None = None, *, progress: Progress = None) -> Changes:
-        """Pack charts, (k,) numbers, among the others, or with None all.
+        """Pack charts among the others; locked ones and those with pins stay.
 
-        Locked charts and those with pins stay. Sizes are kept, but where all are packed they are
-        scaled as one. Where there is no room elsewhere charts stay where they are. Raises
-        NoRoomError, InvalidArgumentError where a chart that stays lies on no page, Cancelled.
+        Parameters
+        ----------
+        charts : (k,) array_like of integers | None
+            Numbers of charts, which keep their sizes, and their places where there is no room
+            elsewhere; None packs all, scaled as one.
+        progress : bool or callable, optional
+            As for `parameterize`.
+
+        Returns
+        -------
+        Changes
+            The corners that moved.
+
+        Raises
+        ------
+        NoRoomError
+            Where they do not fit.
+        InvalidArgumentError
+            Where a chart that stays lies on no page, with a face.
+        InvalidStateError
+            Before the first update.
+        Cancelled, KeyboardInterrupt
+            As of `update`.
         """
         numbers = _integers("charts", [] if charts is None else charts, None)
         if charts is not None and len(numbers) == 0:
@@ -232,24 +326,51 @@ class Editor:
         return self._context.save()
 
     def restore(self, mark: int) -> Changes:
-        """Go back to what was saved, to the bit; it stays saved. Raises InvalidArgumentError."""
+        """Go back to what was saved, to the bit; it stays saved.
+
+        Parameters
+        ----------
+        mark : int
+            What `save` returned.
+
+        Returns
+        -------
+        Changes
+            The corners that moved.
+
+        Raises
+        ------
+        InvalidArgumentError
+            Where nothing is saved under it.
+        """
         self._context.restore(mark)
         return Changes(*self._context.changes(self._dtype), self._context.session_report().status)
 
     def forget(self, mark: int) -> None:
-        """Drop what was saved. Raises InvalidArgumentError."""
+        """Drop what was saved.
+
+        Parameters
+        ----------
+        mark : int
+            What `save` returned.
+
+        Raises
+        ------
+        InvalidArgumentError
+            Where nothing is saved under it.
+        """
         self._context.forget(mark)
 
     # ---- What there is --------------------------------------------------------------------
 
     @property
     def corner_uvs(self) -> Array:
-        """The UVs of all corners, (c, 2), face after face: float32 with that option."""
+        """A (k, 2) array of floats: the UVs of all corners, face after face."""
         return self._context.corner_uvs(self._corners, self._dtype)
 
     @property
     def chart_of_face(self) -> Array:
-        """The number of the chart of each face, (m,) of int64; -1 for a face without area."""
+        """An (m,) array of int64: the number of the chart of each face, -1 where it has no area."""
         return self._context.face_charts(self._faces)
 
     @property
@@ -259,7 +380,7 @@ class Editor:
 
     @property
     def opened(self) -> Array:
-        """Edges that are cut beside the seams, for nothing else would be a disk: (k, 2)."""
+        """A (k, 2) array of int64: edges cut beside the seams, for nothing else is a disk."""
         return self._context.opened()
 
     @property
