@@ -51,7 +51,8 @@ pub const BELTRAMI_E_BOUNDARIES: _bindgen_ty_1 = -29;
 pub const BELTRAMI_E_GENUS: _bindgen_ty_1 = -30;
 /// the whole surface has no area, or overflows
 pub const BELTRAMI_E_ZERO_AREA: _bindgen_ty_1 = -31;
-/// The pins of a surface cannot be met. Corner: the first that cannot, with those before it.
+/** The pins of a surface cannot be met. Corner: the first that cannot, with those before it. Or a
+ chart cannot be straight. Face: that of a rectangle; vertex: of straight edges.*/
 pub const BELTRAMI_E_PINS: _bindgen_ty_1 = -32;
 /// The charts do not fit onto the pages that the options allow.
 pub const BELTRAMI_E_NO_ROOM: _bindgen_ty_1 = -33;
@@ -213,6 +214,10 @@ pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
 pub const BELTRAMI_OPTION_FLAT_SEAMS: _bindgen_ty_3 = 41;
 /// choice: BELTRAMI_STACK_
 pub const BELTRAMI_OPTION_STACK: _bindgen_ty_3 = 42;
+/// choice: BELTRAMI_RECTIFY_
+pub const BELTRAMI_OPTION_RECTIFY: _bindgen_ty_3 = 43;
+/// int: 1 puts straight borders onto the edges of texels
+pub const BELTRAMI_OPTION_SNAP_TEXELS: _bindgen_ty_3 = 44;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Half the time of NORMAL, seams some 3% longer.
@@ -278,80 +283,98 @@ pub const BELTRAMI_STACK_MIRRORED: _bindgen_ty_9 = 2;
 /** Whether components of one shape share texels: each corner of such a component has the UV of the
  corner that it lies on. Its UV vertices are its own, its faces are not judged.*/
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_10 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_10 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_10 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_10 = 2;
-/// Whether vertices at one place are one.
+pub const BELTRAMI_RECTIFY_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+pub const BELTRAMI_RECTIFY_NONE: _bindgen_ty_10 = 0;
+/** Those that are rows and columns of quads: each column gets the mean length of its edges as its
+ width, each row as its height.*/
+pub const BELTRAMI_RECTIFY_GRIDS: _bindgen_ty_10 = 1;
+/// Which charts become rectangles, beside those that a surface names.
 pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_11 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_11 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_11 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_11 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_11 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_11 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_11 = 5;
+pub const BELTRAMI_PIN_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// u and v
+pub const BELTRAMI_PIN_POINT: _bindgen_ty_11 = 0;
+/// u: it may slide along v
+pub const BELTRAMI_PIN_U: _bindgen_ty_11 = 1;
+/// v: it may slide along u
+pub const BELTRAMI_PIN_V: _bindgen_ty_11 = 2;
+/// that it lies on a line, along which it may slide
+pub const BELTRAMI_PIN_LINE: _bindgen_ty_11 = 3;
+/// What is held of a pin, and what edges that are straight have in common.
 pub type _bindgen_ty_11 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_12 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_12 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_12 = 2;
+/// Whether vertices at one place are one.
+pub type _bindgen_ty_12 = ::core::ffi::c_int;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_13 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_13 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_13 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_13 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_13 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_13 = 5;
+pub type _bindgen_ty_13 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_14 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_12 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_14 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_12 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_14 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_12 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_14 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_12 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_14 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_12 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_14 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_12 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+pub type _bindgen_ty_14 = ::core::ffi::c_int;
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_15 = -1;
 /// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_13 = 0;
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_15 = 0;
 /// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_13 = 1;
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_15 = 1;
 /// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_13 = 2;
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_15 = 2;
 /// What the optimisation sees to. The certificate always judges global injectivity.
-pub type _bindgen_ty_13 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_14 = -1;
+pub type _bindgen_ty_15 = ::core::ffi::c_int;
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_16 = -1;
 /// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_14 = 0;
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_16 = 0;
 /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_14 = 1;
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_16 = 1;
 /** 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
  most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
  a parabola instead of the exponential.*/
-pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_14 = 2;
-pub type _bindgen_ty_14 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_15 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_15 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_15 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_15 = 2;
-/// How an option's value is given.
-pub type _bindgen_ty_15 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_16 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_16 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_16 = 2;
-/// beltrami_pack
-pub const BELTRAMI_CALL_PACK: _bindgen_ty_16 = 4;
-/// beltrami_bake
-pub const BELTRAMI_CALL_BAKE: _bindgen_ty_16 = 8;
-/// What an option is for.
+pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_16 = 2;
 pub type _bindgen_ty_16 = ::core::ffi::c_int;
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_17 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_17 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_17 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_17 = 2;
+/// How an option's value is given.
+pub type _bindgen_ty_17 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_18 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_18 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_18 = 2;
+/// beltrami_pack
+pub const BELTRAMI_CALL_PACK: _bindgen_ty_18 = 4;
+/// beltrami_bake
+pub const BELTRAMI_CALL_BAKE: _bindgen_ty_18 = 8;
+/// What an option is for.
+pub type _bindgen_ty_18 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -471,16 +494,16 @@ extern "C" {
         value: *mut f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_17 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_17 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_17 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_17 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_17 = 3;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_19 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_19 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_19 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_19 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_19 = 3;
 /// of pixels alone, as is the next
-pub const BELTRAMI_U8: _bindgen_ty_17 = 4;
-pub const BELTRAMI_U16: _bindgen_ty_17 = 5;
+pub const BELTRAMI_U8: _bindgen_ty_19 = 4;
+pub const BELTRAMI_U16: _bindgen_ty_19 = 5;
 /// Element types of buffers.
-pub type _bindgen_ty_17 = ::core::ffi::c_int;
+pub type _bindgen_ty_19 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -1058,11 +1081,32 @@ pub struct beltrami_surface {
     /** optional: face_count items of 1, U32 or U64: where they differ a
  seam costs the factor of the option material-seams*/
     pub materials: beltrami_buffer,
+    /** optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
+ all are POINT*/
+    pub pin_kinds: beltrami_buffer,
+    /** of kind LINE, which goes through the pin's UV; optional without
+ any: pin_count items of 2, F32 or F64, that kind's not both 0*/
+    pub pin_directions: beltrami_buffer,
+    /** optional: straight_edge_count items of 2, U32 or U64: edges by
+ their vertices*/
+    pub straight_edges: beltrami_buffer,
+    /** straight_edge_count items of 1, U32 or U64: BELTRAMI_PIN_U, V
+ or LINE*/
+    pub straight_kinds: beltrami_buffer,
+    pub straight_edge_count: u64,
+    /** optional: rectangle_count items of 1, U32 or U64: faces; the
+ chart of each becomes a rectangle along the axes*/
+    pub rectangles: beltrami_buffer,
+    /** optional: rectangle_count items of 4, U32 or U64: vertices
+ of its border, in any order; four BELTRAMI_NO_ELEMENT of
+ U64, or left out: the four where its border turns most*/
+    pub rectangle_corners: beltrami_buffer,
+    pub rectangle_count: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 376usize];
+    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 536usize];
     [
         "Alignment of beltrami_surface",
     ][::core::mem::align_of::<beltrami_surface>() - 8usize];
@@ -1132,6 +1176,30 @@ const _: () = {
     [
         "Offset of field: beltrami_surface::materials",
     ][::core::mem::offset_of!(beltrami_surface, materials) - 352usize];
+    [
+        "Offset of field: beltrami_surface::pin_kinds",
+    ][::core::mem::offset_of!(beltrami_surface, pin_kinds) - 376usize];
+    [
+        "Offset of field: beltrami_surface::pin_directions",
+    ][::core::mem::offset_of!(beltrami_surface, pin_directions) - 400usize];
+    [
+        "Offset of field: beltrami_surface::straight_edges",
+    ][::core::mem::offset_of!(beltrami_surface, straight_edges) - 424usize];
+    [
+        "Offset of field: beltrami_surface::straight_kinds",
+    ][::core::mem::offset_of!(beltrami_surface, straight_kinds) - 448usize];
+    [
+        "Offset of field: beltrami_surface::straight_edge_count",
+    ][::core::mem::offset_of!(beltrami_surface, straight_edge_count) - 472usize];
+    [
+        "Offset of field: beltrami_surface::rectangles",
+    ][::core::mem::offset_of!(beltrami_surface, rectangles) - 480usize];
+    [
+        "Offset of field: beltrami_surface::rectangle_corners",
+    ][::core::mem::offset_of!(beltrami_surface, rectangle_corners) - 504usize];
+    [
+        "Offset of field: beltrami_surface::rectangle_count",
+    ][::core::mem::offset_of!(beltrami_surface, rectangle_count) - 528usize];
 };
 impl Default for beltrami_surface {
     fn default() -> Self {
@@ -1177,7 +1245,17 @@ extern "C" {
  those before it: what is proven before the flattening first (two UV vertices at one place, a face
  turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
  to reach them without folding a face. Pins go with neither densities nor the option unit-square,
- nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.*/
+ nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.
+ Pins of kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale
+ open, a chart keeps its own.
+
+ Charts with straight borders are turned by quarters alone, and what is straight keeps one number
+ to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
+ rectangle without given corners that is rows and columns of quads becomes a grid. Where an edge
+ cuts off a part of a chart whose border is all on one line, that part of the border is left out
+ of it, for its faces would have no area. Where no injective map is found the call fails with PINS
+ and the face of the rectangle, or a vertex of the straight edges; edges that are none, branch or
+ form a loop, and charts with pins, are INVALID_ARGUMENT.*/
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
@@ -1928,14 +2006,14 @@ extern "C" {
         out: *mut beltrami_atlas_certificate,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_18 = -1;
-pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_18 = 0;
+pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_20 = -1;
+pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_20 = 0;
 /// no further than the margin asked for from a covered one
-pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_18 = 1;
+pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_20 = 1;
 /// a face has a point in common with it
-pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_18 = 2;
+pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_20 = 2;
 /// What a byte of a mask says of its texel.
-pub type _bindgen_ty_18 = ::core::ffi::c_int;
+pub type _bindgen_ty_20 = ::core::ffi::c_int;
 extern "C" {
     /** Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
  down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,
@@ -1970,34 +2048,34 @@ extern "C" {
         stride: u64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_19 = -1;
-pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_19 = 0;
+pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_21 = 0;
 /// its outermost texels
-pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_19 = 1;
+pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_21 = 1;
 /// itself, mirrored at every other time
-pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_19 = 2;
+pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_21 = 2;
 /// What an image shows beyond [0,1]^2.
-pub type _bindgen_ty_19 = ::core::ffi::c_int;
-pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_20 = -1;
+pub type _bindgen_ty_21 = ::core::ffi::c_int;
+pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_22 = -1;
 /// between texels; a mean where many are shown by one
-pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_20 = 0;
+pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_22 = 0;
 /// each place shows its texel; means of 4 x 4 places in a new one
-pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_20 = 1;
+pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_22 = 1;
 /// How texels are read.
-pub type _bindgen_ty_20 = ::core::ffi::c_int;
-pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+pub type _bindgen_ty_22 = ::core::ffi::c_int;
+pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_23 = -1;
 /// as they are: roughness, heights, linear light
-pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_21 = 0;
+pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_23 = 0;
 /// colours, in linear light; a second or fourth channel is linear
-pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_21 = 1;
+pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_23 = 1;
 /// the same, and a colour counts by that channel, its alpha
-pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_21 = 2;
+pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_23 = 2;
 /** of tangent space, with 3 or 4 channels: x and y of normals,
  0 at the middle of the type's range (F32: 0.5), are turned from
  the axes of the old UVs to those of the new ones*/
-pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_21 = 3;
+pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_23 = 3;
 /// What the channels of an image are, which says how a mean of them is taken.
-pub type _bindgen_ty_21 = ::core::ffi::c_int;
+pub type _bindgen_ty_23 = ::core::ffi::c_int;
 /** An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
  F32 as it is.*/
 #[repr(C)]
