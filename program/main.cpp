@@ -196,6 +196,26 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   return command;
 }
 
+/// What is held of UVs, and what is to be straight.
+void add_pins(CLI::App& command, UnwrapArguments& arguments) {
+  command
+      .add_option("--pins", arguments.pins,
+                  "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
+                  "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
+                  "after another count from 0, UVs are in the unit of IN; - for a number leaves\n"
+                  "it free, and two numbers more are the direction of a line to stay on")
+      ->group("Charts")
+      ->type_name("FILE");
+  command
+      .add_option("--straighten", arguments.straighten,
+                  "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
+                  "a face as a rectangle (and its corners, four vertices, where its border has no\n"
+                  "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
+                  "one u, at one v or on a line with those that it meets; all count from 0")
+      ->group("Charts")
+      ->type_name("FILE");
+}
+
 CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options) {
   CLI::App* command = app.add_subcommand("unwrap", "Unwrap any mesh to an atlas of UVs");
   command->add_option("IN", arguments.input, "Mesh to read: .obj, .off, .ply, .stl, .gltf or .glb")
@@ -236,23 +256,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
           "--uv-set", arguments.uv_set,
           "The UVs of a glTF file that are written: TEXCOORD_0 (the default), TEXCOORD_1...")
       ->type_name("NUMBER");
-  command
-      ->add_option("--pins", arguments.pins,
-                   "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
-                   "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
-                   "after another count from 0, UVs are in the unit of IN; - for a number leaves\n"
-                   "it free, and two numbers more are the direction of a line to stay on")
-      ->group("Charts")
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--straighten", arguments.straighten,
-          "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
-          "a face as a rectangle (and its corners, four vertices, where its border has no\n"
-          "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
-          "one u, at one v or on a line with those that it meets; all count from 0")
-      ->group("Charts")
-      ->type_name("FILE");
+  add_pins(*command, arguments);
   command
       ->add_flag(
           "--bake", arguments.bake,
