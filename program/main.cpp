@@ -224,7 +224,7 @@ void add_bake(CLI::App& command, UnwrapArguments& arguments) {
       ->group("Pages");
 }
 
-/// What says where charts end, what they are held to, and where that is written.
+/// What says where charts end, and where that is written.
 void add_seams(CLI::App& command, UnwrapArguments& arguments) {
   command
       .add_option("--seams", arguments.seams,
@@ -255,21 +255,24 @@ void add_seams(CLI::App& command, UnwrapArguments& arguments) {
                   "Write the seams, those given and those found, as --seams reads them")
       ->group("Charts")
       ->type_name("FILE");
+}
+
+/// What is held of UVs, and what is to be straight.
+void add_pins(CLI::App& command, UnwrapArguments& arguments) {
   command
       .add_option("--pins", arguments.pins,
-                   "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
-                   "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
-                   "after another count from 0, UVs are in the unit of IN; - for a number leaves\n"
-                   "it free, and two numbers more are the direction of a line to stay on")
+                  "UVs to hold: a text with a line for each, 'v VERTEX U V' for all corners of a\n"
+                  "vertex or 'c CORNER U V' for one; vertices and the corners of all faces one\n"
+                  "after another count from 0, UVs are in the unit of IN; - for a number leaves\n"
+                  "it free, and two numbers more are the direction of a line to stay on")
       ->group("Charts")
       ->type_name("FILE");
   command
-      .add_option(
-          "--straighten", arguments.straighten,
-          "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
-          "a face as a rectangle (and its corners, four vertices, where its border has no\n"
-          "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
-          "one u, at one v or on a line with those that it meets; all count from 0")
+      .add_option("--straighten", arguments.straighten,
+                  "What is to be straight: a text with a line for each, 'r FACE' for the chart of\n"
+                  "a face as a rectangle (and its corners, four vertices, where its border has no\n"
+                  "clear ones), or 'u', 'v' or 'l' and the two vertices of an edge, which lies at\n"
+                  "one u, at one v or on a line with those that it meets; all count from 0")
       ->group("Charts")
       ->type_name("FILE");
 }
@@ -281,6 +284,7 @@ CLI::App* add_unwrap(CLI::App& app, UnwrapArguments& arguments, Options& options
   command->add_option("OUT", arguments.output, "Mesh with UVs to write: .obj, .ply, .gltf or .glb")
       ->required();
   add_seams(*command, arguments);
+  add_pins(*command, arguments);
   command
       ->add_option(
           "--uv-set", arguments.uv_set,

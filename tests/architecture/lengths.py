@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 FILE_LINES = 600
 # One header is the whole of the interface, most of it comments.
-LONGER = {"include/beltrami/beltrami.h": 1300}
+LONGER = {"include/beltrami/beltrami.h": 1400}
 FUNCTION_LINES = 70
 TREES = ["src", "program", "include", "tests", "benchmarks", "bindings"]
 FUNCTION_TREES = ["src", "program", "include"]

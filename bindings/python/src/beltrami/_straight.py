@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _polygons
 from ._arrays import Array
-from ._library import lib
+from ._native import lib
 from ._polygons import Polygons
 
 _KINDS = {

@@ -51,7 +51,8 @@ pub const BELTRAMI_E_BOUNDARIES: _bindgen_ty_1 = -29;
 pub const BELTRAMI_E_GENUS: _bindgen_ty_1 = -30;
 /// the whole surface has no area, or overflows
 pub const BELTRAMI_E_ZERO_AREA: _bindgen_ty_1 = -31;
-/// The pins of a surface cannot be met. Corner: the first that cannot, with those before it.
+/** The pins of a surface cannot be met. Corner: the first that cannot, with those before it. Or a
+ chart cannot be straight. Face: that of a rectangle; vertex: of straight edges.*/
 pub const BELTRAMI_E_PINS: _bindgen_ty_1 = -32;
 /// The charts do not fit onto the pages that the options allow.
 pub const BELTRAMI_E_NO_ROOM: _bindgen_ty_1 = -33;
@@ -213,6 +214,10 @@ pub const BELTRAMI_OPTION_EFFORT: _bindgen_ty_3 = 40;
 pub const BELTRAMI_OPTION_FLAT_SEAMS: _bindgen_ty_3 = 41;
 /// choice: BELTRAMI_STACK_
 pub const BELTRAMI_OPTION_STACK: _bindgen_ty_3 = 42;
+/// choice: BELTRAMI_RECTIFY_
+pub const BELTRAMI_OPTION_RECTIFY: _bindgen_ty_3 = 43;
+/// int: 1 puts straight borders onto the edges of texels
+pub const BELTRAMI_OPTION_SNAP_TEXELS: _bindgen_ty_3 = 44;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Half the time of NORMAL, seams some 3% longer.
@@ -278,80 +283,98 @@ pub const BELTRAMI_STACK_MIRRORED: _bindgen_ty_9 = 2;
 /** Whether components of one shape share texels: each corner of such a component has the UV of the
  corner that it lies on. Its UV vertices are its own, its faces are not judged.*/
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
-pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_10 = -1;
-/// Yes; but a surface that is one disk as it stands stays so.
-pub const BELTRAMI_WELD_AUTO: _bindgen_ty_10 = 0;
-pub const BELTRAMI_WELD_ON: _bindgen_ty_10 = 1;
-pub const BELTRAMI_WELD_OFF: _bindgen_ty_10 = 2;
-/// Whether vertices at one place are one.
+pub const BELTRAMI_RECTIFY_FORCE_SIGNED_: _bindgen_ty_10 = -1;
+pub const BELTRAMI_RECTIFY_NONE: _bindgen_ty_10 = 0;
+/** Those that are rows and columns of quads: each column gets the mean length of its edges as its
+ width, each row as its height.*/
+pub const BELTRAMI_RECTIFY_GRIDS: _bindgen_ty_10 = 1;
+/// Which charts become rectangles, beside those that a surface names.
 pub type _bindgen_ty_10 = ::core::ffi::c_int;
-pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_11 = -1;
-/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
-pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_11 = 0;
-/// Composite majorization on the full mesh: the slow reference.
-pub const BELTRAMI_METHOD_CM: _bindgen_ty_11 = 1;
-/// Tutte's embedding into a circle: injective, fast, highly distorted.
-pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_11 = 2;
-/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
-pub const BELTRAMI_METHOD_GIF: _bindgen_ty_11 = 3;
-/// Baseline: boundary first flattening, conformal. May flip and overlap.
-pub const BELTRAMI_METHOD_BFF: _bindgen_ty_11 = 4;
-/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
-pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_11 = 5;
+pub const BELTRAMI_PIN_FORCE_SIGNED_: _bindgen_ty_11 = -1;
+/// u and v
+pub const BELTRAMI_PIN_POINT: _bindgen_ty_11 = 0;
+/// u: it may slide along v
+pub const BELTRAMI_PIN_U: _bindgen_ty_11 = 1;
+/// v: it may slide along u
+pub const BELTRAMI_PIN_V: _bindgen_ty_11 = 2;
+/// that it lies on a line, along which it may slide
+pub const BELTRAMI_PIN_LINE: _bindgen_ty_11 = 3;
+/// What is held of a pin, and what edges that are straight have in common.
 pub type _bindgen_ty_11 = ::core::ffi::c_int;
-pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+pub const BELTRAMI_WELD_FORCE_SIGNED_: _bindgen_ty_12 = -1;
+/// Yes; but a surface that is one disk as it stands stays so.
+pub const BELTRAMI_WELD_AUTO: _bindgen_ty_12 = 0;
+pub const BELTRAMI_WELD_ON: _bindgen_ty_12 = 1;
+pub const BELTRAMI_WELD_OFF: _bindgen_ty_12 = 2;
+/// Whether vertices at one place are one.
+pub type _bindgen_ty_12 = ::core::ffi::c_int;
+pub const BELTRAMI_METHOD_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+/// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their metric.
+pub const BELTRAMI_METHOD_BELTRAMI: _bindgen_ty_13 = 0;
+/// Composite majorization on the full mesh: the slow reference.
+pub const BELTRAMI_METHOD_CM: _bindgen_ty_13 = 1;
+/// Tutte's embedding into a circle: injective, fast, highly distorted.
+pub const BELTRAMI_METHOD_TUTTE: _bindgen_ty_13 = 2;
+/// Baseline: globally injective, in the harmonic subspace of the surface's own metric.
+pub const BELTRAMI_METHOD_GIF: _bindgen_ty_13 = 3;
+/// Baseline: boundary first flattening, conformal. May flip and overlap.
+pub const BELTRAMI_METHOD_BFF: _bindgen_ty_13 = 4;
+/// Baseline: the UVs of the coarse mesh carried over by closest points. Flips.
+pub const BELTRAMI_METHOD_UV_PROLONGATION: _bindgen_ty_13 = 5;
+pub type _bindgen_ty_13 = ::core::ffi::c_int;
+pub const BELTRAMI_FLATTEN_FORCE_SIGNED_: _bindgen_ty_14 = -1;
 /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
-pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_12 = 0;
+pub const BELTRAMI_FLATTEN_METRIC: _bindgen_ty_14 = 0;
 /** Harmonic in the prolonged Beltrami coefficients with the boundary of the coarse map: faster,
  and 0.3% to 3% higher in energy.*/
-pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_12 = 1;
+pub const BELTRAMI_FLATTEN_DIRICHLET: _bindgen_ty_14 = 1;
 /// The paper's: the harmonic subspace of a few boundary vertices, with a scaffold.
-pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_12 = 2;
+pub const BELTRAMI_FLATTEN_GIF: _bindgen_ty_14 = 2;
 /// The same without a scaffold: no flips, but the boundary may overlap itself.
-pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_12 = 3;
+pub const BELTRAMI_FLATTEN_FLIM: _bindgen_ty_14 = 3;
 /// Conformal with the boundary lengths that the coarse map asks for. May flip and overlap.
-pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_12 = 4;
+pub const BELTRAMI_FLATTEN_BFF: _bindgen_ty_14 = 4;
 /// How the method BELTRAMI flattens the fine mesh.
-pub type _bindgen_ty_12 = ::core::ffi::c_int;
-pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_13 = -1;
+pub type _bindgen_ty_14 = ::core::ffi::c_int;
+pub const BELTRAMI_INJECTIVITY_FORCE_SIGNED_: _bindgen_ty_15 = -1;
 /// Global, but for the method CM: that is left as the literature has it, the reference.
-pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_13 = 0;
+pub const BELTRAMI_INJECTIVITY_AUTO: _bindgen_ty_15 = 0;
 /// No flips, and no part of the boundary may cross another.
-pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_13 = 1;
+pub const BELTRAMI_INJECTIVITY_GLOBAL: _bindgen_ty_15 = 1;
 /// No flips; the boundary may overlap itself, at a slightly lower energy.
-pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_13 = 2;
+pub const BELTRAMI_INJECTIVITY_LOCAL: _bindgen_ty_15 = 2;
 /// What the optimisation sees to. The certificate always judges global injectivity.
-pub type _bindgen_ty_13 = ::core::ffi::c_int;
-pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_14 = -1;
+pub type _bindgen_ty_15 = ::core::ffi::c_int;
+pub const BELTRAMI_ENERGY_FORCE_SIGNED_: _bindgen_ty_16 = -1;
 /// 1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), minimum 2.
-pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_14 = 0;
+pub const BELTRAMI_ENERGY_SYMMETRIC_DIRICHLET: _bindgen_ty_16 = 0;
 /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
-pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_14 = 1;
+pub const BELTRAMI_ENERGY_SYMMETRIC_ARAP: _bindgen_ty_16 = 1;
 /** 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
  most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
  a parabola instead of the exponential.*/
-pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_14 = 2;
-pub type _bindgen_ty_14 = ::core::ffi::c_int;
-pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_15 = -1;
-/// beltrami_set_int
-pub const BELTRAMI_TYPE_INT: _bindgen_ty_15 = 0;
-/// beltrami_set_float
-pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_15 = 1;
-/// beltrami_set_int with one of the named values
-pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_15 = 2;
-/// How an option's value is given.
-pub type _bindgen_ty_15 = ::core::ffi::c_int;
-pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_16 = -1;
-/// beltrami_run
-pub const BELTRAMI_CALL_RUN: _bindgen_ty_16 = 1;
-/// beltrami_unwrap
-pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_16 = 2;
-/// beltrami_pack
-pub const BELTRAMI_CALL_PACK: _bindgen_ty_16 = 4;
-/// beltrami_bake
-pub const BELTRAMI_CALL_BAKE: _bindgen_ty_16 = 8;
-/// What an option is for.
+pub const BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET: _bindgen_ty_16 = 2;
 pub type _bindgen_ty_16 = ::core::ffi::c_int;
+pub const BELTRAMI_TYPE_FORCE_SIGNED_: _bindgen_ty_17 = -1;
+/// beltrami_set_int
+pub const BELTRAMI_TYPE_INT: _bindgen_ty_17 = 0;
+/// beltrami_set_float
+pub const BELTRAMI_TYPE_FLOAT: _bindgen_ty_17 = 1;
+/// beltrami_set_int with one of the named values
+pub const BELTRAMI_TYPE_CHOICE: _bindgen_ty_17 = 2;
+/// How an option's value is given.
+pub type _bindgen_ty_17 = ::core::ffi::c_int;
+pub const BELTRAMI_CALL_FORCE_SIGNED_: _bindgen_ty_18 = -1;
+/// beltrami_run
+pub const BELTRAMI_CALL_RUN: _bindgen_ty_18 = 1;
+/// beltrami_unwrap
+pub const BELTRAMI_CALL_UNWRAP: _bindgen_ty_18 = 2;
+/// beltrami_pack
+pub const BELTRAMI_CALL_PACK: _bindgen_ty_18 = 4;
+/// beltrami_bake
+pub const BELTRAMI_CALL_BAKE: _bindgen_ty_18 = 8;
+/// What an option is for.
+pub type _bindgen_ty_18 = ::core::ffi::c_int;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_option_info {
@@ -461,34 +484,6 @@ extern "C" {
         value: f64,
     ) -> beltrami_status;
 }
-/// One job of a loop of the library.
-pub type beltrami_job = ::core::option::Option<
-    unsafe extern "C" fn(data: *mut ::core::ffi::c_void, index: i32),
->;
-/** A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
- all calls have returned. They may come from any threads, several at a time or one after the
- other, and from the thread of the loop itself; a thread wants a stack of 512 KiB. Neither the
- loop nor the threads may leave a job by an exception.*/
-pub type beltrami_parallel_for = ::core::option::Option<
-    unsafe extern "C" fn(
-        user: *mut ::core::ffi::c_void,
-        count: i32,
-        job: beltrami_job,
-        data: *mut ::core::ffi::c_void,
-    ),
->;
-extern "C" {
-    /** Lends the threads of the host to later calls on this context: loops go to `parallel_for`, and the
- library starts no threads of its own. It is called on the thread of the call alone, never from a
- job, thousands of times in a long run, with `count` of at most the option threads. The results
- have the same bits. NULL takes them back. Errors: INVALID_ARGUMENT (context is NULL),
- INVALID_STATE (during a run).*/
-    pub fn beltrami_set_parallel_for(
-        context: *mut beltrami_context,
-        parallel_for: beltrami_parallel_for,
-        user: *mut ::core::ffi::c_void,
-    ) -> beltrami_status;
-}
 extern "C" {
     /** Writes the value that option `key` has: its default, what it was set to, or what the option
  preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
@@ -499,18 +494,16 @@ extern "C" {
         value: *mut f64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_17 = -1;
-pub const BELTRAMI_F32: _bindgen_ty_17 = 0;
-pub const BELTRAMI_F64: _bindgen_ty_17 = 1;
-pub const BELTRAMI_U32: _bindgen_ty_17 = 2;
-pub const BELTRAMI_U64: _bindgen_ty_17 = 3;
-/// of pixels alone
-pub const BELTRAMI_U8: _bindgen_ty_17 = 4;
-/** of pixels, and of integers wherever U32 may stand: those that are written are
- below 65,535 then, or the call fails with INVALID_ARGUMENT*/
-pub const BELTRAMI_U16: _bindgen_ty_17 = 5;
+pub const BELTRAMI_SCALAR_FORCE_SIGNED_: _bindgen_ty_19 = -1;
+pub const BELTRAMI_F32: _bindgen_ty_19 = 0;
+pub const BELTRAMI_F64: _bindgen_ty_19 = 1;
+pub const BELTRAMI_U32: _bindgen_ty_19 = 2;
+pub const BELTRAMI_U64: _bindgen_ty_19 = 3;
+/// of pixels alone, as is the next
+pub const BELTRAMI_U8: _bindgen_ty_19 = 4;
+pub const BELTRAMI_U16: _bindgen_ty_19 = 5;
 /// Element types of buffers.
-pub type _bindgen_ty_17 = ::core::ffi::c_int;
+pub type _bindgen_ty_19 = ::core::ffi::c_int;
 /** Items of 2 or 3 consecutive elements, `stride` bytes from one item to the next (0: packed).
  The library never writes to a buffer that it takes as input. No alignment is required.*/
 #[repr(C)]
@@ -1088,11 +1081,32 @@ pub struct beltrami_surface {
     /** optional: face_count items of 1, U32 or U64: where they differ a
  seam costs the factor of the option material-seams*/
     pub materials: beltrami_buffer,
+    /** optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
+ all are POINT*/
+    pub pin_kinds: beltrami_buffer,
+    /** of kind LINE, which goes through the pin's UV; optional without
+ any: pin_count items of 2, F32 or F64, that kind's not both 0*/
+    pub pin_directions: beltrami_buffer,
+    /** optional: straight_edge_count items of 2, U32 or U64: edges by
+ their vertices*/
+    pub straight_edges: beltrami_buffer,
+    /** straight_edge_count items of 1, U32 or U64: BELTRAMI_PIN_U, V
+ or LINE*/
+    pub straight_kinds: beltrami_buffer,
+    pub straight_edge_count: u64,
+    /** optional: rectangle_count items of 1, U32 or U64: faces; the
+ chart of each becomes a rectangle along the axes*/
+    pub rectangles: beltrami_buffer,
+    /** optional: rectangle_count items of 4, U32 or U64: vertices
+ of its border, in any order; four BELTRAMI_NO_ELEMENT of
+ U64, or left out: the four where its border turns most*/
+    pub rectangle_corners: beltrami_buffer,
+    pub rectangle_count: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 376usize];
+    ["Size of beltrami_surface"][::core::mem::size_of::<beltrami_surface>() - 536usize];
     [
         "Alignment of beltrami_surface",
     ][::core::mem::align_of::<beltrami_surface>() - 8usize];
@@ -1162,6 +1176,30 @@ const _: () = {
     [
         "Offset of field: beltrami_surface::materials",
     ][::core::mem::offset_of!(beltrami_surface, materials) - 352usize];
+    [
+        "Offset of field: beltrami_surface::pin_kinds",
+    ][::core::mem::offset_of!(beltrami_surface, pin_kinds) - 376usize];
+    [
+        "Offset of field: beltrami_surface::pin_directions",
+    ][::core::mem::offset_of!(beltrami_surface, pin_directions) - 400usize];
+    [
+        "Offset of field: beltrami_surface::straight_edges",
+    ][::core::mem::offset_of!(beltrami_surface, straight_edges) - 424usize];
+    [
+        "Offset of field: beltrami_surface::straight_kinds",
+    ][::core::mem::offset_of!(beltrami_surface, straight_kinds) - 448usize];
+    [
+        "Offset of field: beltrami_surface::straight_edge_count",
+    ][::core::mem::offset_of!(beltrami_surface, straight_edge_count) - 472usize];
+    [
+        "Offset of field: beltrami_surface::rectangles",
+    ][::core::mem::offset_of!(beltrami_surface, rectangles) - 480usize];
+    [
+        "Offset of field: beltrami_surface::rectangle_corners",
+    ][::core::mem::offset_of!(beltrami_surface, rectangle_corners) - 504usize];
+    [
+        "Offset of field: beltrami_surface::rectangle_count",
+    ][::core::mem::offset_of!(beltrami_surface, rectangle_count) - 528usize];
 };
 impl Default for beltrami_surface {
     fn default() -> Self {
@@ -1207,25 +1245,20 @@ extern "C" {
  those before it: what is proven before the flattening first (two UV vertices at one place, a face
  turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
  to reach them without folding a face. Pins go with neither densities nor the option unit-square,
- nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.*/
+ nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.
+ Pins of kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale
+ open, a chart keeps its own.
+
+ Charts with straight borders are turned by quarters alone, and what is straight keeps one number
+ to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
+ rectangle without given corners that is rows and columns of quads becomes a grid. Where an edge
+ cuts off a part of a chart whose border is all on one line, that part of the border is left out
+ of it, for its faces would have no area. Where no injective map is found the call fails with PINS
+ and the face of the rectangle, or a vertex of the straight edges; edges that are none, branch or
+ form a loop, and charts with pins, are INVALID_ARGUMENT.*/
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
-        progress: beltrami_progress,
-        user: *mut ::core::ffi::c_void,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** The same for several surfaces at once: their charts share pages, at one scale, and one verdict.
- Vertices, faces, corners and triangles count through all of them, one surface after another, in
- results and in errors; so do UV vertices, of which those of a surface are consecutive, too.
- Vertices of two surfaces are never welded. What is left out of some has no effect on those:
- densities of 1, no labels, no paint. `cancel` of the first counts. Errors: as above, and
- INVALID_ARGUMENT for NULL, EMPTY for no surfaces at all.*/
-    pub fn beltrami_unwrap_surfaces(
-        context: *mut beltrami_context,
-        surfaces: *const *const beltrami_surface,
-        surface_count: u64,
         progress: beltrami_progress,
         user: *mut ::core::ffi::c_void,
     ) -> beltrami_status;
@@ -1973,14 +2006,14 @@ extern "C" {
         out: *mut beltrami_atlas_certificate,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_18 = -1;
-pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_18 = 0;
+pub const BELTRAMI_TEXEL_FORCE_SIGNED_: _bindgen_ty_20 = -1;
+pub const BELTRAMI_TEXEL_FREE: _bindgen_ty_20 = 0;
 /// no further than the margin asked for from a covered one
-pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_18 = 1;
+pub const BELTRAMI_TEXEL_GUTTER: _bindgen_ty_20 = 1;
 /// a face has a point in common with it
-pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_18 = 2;
+pub const BELTRAMI_TEXEL_COVERED: _bindgen_ty_20 = 2;
 /// What a byte of a mask says of its texel.
-pub type _bindgen_ty_18 = ::core::ffi::c_int;
+pub type _bindgen_ty_20 = ::core::ffi::c_int;
 extern "C" {
     /** Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
  down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,
@@ -2015,345 +2048,34 @@ extern "C" {
         stride: u64,
     ) -> beltrami_status;
 }
-extern "C" {
-    /** Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where
- it has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit
- concerns them. Without them all charts are mapped by the first update, which lays them side by
- side. Of the other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap.*/
-    pub fn beltrami_session_begin(
-        context: *mut beltrami_context,
-        surface: *const beltrami_surface,
-        progress: beltrami_progress,
-        user: *mut ::core::ffi::c_void,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /// Ends the session, if there is one, and frees its memory. Errors: INVALID_STATE (during a run).
-    pub fn beltrami_session_end(context: *mut beltrami_context) -> beltrami_status;
-}
-extern "C" {
-    /** Opens edges, or with `open` 0 closes them: `count` items of 2 vertices, U32 or U64. A seam that
- meets no border and no other seam at either end opens nothing until it does. Where the seams
- leave something that is no disk, further edges are cut, which beltrami_get_session_opened lists;
- they stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge,
- or lies inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE.*/
-    pub fn beltrami_session_set_seams(
-        context: *mut beltrami_context,
-        edges: *const beltrami_buffer,
-        count: u64,
-        open: i32,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32
- or F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart
- take it along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
- INDEX_OUT_OF_RANGE, NON_FINITE with the corner.*/
-    pub fn beltrami_session_set_pins(
-        context: *mut beltrami_context,
-        corners: *const beltrami_buffer,
-        uvs: *const beltrami_buffer,
-        count: u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
- are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
- INDEX_OUT_OF_RANGE.*/
-    pub fn beltrami_session_select(
-        context: *mut beltrami_context,
-        faces: *const beltrami_buffer,
-        count: u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Locks charts, given by their numbers: `count` items of 1, U32 or U64, or with `locked` 0 unlocks
- them. Faces of locked charts stay where they are whatever happens. Errors: INVALID_ARGUMENT.*/
-    pub fn beltrami_session_lock(
-        context: *mut beltrami_context,
-        charts: *const beltrami_buffer,
-        count: u64,
-        locked: i32,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Makes charts due, given likewise; with `cold` other than 0 they start from nothing. Errors:
- INVALID_ARGUMENT.*/
-    pub fn beltrami_session_renew(
-        context: *mut beltrami_context,
-        charts: *const beltrami_buffer,
-        count: u64,
-        cold: i32,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
- (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
- time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
- the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
- steps an update takes some milliseconds for each five thousand faces of a chart that is due.
- Returns OK, or with a result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner,
- INVALID_STATE with a face where parts that may not move cannot be joined, CANCELLED,
- OUT_OF_MEMORY, SOLVER, INTERNAL.*/
-    pub fn beltrami_session_update(
-        context: *mut beltrami_context,
-        seconds: f64,
-        steps: i32,
-        progress: beltrami_progress,
-        user: *mut ::core::ffi::c_void,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
- beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
- those with pins stay as well. Charts keep their sizes to each other, and where some stay to
- these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
- injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
- errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
- INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY.*/
-    pub fn beltrami_session_pack(
-        context: *mut beltrami_context,
-        charts: *const beltrami_buffer,
-        count: u64,
-        progress: beltrami_progress,
-        user: *mut ::core::ffi::c_void,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /// Judges all charts together, in F64 as they are. Errors: CANCELLED, OUT_OF_MEMORY.
-    pub fn beltrami_session_check(
-        context: *mut beltrami_context,
-        out: *mut beltrami_atlas_certificate,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Notes seams, pins, locks, selection and maps under a number, which is given once in a session.
- Errors: INVALID_ARGUMENT, OUT_OF_MEMORY.*/
-    pub fn beltrami_session_save(
-        context: *mut beltrami_context,
-        mark: *mut u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Goes back to what was noted, which stays noted: the same bits, and so do calls that follow
- return. Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY.*/
-    pub fn beltrami_session_restore(
-        context: *mut beltrami_context,
-        mark: u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /// Drops what was noted. Errors: INVALID_ARGUMENT (there is no such number).
-    pub fn beltrami_session_forget(
-        context: *mut beltrami_context,
-        mark: u64,
-    ) -> beltrami_status;
-}
-/// How a session stands.
-#[repr(C)]
-#[derive(Debug, Default, Copy, Clone)]
-pub struct beltrami_session {
-    pub struct_size: u32,
-    /// the greatest reservation of all charts
-    pub status: beltrami_status,
-    pub charts: u64,
-    /// charts that are to be mapped further
-    pub due: u64,
-    /// of the surface
-    pub corners: u64,
-    /// corners that the last update, pack or restore moved
-    pub changes: u64,
-    /// edges cut beside the seams
-    pub opened: u64,
-    /** mean over the area, each chart at its scale; NaN before the first
- update*/
-    pub symmetric_dirichlet: f64,
-    /// of the last update, pack or check
-    pub seconds: f64,
-    pub cpu_seconds: f64,
-}
-#[allow(clippy::unnecessary_operation, clippy::identity_op)]
-#[cfg(target_pointer_width = "64")]
-const _: () = {
-    ["Size of beltrami_session"][::core::mem::size_of::<beltrami_session>() - 72usize];
-    [
-        "Alignment of beltrami_session",
-    ][::core::mem::align_of::<beltrami_session>() - 8usize];
-    [
-        "Offset of field: beltrami_session::struct_size",
-    ][::core::mem::offset_of!(beltrami_session, struct_size) - 0usize];
-    [
-        "Offset of field: beltrami_session::status",
-    ][::core::mem::offset_of!(beltrami_session, status) - 4usize];
-    [
-        "Offset of field: beltrami_session::charts",
-    ][::core::mem::offset_of!(beltrami_session, charts) - 8usize];
-    [
-        "Offset of field: beltrami_session::due",
-    ][::core::mem::offset_of!(beltrami_session, due) - 16usize];
-    [
-        "Offset of field: beltrami_session::corners",
-    ][::core::mem::offset_of!(beltrami_session, corners) - 24usize];
-    [
-        "Offset of field: beltrami_session::changes",
-    ][::core::mem::offset_of!(beltrami_session, changes) - 32usize];
-    [
-        "Offset of field: beltrami_session::opened",
-    ][::core::mem::offset_of!(beltrami_session, opened) - 40usize];
-    [
-        "Offset of field: beltrami_session::symmetric_dirichlet",
-    ][::core::mem::offset_of!(beltrami_session, symmetric_dirichlet) - 48usize];
-    [
-        "Offset of field: beltrami_session::seconds",
-    ][::core::mem::offset_of!(beltrami_session, seconds) - 56usize];
-    [
-        "Offset of field: beltrami_session::cpu_seconds",
-    ][::core::mem::offset_of!(beltrami_session, cpu_seconds) - 64usize];
-};
-/// A chart of a session.
-#[repr(C)]
-#[derive(Debug, Default, Copy, Clone)]
-pub struct beltrami_session_chart {
-    pub struct_size: u32,
-    /// OK, NOT_CONVERGED or NOT_INJECTIVE: by itself
-    pub status: beltrami_status,
-    /// 1 or 0
-    pub due: i32,
-    /// 1: all of its faces are
-    pub locked: i32,
-    /// its number: it stays while most of the chart does, and is given once
-    pub id: u64,
-    pub triangles: u64,
-    /// of the input, the least
-    pub first_face: u64,
-    pub symmetric_dirichlet: f64,
-    /// lengths in the plane per length on the surface that it is to have
-    pub scale: f64,
-}
-#[allow(clippy::unnecessary_operation, clippy::identity_op)]
-#[cfg(target_pointer_width = "64")]
-const _: () = {
-    [
-        "Size of beltrami_session_chart",
-    ][::core::mem::size_of::<beltrami_session_chart>() - 56usize];
-    [
-        "Alignment of beltrami_session_chart",
-    ][::core::mem::align_of::<beltrami_session_chart>() - 8usize];
-    [
-        "Offset of field: beltrami_session_chart::struct_size",
-    ][::core::mem::offset_of!(beltrami_session_chart, struct_size) - 0usize];
-    [
-        "Offset of field: beltrami_session_chart::status",
-    ][::core::mem::offset_of!(beltrami_session_chart, status) - 4usize];
-    [
-        "Offset of field: beltrami_session_chart::due",
-    ][::core::mem::offset_of!(beltrami_session_chart, due) - 8usize];
-    [
-        "Offset of field: beltrami_session_chart::locked",
-    ][::core::mem::offset_of!(beltrami_session_chart, locked) - 12usize];
-    [
-        "Offset of field: beltrami_session_chart::id",
-    ][::core::mem::offset_of!(beltrami_session_chart, id) - 16usize];
-    [
-        "Offset of field: beltrami_session_chart::triangles",
-    ][::core::mem::offset_of!(beltrami_session_chart, triangles) - 24usize];
-    [
-        "Offset of field: beltrami_session_chart::first_face",
-    ][::core::mem::offset_of!(beltrami_session_chart, first_face) - 32usize];
-    [
-        "Offset of field: beltrami_session_chart::symmetric_dirichlet",
-    ][::core::mem::offset_of!(beltrami_session_chart, symmetric_dirichlet) - 40usize];
-    [
-        "Offset of field: beltrami_session_chart::scale",
-    ][::core::mem::offset_of!(beltrami_session_chart, scale) - 48usize];
-};
-extern "C" {
-    /// Counts and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.
-    pub fn beltrami_get_session(
-        context: *mut beltrami_context,
-        out: *mut beltrami_session,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
-    pub fn beltrami_get_session_chart(
-        context: *mut beltrami_context,
-        index: u64,
-        out: *mut beltrami_session_chart,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in
- the plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32
- no number changes. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
-    pub fn beltrami_get_session_uvs(
-        context: *mut beltrami_context,
-        out: *mut ::core::ffi::c_void,
-        type_: i32,
-        stride: u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as
- many as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or
- F64. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
-    pub fn beltrami_get_session_changes(
-        context: *mut beltrami_context,
-        corners: *mut ::core::ffi::c_void,
-        corner_type: i32,
-        uvs: *mut ::core::ffi::c_void,
-        uv_type: i32,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Writes the number of the chart of each face, or all bits set for faces without area: U32 or U64.
- Errors: INVALID_STATE, INVALID_ARGUMENT.*/
-    pub fn beltrami_get_session_face_charts(
-        context: *mut beltrami_context,
-        out: *mut ::core::ffi::c_void,
-        type_: i32,
-        stride: u64,
-    ) -> beltrami_status;
-}
-extern "C" {
-    /** Writes the edges that are cut beside the seams, as two vertices each: U32 or U64. Errors:
- INVALID_STATE, INVALID_ARGUMENT.*/
-    pub fn beltrami_get_session_opened(
-        context: *mut beltrami_context,
-        out: *mut ::core::ffi::c_void,
-        type_: i32,
-        stride: u64,
-    ) -> beltrami_status;
-}
-pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_19 = -1;
-pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_19 = 0;
+pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_21 = 0;
 /// its outermost texels
-pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_19 = 1;
+pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_21 = 1;
 /// itself, mirrored at every other time
-pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_19 = 2;
+pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_21 = 2;
 /// What an image shows beyond [0,1]^2.
-pub type _bindgen_ty_19 = ::core::ffi::c_int;
-pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_20 = -1;
+pub type _bindgen_ty_21 = ::core::ffi::c_int;
+pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_22 = -1;
 /// between texels; a mean where many are shown by one
-pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_20 = 0;
+pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_22 = 0;
 /// each place shows its texel; means of 4 x 4 places in a new one
-pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_20 = 1;
+pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_22 = 1;
 /// How texels are read.
-pub type _bindgen_ty_20 = ::core::ffi::c_int;
-pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+pub type _bindgen_ty_22 = ::core::ffi::c_int;
+pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_23 = -1;
 /// as they are: roughness, heights, linear light
-pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_21 = 0;
+pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_23 = 0;
 /// colours, in linear light; a second or fourth channel is linear
-pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_21 = 1;
+pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_23 = 1;
 /// the same, and a colour counts by that channel, its alpha
-pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_21 = 2;
+pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_23 = 2;
 /** of tangent space, with 3 or 4 channels: x and y of normals,
  0 at the middle of the type's range (F32: 0.5), are turned from
  the axes of the old UVs to those of the new ones*/
-pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_21 = 3;
+pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_23 = 3;
 /// What the channels of an image are, which says how a mean of them is taken.
-pub type _bindgen_ty_21 = ::core::ffi::c_int;
+pub type _bindgen_ty_23 = ::core::ffi::c_int;
 /** An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
  F32 as it is.*/
 #[repr(C)]

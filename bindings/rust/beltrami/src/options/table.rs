@@ -200,6 +200,19 @@ choice! {
     }
 }
 
+choice! {
+    /// Which charts become rectangles along the axes: none, or grids (those that are rows and
+    /// columns of quads, as roads, tubes and cloths are: each column gets one width and each row
+    /// one height). See [`UnwrapOptions::rectify`].
+    Rectify {
+        /// None.
+        None = "none",
+        /// Those that are rows and columns of quads: each column gets the mean length of its edges
+        /// as its width, each row as its height.
+        Grids = "grids",
+    }
+}
+
 options! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
     /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
@@ -607,4 +620,22 @@ options! {
     stack(Stack) of [UnwrapOptions] = 42 "stack"
         "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams."
         Choice(Stack::NAMES), 0..=2, default 0, calls 2;
+
+    /// Which charts become rectangles along the axes: none, or grids (those that are rows and
+    /// columns of quads, as roads, tubes and cloths are: each column gets one width and each row
+    /// one height).
+    ///
+    /// Default: [`None`](Rectify::None).
+    rectify(Rectify) of [UnwrapOptions] = 43 "rectify"
+        "Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height)."
+        Choice(Rectify::NAMES), 0..=1, default 0, calls 2;
+
+    /// `true` turns each chart to the most of its border that is straight, then by quarters alone,
+    /// and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it:
+    /// nothing by more than half a texel. Charts then keep a texel more room.
+    ///
+    /// Default: `false`.
+    snap_texels(bool) of [UnwrapOptions] = 44 "snap-texels"
+        "1 turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room."
+        Switch(&[]), 0..=1, default 0, calls 2;
 }
