@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abi/buffers.h"
+#include "abi/core_options.h"
 #include "abi/pins.h"
 #include "abi/unwrapped.h"
 #include "base/error.h"
@@ -32,8 +33,8 @@ Session open(const beltrami_surface& header, const Options& options, const Loade
   const AtlasOptions atlas = atlas_options(options);
   AtlasInput input =
       atlas_input(header, surface, header.corner_uvs.data != nullptr, work.part(0, 0.2));
-  GroundOptions ground{atlas.admit, diagonals, atlas.fill_limit};
-  ground.admit.polygons = surface.face_of_triangle;
+  GroundOptions ground{atlas.admit, atlas.fill_limit};
+  ground.admit.polygons = {surface.face_of_triangle, diagonals};
   return Session({.positions = std::move(input.positions),
                   .faces = std::move(input.faces),
                   .seams = std::move(input.cuts.edges),

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "abi/option_members.h"
-#include "abi/option_table.h"
+#include "abi/option_entry.h"
 
 namespace beltrami {
 

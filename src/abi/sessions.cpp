@@ -10,6 +10,7 @@
 
 #include "abi/buffers.h"
 #include "abi/context.h"
+#include "abi/core_options.h"
 #include "abi/edit_session.h"
 #include "abi/reports.h"
 #include "base/error.h"

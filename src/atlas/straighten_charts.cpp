@@ -154,7 +154,7 @@ class Straightening {
     } else if (!paths.empty()) {
       make_straight(c, paths);
     } else if (options_.rectify_grids && !mapped_.maps[c].pinned()) {
-      if (auto grid = grid_map(part, admitted_, options_.admit.polygons)) take(c, *std::move(grid));
+      if (auto grid = grid_map(part, admitted_, options_.admit.polygons.polygon)) take(c, *std::move(grid));
     }
   }
 
@@ -222,7 +222,7 @@ class Straightening {
     require_no_pins(c, "a rectangle");
     const AtlasChart& part = mapped_.charts[c];
     if (!rectangle.corners) {
-      if (auto grid = grid_map(part, admitted_, options_.admit.polygons)) {
+      if (auto grid = grid_map(part, admitted_, options_.admit.polygons.polygon)) {
         take(c, *std::move(grid));
         return;
       }

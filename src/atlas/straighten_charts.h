@@ -2,7 +2,7 @@
 #pragma once
 
 #include "admit/admit.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "atlas/open_and_map.h"
 #include "base/types.h"
 #include "base/work.h"

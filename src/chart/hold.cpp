@@ -467,7 +467,7 @@ HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work) {
   const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
-  WayToPins way(mesh, rest, options, work);
+  WayToPins way(mesh, rest, options, false, work);
   const auto reach = [&](Pins some, std::vector<Vec2>& map) {
     way.set_pins({}, some);
     return way.fits(map) || way.go(map);
@@ -479,7 +479,7 @@ HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
       return reach(some, trial);
     });
   }
-  for (const HeldVertex& pin : pins) map.uvs[pin.vertex] = pin.place;
+  put_at(pins, map.uvs);
   map.converged = way.relax_nearby(work.part(kThere, 1), map.uvs);
   return map;
 }

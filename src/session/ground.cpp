@@ -11,7 +11,7 @@ namespace {
 
 EdgeMarks edges_inside(const Admitted& admitted, const GroundOptions& options) {
   const Surface& surface = admitted.surface;
-  const PolygonParts polygons{options.admit.polygons, options.diagonals};
+  const PolygonParts& polygons = options.admit.polygons;
   if (polygons.polygon.empty()) return {};
   EdgeMarks inside(surface.twin.size(), false);
   for (Index h = 0; h < size_of(surface.twin); ++h) {

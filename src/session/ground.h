@@ -38,7 +38,6 @@ struct Ground {
 /// Polygons: see PolygonParts; no spans are kept.
 struct GroundOptions {
   AdmitOptions admit = {};
-  std::span<const std::uint8_t> diagonals = {};
   double fill_limit = 0.5;
 };
 
