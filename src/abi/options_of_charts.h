@@ -5,8 +5,8 @@
 
 #include <iterator>
 
-#include "abi/option_members.h"
 #include "abi/option_entry.h"
+#include "abi/option_members.h"
 
 namespace beltrami {
 

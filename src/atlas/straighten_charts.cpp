@@ -154,7 +154,8 @@ class Straightening {
     } else if (!paths.empty()) {
       make_straight(c, paths);
     } else if (options_.rectify_grids && !mapped_.maps[c].pinned()) {
-      if (auto grid = grid_map(part, admitted_, options_.admit.polygons.polygon)) take(c, *std::move(grid));
+      if (auto grid = grid_map(part, admitted_, options_.admit.polygons.polygon))
+        take(c, *std::move(grid));
     }
   }
 

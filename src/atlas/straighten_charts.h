@@ -2,8 +2,8 @@
 #pragma once
 
 #include "admit/admit.h"
-#include "atlas/types.h"
 #include "atlas/open_and_map.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/work.h"
 

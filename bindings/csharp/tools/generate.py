@@ -38,6 +38,8 @@ STRUCTS = {
     "beltrami_image": "NativeImage",
     "beltrami_bake_job": "NativeBakeJob",
     "beltrami_baked": "NativeBaked",
+    "beltrami_session": "NativeSession",
+    "beltrami_session_chart": "NativeSessionChart",
 }
 # Enums by the word in their names; others lose "BELTRAMI_" and that word, too.
 ENUMS = {"STATUS": "Status", "ELEMENT": "ElementKind", "SCALAR": "Scalar", "CALL": "Call"}

@@ -693,9 +693,9 @@ typedef struct beltrami_surface {
   /* Pins that slide. Of kind U and V the other number of pin_uvs is read, and says nothing. */
   beltrami_buffer pin_kinds; /* optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
                               * all are POINT */
-  beltrami_buffer
-      pin_directions; /* of kind LINE, which goes through the pin's UV; optional without
-                       * any: pin_count items of 2, F32 or F64, that kind's not both 0 */
+  /* Of kind LINE, which goes through the pin's UV; optional without any: pin_count items of 2, F32
+   * or F64, that kind's not both 0. */
+  beltrami_buffer pin_directions;
 
   /* Straight borders, for beltrami_unwrap. Edges of one kind that hang together become one straight
    * line in each chart that has them: U gives all their vertices one u, V one v, LINE any line. */

@@ -90,6 +90,8 @@ namespace Beltrami
         Effort = 40,
         FlatSeams = 41,
         Stack = 42,
+        Rectify = 43,
+        SnapTexels = 44,
     }
 
     /// <summary>How long short seams are searched for, and a dense packing. Every level has the
@@ -144,6 +146,22 @@ namespace Beltrami
         None = 0,
         Copies = 1,
         Mirrored = 2,
+    }
+
+    /// <summary>Which charts become rectangles, beside those that a surface names.</summary>
+    public enum Rectify
+    {
+        None = 0,
+        Grids = 1,
+    }
+
+    /// <summary>What is held of a pin, and what edges that are straight have in common.</summary>
+    public enum Pin
+    {
+        Point = 0,
+        U = 1,
+        V = 2,
+        Line = 3,
     }
 
     /// <summary>Whether vertices at one place are one.</summary>
@@ -465,6 +483,25 @@ namespace Beltrami
         /// <summary>Optional: face_count items of 1, U32 or U64: where they differ a seam costs the
         /// factor of the option material-seams.</summary>
         public NativeBuffer Materials;
+        /// <summary>Optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else all are
+        /// POINT.</summary>
+        public NativeBuffer PinKinds;
+        public NativeBuffer PinDirections;
+        /// <summary>Optional: straight_edge_count items of 2, U32 or U64: edges by their
+        /// vertices.</summary>
+        public NativeBuffer StraightEdges;
+        /// <summary>Straight_edge_count items of 1, U32 or U64: BELTRAMI_PIN_U, V or
+        /// LINE.</summary>
+        public NativeBuffer StraightKinds;
+        public ulong StraightEdgeCount;
+        /// <summary>Optional: rectangle_count items of 1, U32 or U64: faces; the chart of each
+        /// becomes a rectangle along the axes.</summary>
+        public NativeBuffer Rectangles;
+        /// <summary>Optional: rectangle_count items of 4, U32 or U64: vertices of its border, in
+        /// any order; four BELTRAMI_NO_ELEMENT of U64, or left out: the four where its border turns
+        /// most.</summary>
+        public NativeBuffer RectangleCorners;
+        public ulong RectangleCount;
     }
 
     /// <summary>What was made of a surface. Triangles are those of beltrami_triangulate, faces the
@@ -695,6 +732,51 @@ namespace Beltrami
         Free = 0,
         Gutter = 1,
         Covered = 2,
+    }
+
+    /// <summary>How a session stands.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct NativeSession
+    {
+        public uint StructSize;
+        /// <summary>The greatest reservation of all charts.</summary>
+        public Status Status;
+        public ulong Charts;
+        /// <summary>Charts that are to be mapped further.</summary>
+        public ulong Due;
+        /// <summary>Of the surface.</summary>
+        public ulong Corners;
+        /// <summary>Corners that the last update, pack or restore moved.</summary>
+        public ulong Changes;
+        /// <summary>Edges cut beside the seams.</summary>
+        public ulong Opened;
+        /// <summary>Mean over the area, each chart at its scale; NaN before the first
+        /// update.</summary>
+        public double SymmetricDirichlet;
+        /// <summary>Of the last update, pack or check.</summary>
+        public double Seconds;
+        public double CpuSeconds;
+    }
+
+    /// <summary>A chart of a session.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct NativeSessionChart
+    {
+        public uint StructSize;
+        /// <summary>OK, NOT_CONVERGED or NOT_INJECTIVE: by itself.</summary>
+        public Status Status;
+        /// <summary>1 or 0.</summary>
+        public int Due;
+        /// <summary>1: all of its faces are.</summary>
+        public int Locked;
+        /// <summary>Its number: it stays while most of the chart does, and is given once.</summary>
+        public ulong Id;
+        public ulong Triangles;
+        /// <summary>Of the input, the least.</summary>
+        public ulong FirstFace;
+        public double SymmetricDirichlet;
+        /// <summary>Lengths in the plane per length on the surface that it is to have.</summary>
+        public double Scale;
     }
 
     /// <summary>What an image shows beyond [0,1]^2.</summary>
@@ -1106,6 +1188,118 @@ namespace Beltrami
         public static extern Status beltrami_get_packed_charts(
             IntPtr context,
             ulong mesh,
+            IntPtr result,
+            int type,
+            ulong stride);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_begin(
+            IntPtr context,
+            NativeSurface* surface,
+            Progress progress,
+            IntPtr user);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_end(IntPtr context);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_set_seams(
+            IntPtr context,
+            NativeBuffer* edges,
+            ulong count,
+            int open);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_set_pins(
+            IntPtr context,
+            NativeBuffer* corners,
+            NativeBuffer* uvs,
+            ulong count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_select(
+            IntPtr context,
+            NativeBuffer* faces,
+            ulong count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_lock(
+            IntPtr context,
+            NativeBuffer* charts,
+            ulong count,
+            int locked);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_renew(
+            IntPtr context,
+            NativeBuffer* charts,
+            ulong count,
+            int cold);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_update(
+            IntPtr context,
+            double seconds,
+            int steps,
+            Progress progress,
+            IntPtr user);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_pack(
+            IntPtr context,
+            NativeBuffer* charts,
+            ulong count,
+            Progress progress,
+            IntPtr user);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_check(
+            IntPtr context,
+            AtlasCertificate* result);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_save(IntPtr context, ulong* mark);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_restore(IntPtr context, ulong mark);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_forget(IntPtr context, ulong mark);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session(IntPtr context, NativeSession* result);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session_chart(
+            IntPtr context,
+            ulong index,
+            NativeSessionChart* result);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session_uvs(
+            IntPtr context,
+            IntPtr result,
+            int type,
+            ulong stride);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session_changes(
+            IntPtr context,
+            IntPtr corners,
+            int cornerType,
+            IntPtr uvs,
+            int uvType);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session_face_charts(
+            IntPtr context,
+            IntPtr result,
+            int type,
+            ulong stride);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_get_session_opened(
+            IntPtr context,
             IntPtr result,
             int type,
             ulong stride);

@@ -388,5 +388,24 @@ namespace Beltrami
             get { return (Stack)(int)Get(Option.Stack); }
             set { SetInt(Option.Stack, (long)value); }
         }
+
+        /// <summary>Which charts become rectangles along the axes: none, or grids (those that are
+        /// rows and columns of quads, as roads, tubes and cloths are: each column gets one width
+        /// and each row one height). Default: Rectify.None.</summary>
+        public Rectify Rectify
+        {
+            get { return (Rectify)(int)Get(Option.Rectify); }
+            set { SetInt(Option.Rectify, (long)value); }
+        }
+
+        /// <summary>True turns each chart to the most of its border that is straight, then by
+        /// quarters alone, and moves its straight borders onto the edges of texels, as lightmaps
+        /// and pixel art want it: nothing by more than half a texel. Charts then keep a texel more
+        /// room. Default: false.</summary>
+        public bool SnapTexels
+        {
+            get { return Get(Option.SnapTexels) != 0; }
+            set { SetInt(Option.SnapTexels, value ? 1 : 0); }
+        }
     }
 }

@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _hints, _polygons, _sharing, _straight, _trimesh
+from . import _hints, _sharing, _trimesh
 from ._atlas import Atlas, SceneAtlases
 from ._cancel import CancelToken
 from ._errors import BeltramiError, NotInjectiveWarning
+from ._given import surface_of, with_hints, with_straight
 from ._library import UNWRAP, Hook
 from ._polygons import Faces
 from ._progress import Progress, hook_for
@@ -470,56 +470,13 @@ def unwrap(
         mesh, vertices, faces = vertices, vertices.vertices, vertices.faces
         if corner_uvs is None and cut == "islands":
             corner_uvs = _trimesh.corner_uvs(mesh)
-    surface = _surface(vertices, faces, corner_uvs, face_labels, densities, seams)
-    surface = _with_straight(surface, pins, straight, rectangles)
-    surface = _with_hints(surface, vertex_paint, edge_paint, materials)
+    surface = surface_of(vertices, faces, corner_uvs, face_labels, densities, seams)
+    surface = with_straight(surface, pins, straight, rectangles)
+    surface = with_hints(surface, vertex_paint, edge_paint, materials)
     with hook_for(progress) as hook:
         atlas = _unwrap(surface, given, hook, cancel, mesh)
     _warn(atlas, "")
     return atlas
-
-
-def _surface(
-    vertices: npt.ArrayLike,
-    faces: Any,
-    corner_uvs: Any,
-    labels: Any,
-    densities: Any,
-    seams: Any,
-) -> Surface:
-    points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
-    return Surface(
-        points,
-        polygons,
-        None if corner_uvs is None else _polygons.corner_uvs(corner_uvs, polygons),
-        None if labels is None else _polygons.labels(labels, polygons),
-        None if densities is None else _polygons.densities(densities, polygons),
-        None if seams is None else _polygons.seams(seams),
-    )
-
-
-def _with_straight(surface: Surface, pins: Any, straight: Any, rectangles: Any) -> Surface:
-    faces = surface.faces
-    if pins is not None:
-        *held, kinds = _straight.pins(pins, faces)
-        surface = replace(surface, pins=(held[0], held[1]), pin_kinds=kinds)
-    return replace(
-        surface,
-        straight=None if straight is None else _straight.edges(straight),
-        rectangles=None if rectangles is None else _straight.rectangles(rectangles, faces),
-    )
-
-
-def _with_hints(surface: Surface, vertex_paint: Any, edge_paint: Any, materials: Any) -> Surface:
-    faces = surface.faces
-    return replace(
-        surface,
-        vertex_paint=None
-        if vertex_paint is None
-        else _polygons.vertex_paint(vertex_paint, len(surface.vertices)),
-        edge_paint=None if edge_paint is None else _polygons.edge_paint(edge_paint),
-        materials=None if materials is None else _polygons.labels(materials, faces, "materials"),
-    )
 
 
 def _unwrap(
@@ -590,7 +547,7 @@ def _unwrap_scene(
             of_scene = _part_of(hook, before, share)
             uvs = _trimesh.corner_uvs(mesh) if given["cut"] == "islands" else None
             try:
-                surface = _surface(mesh.vertices, mesh.faces, uvs, None, None, None)
+                surface = surface_of(mesh.vertices, mesh.faces, uvs, None, None, None)
                 atlases[name] = _unwrap(surface, given, of_scene, cancel, mesh)
             except BeltramiError as error:
                 error.args = (f"{name}: {error}",)

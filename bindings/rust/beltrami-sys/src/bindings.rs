@@ -484,6 +484,34 @@ extern "C" {
         value: f64,
     ) -> beltrami_status;
 }
+/// One job of a loop of the library.
+pub type beltrami_job = ::core::option::Option<
+    unsafe extern "C" fn(data: *mut ::core::ffi::c_void, index: i32),
+>;
+/** A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
+ all calls have returned. They may come from any threads, several at a time or one after the
+ other, and from the thread of the loop itself; a thread wants a stack of 512 KiB. Neither the
+ loop nor the threads may leave a job by an exception.*/
+pub type beltrami_parallel_for = ::core::option::Option<
+    unsafe extern "C" fn(
+        user: *mut ::core::ffi::c_void,
+        count: i32,
+        job: beltrami_job,
+        data: *mut ::core::ffi::c_void,
+    ),
+>;
+extern "C" {
+    /** Lends the threads of the host to later calls on this context: loops go to `parallel_for`, and the
+ library starts no threads of its own. It is called on the thread of the call alone, never from a
+ job, thousands of times in a long run, with `count` of at most the option threads. The results
+ have the same bits. NULL takes them back. Errors: INVALID_ARGUMENT (context is NULL),
+ INVALID_STATE (during a run).*/
+    pub fn beltrami_set_parallel_for(
+        context: *mut beltrami_context,
+        parallel_for: beltrami_parallel_for,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
 extern "C" {
     /** Writes the value that option `key` has: its default, what it was set to, or what the option
  preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
@@ -499,8 +527,10 @@ pub const BELTRAMI_F32: _bindgen_ty_19 = 0;
 pub const BELTRAMI_F64: _bindgen_ty_19 = 1;
 pub const BELTRAMI_U32: _bindgen_ty_19 = 2;
 pub const BELTRAMI_U64: _bindgen_ty_19 = 3;
-/// of pixels alone, as is the next
+/// of pixels alone
 pub const BELTRAMI_U8: _bindgen_ty_19 = 4;
+/** of pixels, and of integers wherever U32 may stand: those that are written are
+ below 65,535 then, or the call fails with INVALID_ARGUMENT*/
 pub const BELTRAMI_U16: _bindgen_ty_19 = 5;
 /// Element types of buffers.
 pub type _bindgen_ty_19 = ::core::ffi::c_int;
@@ -1084,8 +1114,8 @@ pub struct beltrami_surface {
     /** optional: pin_count items of 1, U32 or U64: BELTRAMI_PIN_; else
  all are POINT*/
     pub pin_kinds: beltrami_buffer,
-    /** of kind LINE, which goes through the pin's UV; optional without
- any: pin_count items of 2, F32 or F64, that kind's not both 0*/
+    /** Of kind LINE, which goes through the pin's UV; optional without any: pin_count items of 2, F32
+ or F64, that kind's not both 0.*/
     pub pin_directions: beltrami_buffer,
     /** optional: straight_edge_count items of 2, U32 or U64: edges by
  their vertices*/
@@ -1259,6 +1289,21 @@ extern "C" {
     pub fn beltrami_unwrap(
         context: *mut beltrami_context,
         surface: *const beltrami_surface,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** The same for several surfaces at once: their charts share pages, at one scale, and one verdict.
+ Vertices, faces, corners and triangles count through all of them, one surface after another, in
+ results and in errors; so do UV vertices, of which those of a surface are consecutive, too.
+ Vertices of two surfaces are never welded. What is left out of some has no effect on those:
+ densities of 1, no labels, no paint. `cancel` of the first counts. Errors: as above, and
+ INVALID_ARGUMENT for NULL, EMPTY for no surfaces at all.*/
+    pub fn beltrami_unwrap_surfaces(
+        context: *mut beltrami_context,
+        surfaces: *const *const beltrami_surface,
+        surface_count: u64,
         progress: beltrami_progress,
         user: *mut ::core::ffi::c_void,
     ) -> beltrami_status;
@@ -2043,6 +2088,317 @@ extern "C" {
     pub fn beltrami_get_packed_charts(
         context: *mut beltrami_context,
         mesh: u64,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Reads a surface and begins a session in place of the one before. Its `seams` are cut, and where
+ it has `corner_uvs` also the edges at which they differ: charts keep these UVs until an edit
+ concerns them. Without them all charts are mapped by the first update, which lays them side by
+ side. Of the other optional buffers only face_sizes is taken. Errors: as of beltrami_unwrap.*/
+    pub fn beltrami_session_begin(
+        context: *mut beltrami_context,
+        surface: *const beltrami_surface,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /// Ends the session, if there is one, and frees its memory. Errors: INVALID_STATE (during a run).
+    pub fn beltrami_session_end(context: *mut beltrami_context) -> beltrami_status;
+}
+extern "C" {
+    /** Opens edges, or with `open` 0 closes them: `count` items of 2 vertices, U32 or U64. A seam that
+ meets no border and no other seam at either end opens nothing until it does. Where the seams
+ leave something that is no disk, further edges are cut, which beltrami_get_session_opened lists;
+ they stay so until they are opened or closed here. Errors: INVALID_ARGUMENT (a pair is no edge,
+ or lies inside a polygon: nothing is noted), INDEX_OUT_OF_RANGE.*/
+    pub fn beltrami_session_set_seams(
+        context: *mut beltrami_context,
+        edges: *const beltrami_buffer,
+        count: u64,
+        open: i32,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Sets pins, in place of all before: `count` items of 1 corner, U32 or U64, and of 2 numbers, F32
+ or F64, as beltrami_surface has them, in the unit of the session's UVs. One or two of a chart
+ take it along as it is; of more it keeps its scale while they move. Errors: INVALID_ARGUMENT,
+ INDEX_OUT_OF_RANGE, NON_FINITE with the corner.*/
+    pub fn beltrami_session_set_pins(
+        context: *mut beltrami_context,
+        corners: *const beltrami_buffer,
+        uvs: *const beltrami_buffer,
+        count: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
+ are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
+ INDEX_OUT_OF_RANGE.*/
+    pub fn beltrami_session_select(
+        context: *mut beltrami_context,
+        faces: *const beltrami_buffer,
+        count: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Locks charts, given by their numbers: `count` items of 1, U32 or U64, or with `locked` 0 unlocks
+ them. Faces of locked charts stay where they are whatever happens. Errors: INVALID_ARGUMENT.*/
+    pub fn beltrami_session_lock(
+        context: *mut beltrami_context,
+        charts: *const beltrami_buffer,
+        count: u64,
+        locked: i32,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Makes charts due, given likewise; with `cold` other than 0 they start from nothing. Errors:
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_session_renew(
+        context: *mut beltrami_context,
+        charts: *const beltrami_buffer,
+        count: u64,
+        cold: i32,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
+ (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
+ time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
+ the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
+ steps an update takes some milliseconds for each five thousand faces of a chart that is due.
+ Returns OK, or with a result NOT_CONVERGED or NOT_INJECTIVE; errors: PINS with the corner,
+ INVALID_STATE with a face where parts that may not move cannot be joined, CANCELLED,
+ OUT_OF_MEMORY, SOLVER, INTERNAL.*/
+    pub fn beltrami_session_update(
+        context: *mut beltrami_context,
+        seconds: f64,
+        steps: i32,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
+ beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
+ those with pins stay as well. Charts keep their sizes to each other, and where some stay to
+ these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
+ injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
+ errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
+ INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY.*/
+    pub fn beltrami_session_pack(
+        context: *mut beltrami_context,
+        charts: *const beltrami_buffer,
+        count: u64,
+        progress: beltrami_progress,
+        user: *mut ::core::ffi::c_void,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /// Judges all charts together, in F64 as they are. Errors: CANCELLED, OUT_OF_MEMORY.
+    pub fn beltrami_session_check(
+        context: *mut beltrami_context,
+        out: *mut beltrami_atlas_certificate,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Notes seams, pins, locks, selection and maps under a number, which is given once in a session.
+ Errors: INVALID_ARGUMENT, OUT_OF_MEMORY.*/
+    pub fn beltrami_session_save(
+        context: *mut beltrami_context,
+        mark: *mut u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Goes back to what was noted, which stays noted: the same bits, and so do calls that follow
+ return. Errors: INVALID_ARGUMENT (there is no such number), OUT_OF_MEMORY.*/
+    pub fn beltrami_session_restore(
+        context: *mut beltrami_context,
+        mark: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /// Drops what was noted. Errors: INVALID_ARGUMENT (there is no such number).
+    pub fn beltrami_session_forget(
+        context: *mut beltrami_context,
+        mark: u64,
+    ) -> beltrami_status;
+}
+/// How a session stands.
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_session {
+    pub struct_size: u32,
+    /// the greatest reservation of all charts
+    pub status: beltrami_status,
+    pub charts: u64,
+    /// charts that are to be mapped further
+    pub due: u64,
+    /// of the surface
+    pub corners: u64,
+    /// corners that the last update, pack or restore moved
+    pub changes: u64,
+    /// edges cut beside the seams
+    pub opened: u64,
+    /** mean over the area, each chart at its scale; NaN before the first
+ update*/
+    pub symmetric_dirichlet: f64,
+    /// of the last update, pack or check
+    pub seconds: f64,
+    pub cpu_seconds: f64,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    ["Size of beltrami_session"][::core::mem::size_of::<beltrami_session>() - 72usize];
+    [
+        "Alignment of beltrami_session",
+    ][::core::mem::align_of::<beltrami_session>() - 8usize];
+    [
+        "Offset of field: beltrami_session::struct_size",
+    ][::core::mem::offset_of!(beltrami_session, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_session::status",
+    ][::core::mem::offset_of!(beltrami_session, status) - 4usize];
+    [
+        "Offset of field: beltrami_session::charts",
+    ][::core::mem::offset_of!(beltrami_session, charts) - 8usize];
+    [
+        "Offset of field: beltrami_session::due",
+    ][::core::mem::offset_of!(beltrami_session, due) - 16usize];
+    [
+        "Offset of field: beltrami_session::corners",
+    ][::core::mem::offset_of!(beltrami_session, corners) - 24usize];
+    [
+        "Offset of field: beltrami_session::changes",
+    ][::core::mem::offset_of!(beltrami_session, changes) - 32usize];
+    [
+        "Offset of field: beltrami_session::opened",
+    ][::core::mem::offset_of!(beltrami_session, opened) - 40usize];
+    [
+        "Offset of field: beltrami_session::symmetric_dirichlet",
+    ][::core::mem::offset_of!(beltrami_session, symmetric_dirichlet) - 48usize];
+    [
+        "Offset of field: beltrami_session::seconds",
+    ][::core::mem::offset_of!(beltrami_session, seconds) - 56usize];
+    [
+        "Offset of field: beltrami_session::cpu_seconds",
+    ][::core::mem::offset_of!(beltrami_session, cpu_seconds) - 64usize];
+};
+/// A chart of a session.
+#[repr(C)]
+#[derive(Debug, Default, Copy, Clone)]
+pub struct beltrami_session_chart {
+    pub struct_size: u32,
+    /// OK, NOT_CONVERGED or NOT_INJECTIVE: by itself
+    pub status: beltrami_status,
+    /// 1 or 0
+    pub due: i32,
+    /// 1: all of its faces are
+    pub locked: i32,
+    /// its number: it stays while most of the chart does, and is given once
+    pub id: u64,
+    pub triangles: u64,
+    /// of the input, the least
+    pub first_face: u64,
+    pub symmetric_dirichlet: f64,
+    /// lengths in the plane per length on the surface that it is to have
+    pub scale: f64,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    [
+        "Size of beltrami_session_chart",
+    ][::core::mem::size_of::<beltrami_session_chart>() - 56usize];
+    [
+        "Alignment of beltrami_session_chart",
+    ][::core::mem::align_of::<beltrami_session_chart>() - 8usize];
+    [
+        "Offset of field: beltrami_session_chart::struct_size",
+    ][::core::mem::offset_of!(beltrami_session_chart, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_session_chart::status",
+    ][::core::mem::offset_of!(beltrami_session_chart, status) - 4usize];
+    [
+        "Offset of field: beltrami_session_chart::due",
+    ][::core::mem::offset_of!(beltrami_session_chart, due) - 8usize];
+    [
+        "Offset of field: beltrami_session_chart::locked",
+    ][::core::mem::offset_of!(beltrami_session_chart, locked) - 12usize];
+    [
+        "Offset of field: beltrami_session_chart::id",
+    ][::core::mem::offset_of!(beltrami_session_chart, id) - 16usize];
+    [
+        "Offset of field: beltrami_session_chart::triangles",
+    ][::core::mem::offset_of!(beltrami_session_chart, triangles) - 24usize];
+    [
+        "Offset of field: beltrami_session_chart::first_face",
+    ][::core::mem::offset_of!(beltrami_session_chart, first_face) - 32usize];
+    [
+        "Offset of field: beltrami_session_chart::symmetric_dirichlet",
+    ][::core::mem::offset_of!(beltrami_session_chart, symmetric_dirichlet) - 40usize];
+    [
+        "Offset of field: beltrami_session_chart::scale",
+    ][::core::mem::offset_of!(beltrami_session_chart, scale) - 48usize];
+};
+extern "C" {
+    /// Counts and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.
+    pub fn beltrami_get_session(
+        context: *mut beltrami_context,
+        out: *mut beltrami_session,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
+ INVALID_ARGUMENT.*/
+    pub fn beltrami_get_session_chart(
+        context: *mut beltrami_context,
+        index: u64,
+        out: *mut beltrami_session_chart,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes one (u, v) per corner: `type` F32 or F64, `stride` bytes apart (0: packed). Pages lie in
+ the plane as beltrami_session_pack has them. F32 is rounded to nearest: with the option float32
+ no number changes. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_session_uvs(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the corners that the last update, pack or restore moved, increasing, and their UVs: as
+ many as `changes` of beltrami_session says, packed. `corner_type` U32 or U64, `uv_type` F32 or
+ F64. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_session_changes(
+        context: *mut beltrami_context,
+        corners: *mut ::core::ffi::c_void,
+        corner_type: i32,
+        uvs: *mut ::core::ffi::c_void,
+        uv_type: i32,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the number of the chart of each face, or all bits set for faces without area: U32 or U64.
+ Errors: INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_session_face_charts(
+        context: *mut beltrami_context,
+        out: *mut ::core::ffi::c_void,
+        type_: i32,
+        stride: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
+    /** Writes the edges that are cut beside the seams, as two vertices each: U32 or U64. Errors:
+ INVALID_STATE, INVALID_ARGUMENT.*/
+    pub fn beltrami_get_session_opened(
+        context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
         type_: i32,
         stride: u64,
