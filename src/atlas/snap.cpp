@@ -19,6 +19,8 @@ constexpr double kOneDirection = 0.009;
 constexpr double kWorthTurning = 0.2;
 /// Borders whose places differ by less are on one line, in texels.
 constexpr double kOneLine = 0.1;
+/// What is no farther from a line than rounding may have it lies on it, in texels.
+constexpr double kOnLine = 1e-3;
 /// Borders along an axis that are shorter are none, in texels.
 constexpr double kLeastBorder = 1;
 
@@ -115,6 +117,7 @@ void move(const std::vector<Line>& lines, int k, std::vector<Vec2>& texels) {
   if (lines.empty()) return;
   const auto shift = [](const Line& line) { return std::round(line.place) - line.place; };
   for (Vec2& w : texels) {
+    const double old = w[k];
     const auto above =
         std::upper_bound(lines.begin(), lines.end(), w[k],
                          [](double place, const Line& line) { return place < line.place; });
@@ -126,6 +129,10 @@ void move(const std::vector<Line>& lines, int k, std::vector<Vec2>& texels) {
       const Line& below = *(above - 1);
       const double share = (w[k] - below.place) / (above->place - below.place);
       w[k] += (1 - share) * shift(below) + share * shift(*above);
+    }
+    for (auto line = above == lines.begin() ? above : above - 1; line != lines.end(); ++line) {
+      if (line->place > old + kOnLine) break;
+      if (line->place >= old - kOnLine) w[k] = std::round(line->place);
     }
   }
   for (const Line& line : lines) {

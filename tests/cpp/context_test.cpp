@@ -39,7 +39,7 @@ TEST(CppOptions, EveryOptionHasAKeyOfItsType) {
       kHardAngle, kWeld, kWeldDistance, kFillHoles, kShareCopies, kPreset, kTargetEnergy,
       kTargetP99, kMaxCharts, kSeamBudget, kConcaveSeams, kHiddenSeams, kHardSeams, kMaterialSeams,
       kPack, kResolution, kMargin, kTexelsPerUnit, kMaxPages, kPackTurns, kPackBlock, kPackSplits,
-      kSymmetricSeams, kStraightSeams, kEffort, kFlatSeams, kStack);
+      kSymmetricSeams, kStraightSeams, kEffort, kFlatSeams, kStack, kRectify, kSnapTexels);
   const std::vector<OptionInfo> all = options();
   EXPECT_EQ(types.size(), all.size());
   for (const OptionInfo& info : all) {

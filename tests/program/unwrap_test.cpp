@@ -277,7 +277,8 @@ TEST(Unwrap, NamesThePinThatIsWrong) {
   };
   expect("v 0 0 0\nw 1 0 0\n", "pins: line 2: 'w' is no pin");
   expect("v 0 0\n", "line 1: v is missing");
-  expect("v 0 0 0 0\n", "one");
+  expect("v 0 0 0 0\n", "line 1: v of the direction is missing");
+  expect("v 0 0 0 0 1 2\n", "one");
   expect("v 9 0 0\n", "line 1: there is no vertex 9: there are 9");
   expect("c 16 0 0\n", "there is no corner 16");
   expect("c -1 0 0\n", "there is no corner -1");
