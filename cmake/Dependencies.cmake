@@ -60,7 +60,7 @@ if(BELTRAMI_BUILD_PROGRAM)
   beltrami_need(ZLIB_FOUND "zlib" zlib1g-dev)
   # Formats of pictures that are read where their libraries are found, but not those of this machine for
   # another one.
-  if(NOT CMAKE_CROSSCOMPILING)
+  if(BELTRAMI_MORE_PICTURES AND NOT CMAKE_CROSSCOMPILING)
     find_path(WEBP_INCLUDE_DIR webp/decode.h)
     find_library(WEBP_LIBRARY webp)
     find_package(OpenEXR 3 QUIET)
