@@ -14,7 +14,7 @@ import beltrami
 PLAIN = (
     *(name for name in beltrami.__all__ if name.endswith(("Certificate", "Report", "Options"))),
     *("AtlasCheck", "Baked", "BatchRecord", "Chart", "Distortion", "Energy", "Packing", "Stage"),
-    *("Triangulation", "build_info", "plot", "xatlas"),
+    *("Changes", "SessionChart", "Triangulation", "build_info", "plot", "xatlas"),
 )
 
 

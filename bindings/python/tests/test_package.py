@@ -92,6 +92,10 @@ def test_arrays_are_documented_with_shapes_and_types():
                 pair = "tuple of (k,) array_like of integers and (k, 2) array_like of floats"
                 assert f"pins : {pair}" in text
                 continue
+            if array == "straight":
+                pair = "tuple of (k, 2) array_like of integers and sequence of str"
+                assert f"straight : {pair}" in text
+                continue
             if array == "edge_paint":
                 pair = "tuple of (k, 2) array_like of integers and (k,) array_like of floats"
                 assert f"edge_paint : {pair}" in text

@@ -91,6 +91,17 @@ class Editor:
         As `unwrap` does.
     TypeError, ValueError
         For arrays of other shapes or types, and options out of range.
+
+    Examples
+    --------
+    >>> vertices = [[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 1], [2, 1, 0]]
+    >>> faces = [[0, 1, 4, 3], [1, 2, 5, 4]]
+    >>> with beltrami.Editor(vertices, faces) as editor:
+    ...     first = editor.update()
+    ...     editor.open_seams([[1, 4]])
+    ...     changes = editor.update(steps=2)
+    ...     editor.check().injective
+    True
     """
 
     def __init__(

@@ -35,7 +35,7 @@ def pins(values: Any, faces: Polygons) -> tuple[Array, Array, tuple[Array, Array
     Raises TypeError, ValueError.
     """
     if not isinstance(values, tuple) or not 2 <= len(values) <= 4:
-        raise TypeError("pins are corners and their UVs, and then kinds and directions, in a tuple")
+        raise TypeError("pins are a pair of corners and their UVs, and then kinds and directions")
     corners, uvs = _polygons.pins(values[:2], faces)
     if len(values) == 2:
         return corners, uvs, None
