@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/vectors.h"
+#include "mesh/closest_point.h"
 #include "mesh/disk_mesh.h"
-#include "prolong/closest_point.h"
 #include "records.h"
 #include "refine.h"
 #include "simplify/back_ends.h"

@@ -22,6 +22,7 @@
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/flatten_disk.h"
+#include "chart/flattening.h"
 #include "chart/options.h"
 #include "records.h"
 #include "refine.h"

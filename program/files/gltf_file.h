@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "files/gltf/merge.h"
 #include "files/mesh_file.h"
 #include "files/texture_use.h"
 

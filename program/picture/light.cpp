@@ -132,9 +132,9 @@ std::optional<Pixels> read_exr(std::string_view bytes) {
 }
 
 std::string exr_bytes(const Pixels& image) {
-  static const std::array<std::vector<std::string>, 5> kNames = {
+  const std::array<std::vector<std::string>, 5> all = {
       {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}};
-  const std::vector<std::string>& names = kNames[static_cast<std::size_t>(image.components)];
+  const std::vector<std::string>& names = all[static_cast<std::size_t>(image.components)];
   Imf::Header header(image.width, image.height);
   for (const std::string& name : names) {
     header.channels().insert(name, Imf::Channel(image.half ? Imf::HALF : Imf::FLOAT));

@@ -12,6 +12,7 @@
 #include "abi/failure.h"
 #include "abi/reports.h"
 #include "abi/unwrapped.h"
+#include "admit/admit.h"
 #include "atlas/atlas.h"
 #include "base/error.h"
 #include "base/types.h"

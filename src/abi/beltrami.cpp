@@ -9,6 +9,7 @@
 #include "abi/context.h"
 #include "abi/failure.h"
 #include "abi/input_mesh.h"
+#include "abi/option_entry.h"
 #include "abi/option_table.h"
 #include "abi/option_values.h"
 #include "abi/options.h"

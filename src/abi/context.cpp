@@ -12,6 +12,7 @@
 #include "abi/core_options.h"
 #include "abi/joined.h"
 #include "abi/reports.h"
+#include "abi/surface.h"
 #include "abi/unwrapped.h"
 #include "bake/bake.h"
 #include "base/error.h"

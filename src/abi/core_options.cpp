@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "abi/option_entry.h"
 #include "abi/option_table.h"
 #include "base/error.h"
 #include "cut/search_effort.h"

@@ -10,7 +10,14 @@
 #include "abi/core_options.h"
 #include "abi/pins.h"
 #include "abi/unwrapped.h"
+#include "admit/admit.h"
+#include "atlas/types.h"
 #include "base/error.h"
+#include "chart/flattening.h"
+#include "cut/edge_marks.h"
+#include "pack/types.h"
+#include "session/ground.h"
+#include "session/state.h"
 
 namespace beltrami {
 namespace {

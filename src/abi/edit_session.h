@@ -11,6 +11,9 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "chart/flattening.h"
+#include "exact/atlas_certificate.h"
+#include "pack/types.h"
 #include "session/session.h"
 
 namespace beltrami {

@@ -3,9 +3,10 @@
 #include <beltrami/beltrami.h>
 
 #include "abi/option_members.h"
+#include "abi/options.h"
 #include "abi/options_of_charts.h"
 #include "cut/seam_costs.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 
 namespace beltrami {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "abi/option_entry.h"
 #include "abi/option_members.h"
+#include "abi/options.h"
 
 namespace beltrami {
 

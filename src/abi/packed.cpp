@@ -7,7 +7,7 @@
 
 #include "abi/buffers.h"
 #include "admit/admit.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "base/resources.h"
 #include "mesh/disk_mesh.h"

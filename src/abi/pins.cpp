@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "abi/buffers.h"
-#include "abi/core_options.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "chart/hold.h"
 
 namespace beltrami {
 namespace {

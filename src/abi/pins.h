@@ -11,6 +11,7 @@
 #include "atlas/pins.h"
 #include "atlas/types.h"
 #include "base/work.h"
+#include "chart/hold.h"
 
 namespace beltrami {
 

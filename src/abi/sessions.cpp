@@ -15,7 +15,11 @@
 #include "abi/reports.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
+#include "chart/flattening.h"
+#include "session/ground.h"
+#include "session/state.h"
 
 namespace beltrami {
 namespace {

@@ -9,8 +9,10 @@
 
 #include "abi/buffers.h"
 #include "abi/pins.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "chart/hold.h"
 
 namespace beltrami {
 namespace {

@@ -4,7 +4,7 @@
 #include <beltrami/beltrami.h>
 
 #include "abi/surface.h"
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/work.h"
 
 namespace beltrami {

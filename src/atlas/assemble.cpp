@@ -9,11 +9,14 @@
 #include <utility>
 
 #include "atlas/measure.h"
+#include "atlas/open.h"
+#include "atlas/pages.h"
 #include "atlas/pins.h"
 #include "base/interrupt.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
 #include "mesh/chart.h"
-#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

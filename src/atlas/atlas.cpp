@@ -8,24 +8,29 @@
 #include <span>
 #include <utility>
 
+#include "admit/admit.h"
 #include "atlas/assemble.h"
 #include "atlas/chart_parts.h"
 #include "atlas/map_charts.h"
-#include "atlas/measure.h"
 #include "atlas/open.h"
 #include "atlas/open_and_map.h"
 #include "atlas/pack_maps.h"
-#include "atlas/pins.h"
+#include "atlas/pages.h"
 #include "atlas/place.h"
 #include "atlas/rescue.h"
 #include "atlas/snap.h"
 #include "atlas/split_necks.h"
 #include "atlas/straighten_charts.h"
-#include "base/interrupt.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "chart/chart_map.h"
+#include "chart/flattening.h"
+#include "chart/options.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/surface.h"
+#include "pack/types.h"
 #include "repair/rounding.h"
 
 namespace beltrami {

@@ -18,6 +18,7 @@
 #include "chart/flattening.h"
 #include "chart/options.h"
 #include "cut/edge_marks.h"
+#include "cut/seam_target.h"
 #include "cut/search.h"
 #include "cut/search_effort.h"
 #include "cut/unfold.h"

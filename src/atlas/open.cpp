@@ -15,6 +15,7 @@
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
+#include "cut/seam_target.h"
 #include "cut/search_effort.h"
 #include "cut/search_level.h"
 #include "mesh/disk_mesh.h"

@@ -15,6 +15,7 @@
 #include "cut/edge_marks.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
+#include "cut/seam_target.h"
 #include "cut/search.h"
 #include "cut/search_effort.h"
 #include "mesh/chart.h"

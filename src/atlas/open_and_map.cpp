@@ -17,7 +17,7 @@
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 #include "mesh/surface.h"
 
 namespace beltrami {

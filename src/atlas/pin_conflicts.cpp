@@ -8,6 +8,7 @@
 
 #include "base/interrupt.h"
 #include "base/vectors.h"
+#include "chart/hold.h"
 #include "exact/box_tree.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 
 namespace beltrami {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "atlas/types.h"
 #include "base/types.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 
 namespace beltrami {
 

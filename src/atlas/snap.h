@@ -5,7 +5,6 @@
 
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
-#include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"

@@ -10,8 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "atlas/open.h"
 #include "atlas/quad_grid.h"
 #include "base/error.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
+#include "chart/hold.h"
 #include "chart/straight.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"

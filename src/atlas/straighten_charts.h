@@ -4,7 +4,6 @@
 #include "admit/admit.h"
 #include "atlas/open_and_map.h"
 #include "atlas/types.h"
-#include "base/types.h"
 #include "base/work.h"
 
 namespace beltrami {

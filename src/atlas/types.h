@@ -21,7 +21,7 @@
 #include "chart/options.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 #include "cut/search_effort.h"
 #include "exact/atlas_certificate.h"
 #include "pack/types.h"

@@ -9,7 +9,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "mesh/disk_mesh.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 

@@ -8,7 +8,6 @@
 #include "base/resources.h"
 #include "base/types.h"
 #include "chart/descent.h"
-#include "chart/fine_problem.h"
 #include "chart/memory_estimate.h"
 #include "chart/modes.h"
 #include "chart/policy.h"

@@ -6,7 +6,6 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
-#include "chart/composite_majorization.h"
 #include "chart/descent.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"

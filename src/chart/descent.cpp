@@ -28,6 +28,7 @@
 #include "repair/outliers.h"
 #include "repair/repair.h"
 #include "repair/touching.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "chart/descent.h"
+#include "chart/memory.h"
 #include "chart/memory_estimate.h"
 #include "chart/mode_bytes.h"
 #include "chart/policy.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "repair/outliers.h"
+#include "simplify/coarse.h"
 #include "simplify/replay.h"
 
 namespace beltrami {

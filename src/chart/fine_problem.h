@@ -17,7 +17,7 @@
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
 #include "repair/repair.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 

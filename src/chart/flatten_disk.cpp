@@ -4,6 +4,7 @@
 
 #include "base/resources.h"
 #include "chart/attempts.h"
+#include "chart/chart_map.h"
 #include "chart/delivery.h"
 
 namespace beltrami {

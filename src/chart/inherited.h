@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/vectors.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "base/types.h"
-#include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
 #include "chart/fine_problem.h"
 #include "chart/inherited.h"
-#include "chart/memory.h"
 #include "chart/options.h"
 #include "flatten/laplacian.h"
 #include "mesh/disk_mesh.h"

@@ -40,8 +40,8 @@
 #include "repair/regions.h"
 #include "repair/repair.h"
 #include "repair/touching.h"
+#include "simplify/coarse.h"
 #include "simplify/levels.h"
-#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

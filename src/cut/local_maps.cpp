@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "chart/composite_majorization.h"
 #include "chart/descent.h"
-#include "chart/modes.h"
 #include "chart/options.h"
 #include "descend/newton.h"
 #include "energy/measure.h"

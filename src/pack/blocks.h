@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "pack/clearance.h"
+#include "pack/outline.h"
 
 namespace beltrami {
 

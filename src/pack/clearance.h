@@ -3,8 +3,6 @@
 
 #include <vector>
 
-#include "base/types.h"
-#include "base/vectors.h"
 #include "pack/outline.h"
 
 namespace beltrami {

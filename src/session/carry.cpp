@@ -9,6 +9,7 @@
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "repair/touching.h"
 #include "repair/untangle.h"

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "atlas/open.h"
-#include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "mesh/disk_mesh.h"
 #include "session/ground.h"
 #include "session/state.h"
 

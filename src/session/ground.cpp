@@ -4,6 +4,7 @@
 
 #include "atlas/open.h"
 #include "base/interrupt.h"
+#include "base/vectors.h"
 #include "mesh/surface.h"
 
 namespace beltrami {

@@ -8,6 +8,7 @@
 
 #include "admit/admit.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
 

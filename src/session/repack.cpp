@@ -8,8 +8,14 @@
 #include "atlas/pack_uvs.h"
 #include "atlas/pages.h"
 #include "base/error.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "base/work.h"
+#include "chart/flattening.h"
+#include "pack/types.h"
 #include "session/session.h"
 #include "session/similarity.h"
+#include "session/state.h"
 
 namespace beltrami {
 

@@ -6,9 +6,12 @@
 #include <string>
 #include <utility>
 
+#include "atlas/open.h"
 #include "base/error.h"
+#include "cut/edge_marks.h"
 #include "cut/given.h"
-#include "mesh/rest_shape.h"
+#include "mesh/disk_mesh.h"
+#include "mesh/surface.h"
 #include "session/carry.h"
 #include "session/recut.h"
 #include "session/remap.h"

@@ -13,9 +13,10 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "chart/flattening.h"
 #include "chart/options.h"
 #include "exact/atlas_certificate.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "session/ground.h"
 #include "session/state.h"
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/chart.h"
+
 namespace beltrami {
 
 Index SessionChart::local_face(Index face) const {

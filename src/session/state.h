@@ -10,6 +10,7 @@
 #include "base/vectors.h"
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 

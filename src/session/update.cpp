@@ -7,11 +7,17 @@
 #include <string>
 #include <tuple>
 
+#include "atlas/open.h"
 #include "atlas/rows.h"
 #include "base/parallel.h"
+#include "base/vectors.h"
+#include "chart/flattening.h"
+#include "cut/edge_marks.h"
 #include "mesh/surface.h"
 #include "session/carry.h"
+#include "session/ground.h"
 #include "session/recut.h"
+#include "session/state.h"
 
 namespace beltrami {
 namespace {

@@ -8,9 +8,12 @@
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
+#include "cut/edge_marks.h"
 #include "session/remap.h"
 #include "session/session.h"
+#include "session/state.h"
 
 namespace beltrami {
 

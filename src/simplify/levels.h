@@ -7,7 +7,7 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 

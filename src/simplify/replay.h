@@ -7,8 +7,8 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
+#include "simplify/coarse.h"
 #include "simplify/history.h"
-#include "simplify/simplify.h"
 
 namespace beltrami {
 

@@ -17,6 +17,7 @@
 #include "abi/host.h"
 #include "base/portable_math.h"
 #include "base/vectors.h"
+#include "support/meshes.h"
 
 namespace beltrami::host {
 namespace {

@@ -12,7 +12,10 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "base/vectors.h"
 #include "chart/flattening.h"
+#include "exact/atlas_certificate.h"
 #include "mesh/locality.h"
 #include "support/atlases.h"
 #include "support/cuts.h"

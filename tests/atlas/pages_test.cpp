@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "atlas/atlas.h"
 #include "atlas/margin.h"
 #include "atlas/pack_uvs.h"
 #include "atlas/page_mask.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "chart/flattening.h"
 #include "support/atlases.h"

@@ -15,10 +15,9 @@
 
 #include "atlas/atlas.h"
 #include "atlas/seams.h"
+#include "atlas/types.h"
 #include "base/disjoint_sets.h"
 #include "base/vectors.h"
-#include "cut/search.h"
-#include "pack/pack.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/shared_data.h"

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "cut/seam_costs.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 #include "energy/energy.h"
 #include "support/atlases.h"
 #include "support/cuts.h"

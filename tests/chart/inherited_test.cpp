@@ -1,5 +1,6 @@
 // Maps of disks of which something is known: as good as those made from the start.
 #include "chart/inherited.h"
+#include "chart/flattening.h"
 
 #include <gtest/gtest.h>
 

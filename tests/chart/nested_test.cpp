@@ -11,7 +11,6 @@
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "chart/modes.h"
 #include "chart/options.h"
 #include "chart/policy.h"
 #include "energy/energy.h"

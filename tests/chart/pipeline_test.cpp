@@ -22,6 +22,7 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/chart_map.h"
+#include "chart/flattening.h"
 #include "chart/options.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"

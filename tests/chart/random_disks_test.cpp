@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "chart/flattening.h"
 #include "support/random_disks.h"
 
 #include "chart/flatten_disk.h"

@@ -18,7 +18,6 @@
 #include "base/work.h"
 #include "chart/composite_majorization.h"
 #include "chart/descent.h"
-#include "chart/modes.h"
 #include "chart/options.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"

@@ -1,5 +1,7 @@
 // Sessions: what edits change and what they leave, and that every verdict is true.
 #include "session/session.h"
+#include "chart/flattening.h"
+#include "cut/edge_marks.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"

@@ -5,6 +5,7 @@
 
 #include "base/work.h"
 #include "chart/flatten_disk.h"
+#include "chart/flattening.h"
 #include "chart/options.h"
 #include "mesh/disk_mesh.h"
 #include "support/disks.h"

@@ -12,6 +12,7 @@
 #include "files/gltf/materials.h"
 #include "files/gltf/textures.h"
 #include "files/gltf_file.h"
+#include "files/mesh_file.h"
 #include "process/failure.h"
 
 namespace beltrami::cli::gltf {
