@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/portable_math.h"
+#include "base/types.h"
 #include "exact/certificate.h"
 
 namespace beltrami {

@@ -13,6 +13,7 @@
 #include "atlas/open.h"
 #include "atlas/quad_grid.h"
 #include "base/error.h"
+#include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
 #include "chart/hold.h"

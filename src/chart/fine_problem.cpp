@@ -13,6 +13,7 @@
 #include "repair/outliers.h"
 #include "simplify/coarse.h"
 #include "simplify/replay.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 namespace {

@@ -6,7 +6,7 @@
 #include "chart/descent.h"
 #include "descend/contact.h"
 #include "descend/flat_start.h"
-#include "energy/energy.h"
+#include "descend/tutte.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"

@@ -6,6 +6,8 @@
 
 #include "base/disjoint_sets.h"
 #include "base/interrupt.h"
+#include "base/types.h"
+#include "base/vectors.h"
 #include "pack/edge_grid.h"
 
 namespace beltrami {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/types.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "simplify/replay.h"
+#include "simplify/simplify.h"
 #include "simplify/sweep.h"
 
 namespace beltrami {

@@ -1,4 +1,5 @@
 #include "simplify/back_ends.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 

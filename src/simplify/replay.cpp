@@ -4,6 +4,7 @@
 
 #include "base/interrupt.h"
 #include "simplify/back_ends.h"
+#include "simplify/simplify.h"
 
 namespace beltrami {
 

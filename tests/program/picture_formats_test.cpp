@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "baked_model.h"
+#include "gltf_builder.h"
+#include "gltf_parts.h"
 #include "picture/light.h"
 #include "picture/stb_in_one_place.h"
 #include "picture/webp.h"
 #include "process/failure.h"
-#include "program/gltf_builder.h"
-#include "program/gltf_parts.h"
-#include "program/run_program.h"
-#include "program/temporary_directory.h"
+#include "run_program.h"
+#include "temporary_directory.h"
 
 namespace beltrami::cli {
 namespace {

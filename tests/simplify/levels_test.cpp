@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

@@ -13,6 +13,7 @@
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
+#include "simplify/simplify.h"
 #include "support/cuts.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"

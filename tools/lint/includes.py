@@ -162,7 +162,7 @@ def check(name: str, words: list[str], resources: str, project: Project) -> list
 
     `words` are the compiler's arguments, `resources` is the folder of clang's own headers.
     """
-    unit = Index.create().parse(name, [*words, "-resource-dir", resources])
+    unit = Index.create().parse(name, [*words, "-ferror-limit=0", "-resource-dir", resources])
     # libclang may be older than clang's own headers, whose intrinsics it does not know then.
     errors = [
         d
