@@ -20,7 +20,6 @@ constexpr const char* kPresets[] = {"none", "lightmap", "texturing", "one-chart"
 constexpr const char* kWelds[] = {"auto", "on", "off"};
 constexpr const char* kPacks[] = {"pages", "none"};
 constexpr const char* kTurns[] = {"any", "quarter", "none"};
-constexpr const char* kStacks[] = {"none", "copies", "mirrored"};
 constexpr const char* kEfforts[] = {"quick", "normal", "high"};
 constexpr const char* kEnergies[] = {"symmetric-dirichlet", "symmetric-arap",
                                      "exponential-dirichlet"};
@@ -568,21 +567,7 @@ const OptionEntry kOptions[] = {
         .set = set<&Options::target, &SeamTarget::flat_seams>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
-    {
-        .key = BELTRAMI_OPTION_STACK,
-        .type = BELTRAMI_TYPE_CHOICE,
-        .name = "stack",
-        .summary = "Whether components of one shape share texels: none, copies (those that a "
-                   "rigid motion carries onto one before them lie on its charts) or mirrored "
-                   "(mirror images do, too). Not with pins, max-charts, seam-budget or "
-                   "symmetric-seams.",
-        .minimum = 0,
-        .maximum = std::size(kStacks) - 1,
-        .choices = kStacks,
-        .get = get<&Options::stack>,
-        .set = set<&Options::stack>,
-        .calls = BELTRAMI_CALL_UNWRAP,
-    },
+    kStack,
     kRectify,
     kSnapTexels,
 };

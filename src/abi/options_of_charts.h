@@ -11,6 +11,25 @@
 
 namespace beltrami {
 
+inline constexpr const char* kStacks[] = {"none", "copies", "mirrored"};
+
+inline constexpr OptionEntry kStack = {
+    .key = BELTRAMI_OPTION_STACK,
+    .type = BELTRAMI_TYPE_CHOICE,
+    .name = "stack",
+    .summary =
+        "Whether components of one shape share texels: none, copies (those that a "
+        "rigid motion carries onto one before them lie on its charts) or mirrored "
+        "(mirror images do, too). Not with pins, max-charts, seam-budget or "
+        "symmetric-seams.",
+    .minimum = 0,
+    .maximum = std::size(kStacks) - 1,
+    .choices = kStacks,
+    .get = get<&Options::stack>,
+    .set = set<&Options::stack>,
+    .calls = BELTRAMI_CALL_UNWRAP,
+};
+
 inline constexpr const char* kRectifies[] = {"none", "grids"};
 
 inline constexpr OptionEntry kRectify = {
