@@ -147,7 +147,6 @@ class WayToPins {
     }
     any_slides_ =
         std::any_of(vertices_.begin(), vertices_.end(), [&](Index v) { return !fixed_[v]; });
-    drifts_ = kNone;
     fix_what_drifts();
   }
 
@@ -192,7 +191,7 @@ class WayToPins {
       const Vec2 &a = slides_[first], &b = slides_[v];
       if (std::abs(a.x() * b.y() - a.y() * b.x()) > kParallel) return;
     }
-    drifts_ = first;
+    if (first != kNone) fixed_[first] = true;
   }
   /// Per pin its place, or the nearest one of its line.
   std::vector<Vec2> targets_of(const std::vector<Vec2>& uvs) const {
@@ -217,7 +216,8 @@ class WayToPins {
                        [&](Index v) { return held_[v]; });
   }
 
-  /// Composite majorization alone, where the start is near the minimum: not that of straight ones.
+  /// Composite majorization alone, for the start is near the minimum; but not with straight
+  /// borders, which `strict_` says.
   NewtonOptions last_steps() const {
     NewtonOptions newton = newton_options(options_);
     if (any_slides_) newton.slides = &slides_;
@@ -246,21 +246,18 @@ class WayToPins {
   const ChartOptions& options_;
   const Work work_;
   const BoundaryContact contact_;
-  std::vector<bool> held_;  // per vertex, and those of them that do not slide
-  std::vector<bool> fixed_;
+  std::vector<bool> held_;    // per vertex
+  std::vector<bool> fixed_;   // likewise: points, and what stays so that the map does not drift
   std::vector<Vec2> slides_;  // per vertex as NewtonOptions has it
   bool any_slides_ = false;
-  const bool strict_;     // pins may not have the boundary touch itself
-  Index drifts_ = kNone;  // the vertex that stays, where the map could drift along its line
+  const bool strict_;  // pins may not have the boundary touch itself
   std::vector<Index> vertices_;
   std::vector<Vec2> places_;
 };
 
 bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
                          std::vector<Vec2>& uvs) const {
-  std::vector<bool> fixed = fixed_;
-  if (drifts_ != kNone) fixed[drifts_] = true;
-  const auto run = [&] { return minimise_energy(mesh_.faces, rest_, fixed, uvs, newton, work); };
+  const auto run = [&] { return minimise_energy(mesh_.faces, rest_, fixed_, uvs, newton, work); };
   if (!simple) return run().converged;
   if (!contact_.is_pressed(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact_.is_simple(map); };
@@ -277,9 +274,7 @@ bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
 bool WayToPins::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const {
   NewtonOptions newton = last_steps();
   newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
-  std::vector<bool> fixed = fixed_;
-  if (drifts_ != kNone) fixed[drifts_] = true;
-  NewtonResult result = minimise_energy(mesh_.faces, rest_, fixed, uvs, newton, work);
+  NewtonResult result = minimise_energy(mesh_.faces, rest_, fixed_, uvs, newton, work);
   if (result.refused) uvs = std::move(result.admitted);
   return result.converged && !result.refused;
 }

@@ -47,13 +47,13 @@ struct Remapped {
   double energy = 0;  ///< see SessionChart
 };
 
-/// Maps a chart: near its start where that serves, else anew. `failed_pin`: in the list of pins of
-/// the session, one that could not be met with those before it, or kNone. Throws Cancelled or
-/// Error.
 struct Drafted {
   Draft draft;
-  Index failed_pin = kNone;
+  Index failed_pin = kNone;  ///< in the list of pins of the session, one that could not be met with
+                             ///< those before it
 };
+
+/// Maps a chart: near its start where that serves, else anew. Throws Cancelled or Error.
 Drafted draft(const RemapTask& task, const ChartOptions& options, const Work& work);
 
 /// Rounds, judges and measures a draft that lies where it is to, moved by `shift`.

@@ -17,6 +17,8 @@
 
 namespace beltrami {
 
+/// One update of a session, of at most `steps` Newton steps a chart; see Session::update. The
+/// session itself is not changed: `result` is its next state.
 class Updater {
  public:
   Updater(const Session& session, int steps, const Work& work)
