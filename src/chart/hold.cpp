@@ -12,6 +12,7 @@
 #include "chart/descent.h"
 #include "chart/line_similarity.h"
 #include "chart/pin_field.h"
+#include "chart/similarity.h"
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"
@@ -48,50 +49,12 @@ constexpr double kThere = 0.5;
 
 using Pins = std::span<const HeldVertex>;
 
-/// The similarity w = turn * (z - from) + to.
-struct Similarity {
-  Complex turn = 1;
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
-
-  Vec2 to_plane(const Vec2& z) const { return times(turn, z - from) + to; }
-  Vec2 to_map(const Vec2& w) const { return times(quotient(1, turn), w - to) + from; }
-  /// A direction of the plane, in the map.
-  Vec2 direction_to_map(const Vec2& w) const { return times(std::conj(turn) / modulus(turn), w); }
-
- private:
-  static Vec2 times(Complex factor, const Vec2& z) {
-    return {factor.real() * z.x() - factor.imag() * z.y(),
-            factor.real() * z.y() + factor.imag() * z.x()};
-  }
-};
-
-/// That takes the spread of the pins' vertices in the map to that of their places, and turns it to
-/// where it fits best. Mirrored places fit none: then it hardly matters.
+/// That takes the vertices of the pins in the map to their places. Mirrored places fit none: then
+/// it hardly matters.
 Similarity similarity_of_points(const std::vector<Vec2>& uvs, Pins pins) {
-  Similarity best;
-  if (pins.size() == 1) {
-    best.from = uvs[pins[0].vertex];
-    best.to = pins[0].place;
-    return best;
-  }
-  const auto count = static_cast<double>(pins.size());
-  for (const HeldVertex& pin : pins) {
-    best.from += uvs[pin.vertex] / count;
-    best.to += pin.place / count;
-  }
-  double along = 0, across = 0, spread = 0, places = 0;
-  for (const HeldVertex& pin : pins) {
-    const Vec2 z = uvs[pin.vertex] - best.from, w = pin.place - best.to;
-    along += z.dot(w);
-    across += z.x() * w.y() - z.y() * w.x();
-    spread += z.squaredNorm();
-    places += w.squaredNorm();
-  }
-  const Complex turn(along, across);
-  const double length = modulus(turn), scale = std::sqrt(places / spread);
-  if (length > 0) best.turn = turn / length;
-  if (scale > 0 && std::isfinite(scale)) best.turn *= scale;
-  return best;
+  std::vector<std::pair<Vec2, Vec2>> pairs;
+  for (const HeldVertex& pin : pins) pairs.emplace_back(uvs[pin.vertex], pin.place);
+  return fit_similarity(pairs, false);
 }
 
 /// Two points say all of a similarity; fewer leave its turn or its scale to the lines.
@@ -141,9 +104,9 @@ class WayToPins {
     for (const HeldVertex& pin : pins) {
       held_[pin.vertex] = true;
       fixed_[pin.vertex] = pin.kind == PinKind::kPoint;
-      if (!fixed_[pin.vertex]) slides_[pin.vertex] = frame.direction_to_map(pin.normal());
+      if (!fixed_[pin.vertex]) slides_[pin.vertex] = frame.direction_back(pin.normal());
       vertices_.push_back(pin.vertex);
-      places_.push_back(frame.to_map(pin.place));
+      places_.push_back(frame.back(pin.place));
     }
     any_slides_ =
         std::any_of(vertices_.begin(), vertices_.end(), [&](Index v) { return !fixed_[v]; });
@@ -408,7 +371,7 @@ std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins
     if (!way.go(map.uvs)) return std::nullopt;
     if (relaxed) map.converged = way.relax(work.part(kThere, 1), map.uvs);
   }
-  for (Vec2& w : map.uvs) w = frame.to_plane(w);
+  for (Vec2& w : map.uvs) w = frame(w);
   put_at(pins, map.uvs);
   return map;
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/types.h"
+#include "chart/similarity.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
@@ -14,7 +15,6 @@
 #include "mesh/rest_shape.h"
 #include "repair/touching.h"
 #include "repair/untangle.h"
-#include "session/similarity.h"
 
 namespace beltrami {
 namespace {

@@ -7,6 +7,7 @@
 #include "atlas/map_charts.h"
 #include "base/error.h"
 #include "chart/hold.h"
+#include "chart/similarity.h"
 #include "descend/tutte.h"
 #include "energy/energy.h"
 #include "exact/atlas_certificate.h"
@@ -14,7 +15,6 @@
 #include "mesh/rest_shape.h"
 #include "repair/rounding.h"
 #include "session/carry.h"
-#include "session/similarity.h"
 
 namespace beltrami {
 namespace {

@@ -12,9 +12,9 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
+#include "chart/similarity.h"
 #include "pack/types.h"
 #include "session/session.h"
-#include "session/similarity.h"
 #include "session/state.h"
 
 namespace beltrami {

@@ -1,14 +1,28 @@
-#include "session/similarity.h"
+#include "chart/similarity.h"
 
 #include <cmath>
 
 namespace beltrami {
 
+namespace {
+
+Vec2 times(Complex factor, const Vec2& z) {
+  return {factor.real() * z.x() - factor.imag() * z.y(),
+          factor.real() * z.y() + factor.imag() * z.x()};
+}
+
+}  // namespace
+
 Vec2 Similarity::operator()(const Vec2& z) const {
-  const Vec2 d = z - from;
-  return Vec2(turn.real() * d.x() - turn.imag() * d.y(),
-              turn.real() * d.y() + turn.imag() * d.x()) +
-         to;
+  return times(turn, z - from) + to;
+}
+
+Vec2 Similarity::back(const Vec2& w) const {
+  return times(quotient(1, turn), w - to) + from;
+}
+
+Vec2 Similarity::direction_back(const Vec2& w) const {
+  return times(std::conj(turn) / modulus(turn), w);
 }
 
 Similarity fit_similarity(const std::vector<std::pair<Vec2, Vec2>>& pairs, bool rigid) {

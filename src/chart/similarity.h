@@ -16,6 +16,8 @@ struct Similarity {
 
   double scale() const { return modulus(turn); }
   Vec2 operator()(const Vec2& z) const;
+  Vec2 back(const Vec2& w) const;            ///< the z that is taken to w
+  Vec2 direction_back(const Vec2& w) const;  ///< the same of a direction, as long as it is
 };
 
 /// That takes the first of each pair nearest to the second in the least squares, but that the scale
