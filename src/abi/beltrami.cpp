@@ -18,12 +18,12 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
 #include "exact/exact_number.h"
 #include "linear/spd_solver.h"
+#include "multilevel/chart_map.h"
 #include "ring/triangulate_ring.h"
 #include "simplify/simplify.h"
 

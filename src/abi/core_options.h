@@ -4,7 +4,7 @@
 #include "abi/options.h"
 #include "atlas/types.h"
 #include "base/work.h"
-#include "chart/options.h"
+#include "multilevel/options.h"
 #include "pack/types.h"
 
 namespace beltrami {

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
-#include "chart/hold.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 namespace {

@@ -11,7 +11,7 @@
 #include "atlas/pins.h"
 #include "atlas/types.h"
 #include "base/work.h"
-#include "chart/hold.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 

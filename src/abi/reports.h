@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "base/types.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
 #include "energy/measure.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
+#include "multilevel/chart_map.h"
 
 namespace beltrami {
 

@@ -12,7 +12,7 @@
 #include "atlas/types.h"
 #include "base/error.h"
 #include "base/types.h"
-#include "chart/hold.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 namespace {

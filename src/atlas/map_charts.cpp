@@ -12,14 +12,14 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "chart/flatten_disk.h"
-#include "chart/hold.h"
-#include "chart/inherited.h"
 #include "chart/memory_estimate.h"
 #include "descend/flat_start.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/locality.h"
 #include "mesh/rest_shape.h"
+#include "multilevel/inherited.h"
+#include "pins/hold.h"
 #include "simplify/replay.h"
 
 namespace beltrami {

@@ -11,7 +11,7 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "chart/options.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -14,9 +14,7 @@
 #include "atlas/rescue.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
-#include "chart/options.h"
 #include "cut/edge_marks.h"
 #include "cut/seam_target.h"
 #include "cut/search.h"
@@ -24,6 +22,8 @@
 #include "cut/unfold.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 namespace {

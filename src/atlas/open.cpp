@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "chart/policy.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
@@ -21,6 +20,7 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/split_fans.h"
 #include "mesh/surface.h"
+#include "multilevel/policy.h"
 #include "simplify/history.h"
 #include "simplify/replay.h"
 

@@ -10,7 +10,7 @@
 #include "atlas/types.h"
 #include "base/types.h"
 #include "base/work.h"
-#include "chart/chart_map.h"
+#include "multilevel/chart_map.h"
 
 namespace beltrami {
 

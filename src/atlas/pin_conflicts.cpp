@@ -8,11 +8,11 @@
 
 #include "base/interrupt.h"
 #include "base/vectors.h"
-#include "chart/hold.h"
 #include "exact/box_tree.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
 #include "mesh/disk_mesh.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 namespace {

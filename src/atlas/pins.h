@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/hold.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 

@@ -8,7 +8,7 @@
 #include "atlas/open.h"
 #include "base/types.h"
 #include "base/work.h"
-#include "chart/options.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -16,10 +16,10 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
-#include "chart/hold.h"
-#include "chart/straight.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
+#include "pins/hold.h"
+#include "pins/straight.h"
 
 namespace beltrami {
 namespace {

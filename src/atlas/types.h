@@ -15,16 +15,16 @@
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
-#include "chart/hold.h"
-#include "chart/options.h"
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/seam_target.h"
 #include "cut/search_effort.h"
 #include "exact/atlas_certificate.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/options.h"
 #include "pack/types.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 

@@ -1,5 +1,5 @@
 #include "chart/attempts.h"
-#include "chart/composite_majorization.h"
+#include "multilevel/composite_majorization.h"
 
 #include <optional>
 #include <utility>
@@ -7,13 +7,15 @@
 #include "base/error.h"
 #include "base/resources.h"
 #include "base/types.h"
-#include "chart/descent.h"
-#include "chart/memory_estimate.h"
-#include "chart/modes.h"
-#include "chart/policy.h"
+#include "baselines/baselines.h"
+#include "chart/beltrami_mode.h"
 #include "chart/refine.h"
 #include "descend/grid_drawing.h"
 #include "mesh/rest_shape.h"
+#include "multilevel/descent.h"
+#include "multilevel/extras.h"
+#include "multilevel/modes.h"
+#include "multilevel/policy.h"
 
 namespace beltrami {
 namespace {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/work.h"
-#include "chart/chart_map.h"
 #include "chart/delivery.h"
-#include "chart/inherited.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/inherited.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -7,11 +7,11 @@
 
 #include "base/vectors.h"
 #include "base/work.h"
-#include "chart/chart_map.h"
 #include "chart/flattening.h"
-#include "chart/options.h"
 #include "exact/certificate.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/options.h"
 #include "repair/rounding.h"
 
 namespace beltrami {

@@ -4,8 +4,8 @@
 
 #include "base/resources.h"
 #include "chart/attempts.h"
-#include "chart/chart_map.h"
 #include "chart/delivery.h"
+#include "multilevel/chart_map.h"
 
 namespace beltrami {
 namespace {

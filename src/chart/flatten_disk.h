@@ -4,9 +4,9 @@
 
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "chart/inherited.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/inherited.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -7,9 +7,9 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/chart_map.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
+#include "multilevel/chart_map.h"
 
 namespace beltrami {
 

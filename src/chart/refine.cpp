@@ -4,11 +4,11 @@
 
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/descent.h"
 #include "descend/newton.h"
 #include "descend/tutte.h"
 #include "exact/certificate.h"
 #include "mesh/rest_shape.h"
+#include "multilevel/descent.h"
 
 namespace beltrami {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/work.h"
-#include "chart/chart_map.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -8,9 +8,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "chart/composite_majorization.h"
-#include "chart/descent.h"
-#include "chart/options.h"
 #include "descend/newton.h"
 #include "energy/measure.h"
 #include "exact/certificate.h"
@@ -18,6 +15,9 @@
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
+#include "multilevel/composite_majorization.h"
+#include "multilevel/descent.h"
+#include "multilevel/options.h"
 #include "repair/touching.h"
 
 namespace beltrami {

@@ -7,12 +7,12 @@
 
 #include "base/error.h"
 #include "base/types.h"
-#include "chart/similarity.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
+#include "pins/similarity.h"
 #include "repair/touching.h"
 #include "repair/untangle.h"
 

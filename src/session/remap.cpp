@@ -6,13 +6,13 @@
 
 #include "atlas/map_charts.h"
 #include "base/error.h"
-#include "chart/hold.h"
-#include "chart/similarity.h"
 #include "descend/tutte.h"
 #include "energy/energy.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "mesh/rest_shape.h"
+#include "pins/hold.h"
+#include "pins/similarity.h"
 #include "repair/rounding.h"
 #include "session/carry.h"
 

@@ -9,8 +9,8 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/options.h"
 
 namespace beltrami {
 

@@ -12,8 +12,8 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "chart/similarity.h"
 #include "pack/types.h"
+#include "pins/similarity.h"
 #include "session/session.h"
 #include "session/state.h"
 

@@ -20,6 +20,8 @@ LIBRARY = [
     {"admit", "bake", "energy", "linear", "pack", "prolong", "ring", "simplify"},
     {"descend"},
     {"flatten", "repair"},
+    {"multilevel"},
+    {"baselines", "pins"},
     {"chart"},
     {"cut"},
     {"atlas"},

@@ -1,5 +1,5 @@
 // Maps of disks of which something is known: as good as those made from the start.
-#include "chart/inherited.h"
+#include "multilevel/inherited.h"
 #include "chart/flattening.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 
 #include "base/work.h"
 #include "chart/flatten_disk.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/options.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"

@@ -15,7 +15,7 @@
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "chart/options.h"
+#include "multilevel/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 #include "support/random_disks.h"

@@ -11,9 +11,9 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
-#include "chart/options.h"
 #include "energy/energy.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

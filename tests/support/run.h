@@ -6,8 +6,8 @@
 #include "base/work.h"
 #include "chart/flatten_disk.h"
 #include "chart/flattening.h"
-#include "chart/options.h"
 #include "mesh/disk_mesh.h"
+#include "multilevel/options.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

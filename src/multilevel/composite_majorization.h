@@ -1,0 +1,21 @@
+// Composite majorization on a whole mesh: the method cm, and the coarse map of the others.
+#pragma once
+
+#include <vector>
+
+#include "base/vectors.h"
+#include "base/work.h"
+#include "mesh/disk_mesh.h"
+#include "multilevel/chart_map.h"
+#include "multilevel/descent.h"
+#include "multilevel/options.h"
+
+namespace beltrami {
+
+/// A start, then composite majorization to `tolerance`. Where it crawls at an enormous energy,
+/// again from a coarser mesh; the better map is kept. A start with flips is returned as it is, its
+/// energy 0.
+Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const ChartOptions& options,
+                              const Work& work);
+
+}  // namespace beltrami
