@@ -18,7 +18,7 @@ FILE_LINES = 600
 # One header is the whole of the interface, most of it comments.
 LONGER = {"include/beltrami/beltrami.h": 1400}
 FUNCTION_LINES = 70
-TREES = ["src", "program", "include", "tests", "benchmarks", "bindings"]
+TREES = ["src", "program", "include", "tests", "benchmarks", "bindings", "evaluation"]
 FUNCTION_TREES = ["src", "program", "include"]
 SUFFIXES = {".h", ".hpp", ".c", ".cpp", ".py", ".rs"}
 # Written by programs.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parents[3] / "examples" / "data"
+FOLDER = Path(__file__).resolve().parents[1] / "examples" / "data"
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:

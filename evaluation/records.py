@@ -12,7 +12,7 @@ from pathlib import Path
 
 import beltrami
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
