@@ -11,9 +11,6 @@ namespace beltrami {
 /// What the steps of every run go by.
 namespace newton {
 
-inline constexpr double kSingularShare = 0.8;  ///< of the way to the first singular face
-inline constexpr double kArmijo = 1e-4;        ///< sufficient share of the predicted decrease
-inline constexpr int kMaxHalvings = 40;        ///< of a step, for that decrease
 /// A full step that gains more than this share of the predicted decrease, of which the model has a
 /// half, is doubled: the model is a majorizer, and a face that is nearly singular, of energy s^-2,
 /// goes from s to 4 s / 3 only. And again while each time the energy falls below a share of what it

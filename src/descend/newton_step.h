@@ -196,7 +196,7 @@ template <class Density>
 double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
                                                  const std::vector<Vec2>& direction,
                                                  double length) {
-  double limit = length / newton::kSingularShare;
+  double limit = length / kSingularShare;
   const std::vector<Touch> touches = contact_->touches(uvs, direction, limit, kJammed * length);
   for (const Contact& c : contacts_) {
     if (share_of_reach(c, uvs) > kFreed) stuck_.erase({c.vertex, c.from});
@@ -205,7 +205,7 @@ double NewtonStepper<Density>::stop_before_touch(const std::vector<Vec2>& uvs,
   for (const Touch& touch : touches) {
     if (touch.time < kJammed * length) stuck_.insert({touch.vertex, touch.from});
   }
-  return newton::kSingularShare * limit;
+  return kSingularShare * limit;
 }
 
 template <class Density>
@@ -323,7 +323,7 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   }
   double longest = std::numeric_limits<double>::infinity();
   if (Density::kBarrier) {
-    longest = newton::kSingularShare * first_singular_step(faces_, uvs, direction, work_);
+    longest = kSingularShare * first_singular_step(faces_, uvs, direction, work_);
   }
   double length = std::min(1.0, longest);
   const auto pressure = [&](const std::vector<Vec2>& map, const std::vector<Contact>& contacts) {
@@ -333,30 +333,29 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   if (!(length > 0)) return result;
   const double before = energy + pressure(uvs, touching);
   std::vector<Vec2> trial(uvs.size());
-  for (int halving = 0; halving < newton::kMaxHalvings; ++halving, length *= 0.5) {
-    for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + length * direction[v];
+  backtrack(length, [&](double step) {
+    for (Index v = 0; v < size_of(uvs); ++v) trial[v] = uvs[v] + step * direction[v];
     const double trial_energy = mean_energy(trial);
-    if (!(trial_energy < before)) continue;
+    if (!(trial_energy < before)) return false;
     Neighbours neighbours;
     if (contact_) {
       neighbours = contact_->neighbours(trial);
       touching = contact_->find(trial, neighbours);
     }
     const double after = trial_energy + pressure(trial, touching);
-    if (after < before && after <= before - newton::kArmijo * length * result.predicted &&
-        (!contact_ || contact_->is_simple(trial))) {
-      result.length = length;
-      result.energy = trial_energy;
-      result.gain = last_gain_ = before - after;
-      const bool apart = before == energy && touching.empty();
-      if (length == 1 && apart && result.gain > newton::kUnderrated * result.predicted) {
-        go_further(uvs, direction, longest, result, trial, neighbours);
-      }
-      uvs.swap(trial);
-      neighbours_ = std::move(neighbours);
-      break;
+    if (!falls_enough(before, after, step, -result.predicted)) return false;
+    if (contact_ && !contact_->is_simple(trial)) return false;
+    result.length = step;
+    result.energy = trial_energy;
+    result.gain = last_gain_ = before - after;
+    const bool apart = before == energy && touching.empty();
+    if (step == 1 && apart && result.gain > newton::kUnderrated * result.predicted) {
+      go_further(uvs, direction, longest, result, trial, neighbours);
     }
-  }
+    uvs.swap(trial);
+    neighbours_ = std::move(neighbours);
+    return true;
+  });
   return result;
 }
 

@@ -21,17 +21,14 @@ namespace {
 using Field = std::vector<Vec2>;  // one entry per vertex
 
 constexpr std::int64_t kGrain = 2048;
-constexpr double kSingularShare = 0.8;  // of the way to the first singular face
-constexpr int kPatience = 3;            // steps with contact that gain next to nothing
-constexpr int kHoldRounds = 16;         // after which a few faces hold back the whole map
+constexpr int kPatience = 3;     // steps with contact that gain next to nothing
+constexpr int kHoldRounds = 16;  // after which a few faces hold back the whole map
 /// More than that do, too, where a round leaves so many times those before it: they push each
 /// other, and more rounds do not end that.
 constexpr std::size_t kManyHeld = 100;
 constexpr double kAsMany = 0.9;
 constexpr double kMostContinued = 0.9;  // of the step of the call before
-constexpr double kArmijo = 1e-4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMaxHalvings = 30;
 
 /// Calls body(i) for every entry, and adds up what it returns in fixed chunks.
 template <class Body>
@@ -345,19 +342,20 @@ double search_line(Objective<Density>& objective, const Field& uvs, double befor
                    const PolishOptions& options, Fields& fields, Field* gradient, double& length,
                    const Work& work) {
   if (!gradient && options.history == 0) parallel_free(work, fields.gradient);
-  for (int halving = 0; slope < 0 && halving < kMaxHalvings; ++halving, length *= 0.5) {
+  double after = kInfinity;
+  const auto takes_step = [&](double step) {
     fields.trial.resize(uvs.size());
     parallel_for(work, size_of(uvs), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
-        fields.trial[i] = uvs[i] + length * fields.direction[i];
+        fields.trial[i] = uvs[i] + step * fields.direction[i];
       }
     });
-    const double after =
+    after =
         gradient ? objective.evaluate(fields.trial, *gradient) : objective.measure(fields.trial);
-    const bool low = after < before && after <= before + kArmijo * length * slope;
-    if (low && (!options.contact || options.contact->is_simple(fields.trial))) return after;
-  }
-  return kInfinity;
+    return falls_enough(before, after, step, slope) &&
+           (!options.contact || options.contact->is_simple(fields.trial));
+  };
+  return slope < 0 && backtrack(length, takes_step) ? after : kInfinity;
 }
 
 /// Whether the gains tell of an end: the last step was a full one with little gain, or the last

@@ -6,15 +6,14 @@
 #include <limits>
 
 #include "base/interrupt.h"
+#include "descend/line_search.h"
 #include "energy/density.h"
+#include "mesh/hub.h"
 
 namespace beltrami {
 namespace {
 
-constexpr std::size_t kMostFacesAtVertex = 1000;
-constexpr double kSingularShare = 0.8;  // of the way to the first singular face
-constexpr double kArmijo = 1e-4;
-constexpr int kMostHalvings = 8;
+constexpr int kMostTrials = 9;    // of a step of one vertex: there will be another sweep
 constexpr double kLittle = 1e-7;  // of the energy of its faces: less is not worth a move
 constexpr double kFlat = 1e-6;    // eigenvalues of the Hessian, of the other one
 
@@ -80,13 +79,12 @@ class VertexSweep {
 
   /// Moves a vertex that is inside and no hub.
   void move(Index v) {
-    if (mesh_.on_boundary[v]) return;
+    if (mesh_.on_boundary[v] || is_hub(mesh_, v, kLargeHubFaces)) return;
     corners_.clear();
     const Index first = mesh_.outgoing[v];
     Index h = first;
     do {
       corners_.push_back(h);
-      if (corners_.size() > kMostFacesAtVertex) return;
       h = mesh_.rotate(h);
     } while (h != first);
     move_inside(v);
@@ -113,12 +111,11 @@ class VertexSweep {
     }
     const Vec2 before = uvs_[v];
     double length = std::min(1.0, kSingularShare * singular);
-    for (int halving = 0; halving <= kMostHalvings; ++halving, length *= 0.5) {
-      uvs_[v] = before + length * Vec2(step.real(), step.imag());
-      const double energy = energy_here();
-      if (energy < model.energy && energy <= model.energy + kArmijo * length * slope) return;
-    }
-    uvs_[v] = before;
+    const auto takes_step = [&](double share) {
+      uvs_[v] = before + share * Vec2(step.real(), step.imag());
+      return falls_enough(model.energy, energy_here(), share, slope);
+    };
+    if (!backtrack(length, takes_step, kMostTrials)) uvs_[v] = before;
   }
 
   /// Of the places as they are rounded, as all others see them.

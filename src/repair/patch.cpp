@@ -7,7 +7,7 @@
 
 #include "base/interrupt.h"
 #include "base/sort_unique.h"
-#include "repair/hub_turns.h"
+#include "mesh/hub.h"
 
 namespace beltrami {
 namespace {
@@ -41,9 +41,6 @@ void merge_into(std::vector<Index>& known, const std::vector<Index>& items) {
   std::inplace_merge(known.begin(), known.begin() + middle, known.end());
 }
 
-/// A hub with more faces is left where it is: a patch with all of them is not small.
-constexpr Index kMostFacesAtVertex = 1000;
-
 /// What lies around a face, each list increasing.
 struct Surroundings {
   std::vector<Index> faces;
@@ -66,7 +63,7 @@ Surroundings look_around(const DiskMesh& mesh, Index face, int rings) {
     std::vector<Index> inner;
     front = without(gather(corners,
                            [&](Index v, const auto& take) {
-                             if (is_hub(mesh, v, kMostFacesAtVertex)) return;
+                             if (is_hub(mesh, v, kLargeHubFaces)) return;
                              inner.push_back(v);
                              mesh.for_each_outgoing(v, [&](Index h) { take(h / 3); });
                            }),
@@ -79,7 +76,7 @@ Surroundings look_around(const DiskMesh& mesh, Index face, int rings) {
 
 /// Whether all faces at the vertex are among these, which increase; not of a hub, which is fixed.
 bool is_inside(const DiskMesh& mesh, Index vertex, const std::vector<Index>& faces) {
-  if (is_hub(mesh, vertex, kMostFacesAtVertex)) return false;
+  if (is_hub(mesh, vertex, kLargeHubFaces)) return false;
   Index h = mesh.outgoing[vertex];
   do {
     if (!std::binary_search(faces.begin(), faces.end(), h / 3)) return false;

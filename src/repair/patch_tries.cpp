@@ -24,7 +24,7 @@ void cut_some(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     if (near) continue;
     for (const Index v : corners) {
       around.insert(v);
-      if (is_hub(mesh, v, kManyFaces)) continue;
+      if (is_hub(mesh, v, kHubFaces)) continue;
       mesh.for_each_outgoing(v, [&](Index h) { around.insert(mesh.target(h)); });
     }
     if (!waiting[i].is_cut()) chosen.push_back(i);

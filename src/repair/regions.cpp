@@ -14,8 +14,8 @@
 #include "base/sort_unique.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "mesh/hub.h"
 #include "mesh/surface.h"
-#include "repair/hub_turns.h"
 #include "repair/patch_work.h"
 #include "repair/untangle.h"
 
@@ -27,7 +27,6 @@ constexpr double kTolerance = 1e-3;  // relative decrease of a step: neighbours 
 /// Of the vertices, beyond which regions are not widened: their systems are to stay small beside
 /// what the mesh takes.
 constexpr Index kMostOf = 7;
-constexpr Index kMostFacesAtVertex = 1000;
 constexpr std::int64_t kGrain = 256;
 
 /// Vertices that move in a region to be relaxed: that many, or a share of all, but no more than a
@@ -60,7 +59,7 @@ class Membership {
   bool take(Index vertex) {
     poll_();
     if (of_[vertex] != kOutside) return false;
-    const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
+    const bool hub = is_hub(mesh_, vertex, kLargeHubFaces);
     of_[vertex] = hub ? kHeld : kWaiting;
     return !hub;
   }
@@ -83,7 +82,7 @@ class Membership {
       // Others, which had claimed it before, may look at it.
       const std::atomic_ref of(of_[vertex]);
       if (of.load(std::memory_order_relaxed) != kFirstClaim - chunk) return true;
-      const bool hub = is_hub(mesh_, vertex, kMostFacesAtVertex);
+      const bool hub = is_hub(mesh_, vertex, kLargeHubFaces);
       of.store(hub ? kHeld : kWaiting, std::memory_order_relaxed);
       return hub;
     });

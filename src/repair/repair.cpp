@@ -158,7 +158,7 @@ class Repair {
     mesh_.for_each_outgoing(vertex, [&](Index h) {
       poll_interrupt();
       // Another hub has its own turn.
-      if (is_hub(mesh_, mesh_.target(h), kManyFaces)) return;
+      if (is_hub(mesh_, mesh_.target(h), kHubFaces)) return;
       if (move_to_kernel(mesh_.target(h))) ++result_.kernel_fixes;
     });
   }

@@ -215,26 +215,25 @@ NewtonStep Descent::step(bool proxy) {
     point_direction[1 + e] = edge_direction.row(e).transpose();
   }
   std::copy(direction.begin(), direction.end(), point_direction.begin() + first_meta());
-  double length =
-      std::min(1.0, newton::kSingularShare *
-                        first_singular_step(loose.faces, loose.points, point_direction, work_));
+  double length = std::min(
+      1.0, kSingularShare * first_singular_step(loose.faces, loose.points, point_direction, work_));
   std::vector<Vec2> trial(loose.points.size()), places(metas_);
-  for (int halving = 0; halving < newton::kMaxHalvings; ++halving, length *= 0.5) {
+  backtrack(length, [&](double step) {
     for (std::size_t p = 0; p < trial.size(); ++p) {
-      trial[p] = loose.points[p] + length * point_direction[p];
+      trial[p] = loose.points[p] + step * point_direction[p];
     }
-    if (!(energy(loose, trial) <= before - newton::kArmijo * length * result.predicted)) continue;
+    if (!falls_enough(before, energy(loose, trial), step, -result.predicted)) return false;
     for (Index m = 0; m < metas_; ++m) places[m] = trial[first_meta() + m];
-    if (scaffold_ && !is_simple(loop_, places)) continue;
+    if (scaffold_ && !is_simple(loop_, places)) return false;
     x_ = places;
-    edges_ += length * edge_direction;
+    edges_ += step * edge_direction;
     result.gain = sample_energy_;
     activate();
     result.gain -= sample_energy_;
     result.energy = sample_energy_;
-    result.length = length;
-    break;
-  }
+    result.length = step;
+    return true;
+  });
   return result;
 }
 
