@@ -7,6 +7,7 @@ mod bake;
 mod check;
 mod context;
 mod control;
+mod editor;
 mod error;
 mod flattener;
 mod host_loop;
@@ -36,6 +37,7 @@ pub use check::{
     check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,
 };
 pub use control::{CancelToken, Control, Progress};
+pub use editor::{Budget, Changes, Editor, EditorChart, EditorSummary, Mark};
 pub use error::{Element, Error, ErrorKind};
 pub use flattener::Flattener;
 pub use library::{build_info, has, version};
