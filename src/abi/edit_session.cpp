@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -21,6 +23,8 @@
 
 namespace beltrami {
 namespace {
+
+constexpr std::size_t kBits = 64;  // of a word of EditSession::moved_
 
 void require_no_others(const beltrami_surface& header) {
   const std::pair<const char*, const beltrami_buffer*> others[] = {
@@ -106,15 +110,24 @@ void EditSession::find_sources() {
   std::vector<Index> next = start_;
   followers_.resize(source_.size());
   for (Index c = 0; c < size_of(source_); ++c) followers_[next[source_[c]]++] = c;
+  changes_.reserve(source_.size());
+  moved_.resize(source_.size() / kBits + 1);
 }
 
-void EditSession::find_changes() {
+void EditSession::find_changes() noexcept {
   changes_.clear();
+  std::fill(moved_.begin(), moved_.end(), 0);
   for (const Index corner : session_.changes()) {
-    changes_.insert(changes_.end(), followers_.begin() + start_[corner],
-                    followers_.begin() + start_[corner + 1]);
+    for (Index i = start_[corner]; i < start_[corner + 1]; ++i) {
+      const auto follower = static_cast<std::size_t>(followers_[i]);
+      moved_[follower / kBits] |= std::uint64_t{1} << follower % kBits;
+    }
   }
-  std::sort(changes_.begin(), changes_.end());
+  for (std::size_t w = 0; w < moved_.size(); ++w) {
+    for (std::uint64_t word = moved_[w]; word != 0; word &= word - 1) {
+      changes_.push_back(static_cast<Index>(kBits * w) + std::countr_zero(word));
+    }
+  }
 }
 
 void EditSession::set_seams(const beltrami_buffer* edges, std::uint64_t count, bool open) {

@@ -57,7 +57,8 @@ class EditSession {
 
  private:
   void find_sources();
-  void find_changes();
+  /// There is room for all: the session has changed already, so this must not fail.
+  void find_changes() noexcept;
 
   beltrami_surface header_;  ///< its counts alone
   Options options_;
@@ -68,6 +69,7 @@ class EditSession {
   std::vector<Index> start_,
       followers_;  ///< per corner of the ground those that it is the source of
   std::vector<Index> changes_;
+  std::vector<std::uint64_t> moved_;  ///< a bit per corner of the caller
 };
 
 }  // namespace beltrami

@@ -75,7 +75,7 @@ beltrami_session_chart describe_chart(const EditSession& session, std::uint64_t 
   report.id = static_cast<std::uint64_t>(chart.id);
   report.triangles = static_cast<std::uint64_t>(chart.faces());
   report.first_face = static_cast<std::uint64_t>(
-      session.face_of(ground.admitted.input_face[chart.part->chart.input_face[0]]));
+      session.face_of(chart.first));
   report.symmetric_dirichlet = chart.energy;
   report.scale = std::ldexp(chart.scale, ground.exponent);
   return report;

@@ -31,6 +31,7 @@ struct MetPin {
 
 struct SessionChart {
   Index id = 0;
+  Index first = 0;                               ///< the least of its faces, of the input
   std::shared_ptr<const AtlasChart> part;        ///< of the ground, in its unit
   std::shared_ptr<const std::vector<Vec2>> uvs;  ///< one per vertex, as delivered
   bool placed = false;                           ///< `uvs` say where it lies
@@ -53,7 +54,7 @@ struct SessionState {
   std::vector<Pin> pins;
   std::vector<bool> locked;          ///< per face of the ground
   std::vector<bool> selected;        ///< likewise; none: all are
-  std::vector<SessionChart> charts;  ///< by their least face of the ground
+  std::vector<SessionChart> charts;  ///< by their least face of the input
   std::vector<Index> chart_of_face;  ///< per face of the ground
   Index next_id = 0;
 

@@ -25,11 +25,10 @@ namespace {
 constexpr double kCut = 0.1;  // where cutting ends in the progress
 
 /// The failure of a chart, which is named by its first face.
-Error named(const Error& error, const Ground& ground, const SessionChart& chart) {
+Error named(const Error& error, const SessionChart& chart) {
   if (error.element().kind != ElementKind::kNothing) return error;
-  const Index face = ground.admitted.input_face[chart.part->chart.input_face[0]];
-  return {error.fault(), "the chart of face " + std::to_string(face) + ": " + error.what(),
-          Element::face(static_cast<std::uint64_t>(face))};
+  return {error.fault(), "the chart of face " + std::to_string(chart.first) + ": " + error.what(),
+          Element::face(static_cast<std::uint64_t>(chart.first))};
 }
 
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
@@ -99,6 +98,7 @@ void Updater::cut() {
     chart.due = carried.warm ? Due::kWarm : Due::kCold;
     chart.pins = std::move(carried.pins);
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(carried.uvs));
+    chart.first = first_input_face(part, ground.admitted);
     chart.part = std::make_shared<const AtlasChart>(std::move(part));
     fresh.push_back(std::move(chart));
   }
@@ -137,7 +137,7 @@ void Updater::replace(const std::vector<bool>& affected, std::vector<SessionChar
     if (!affected[c]) charts.push_back(std::move(next_.charts[c]));
   }
   std::sort(charts.begin(), charts.end(), [](const SessionChart& a, const SessionChart& b) {
-    return a.part->chart.input_face[0] < b.part->chart.input_face[0];
+    return a.first < b.first;
   });
   for (Index c = 0; c < size_of(charts); ++c) {
     for (Index f = 0; f < charts[c].faces(); ++f) {
@@ -228,7 +228,7 @@ void Updater::map(Job& job, const Work& work) const {
     }
     job.draft = std::move(made.draft);
   } catch (const Error& error) {
-    job.error = named(error, session_.ground_, chart);
+    job.error = named(error, chart);
   }
 }
 

@@ -32,9 +32,13 @@ Session session_of(const TriangleList& mesh, Edges seams = {}) {
                  {}, {}, false, Work());
 }
 
+/// Per corner of the input.
 std::vector<Vec2> uvs_of(const Session& session) {
-  std::vector<Vec2> uvs;
-  for (Index c = 0; c < 3 * session.ground().face_count(); ++c) uvs.push_back(session.uv(c));
+  const Ground& ground = session.ground();
+  std::vector<Vec2> uvs(3 * ground.input_faces.size(), Vec2::Zero());
+  for (Index f = 0; f < ground.face_count(); ++f) {
+    for (int k = 0; k < 3; ++k) uvs[ground.input_corner(f, k)] = session.uv(3 * f + k);
+  }
   return uvs;
 }
 
