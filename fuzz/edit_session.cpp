@@ -49,7 +49,10 @@ struct Mesh {
 
   explicit Mesh(Provider& data) {
     const auto side = data.ConsumeIntegralInRange<std::uint32_t>(0, 3);
-    if (side > 0) return grid(data, side);
+    if (side > 0) {
+      grid(data, side);
+      return;
+    }
     const auto vertices = data.ConsumeIntegralInRange<std::uint32_t>(3, kMostVertices);
     const auto faces = data.ConsumeIntegralInRange<std::uint32_t>(1, kMostFaces);
     for (std::uint32_t i = 0; i < 3 * vertices; ++i) {
