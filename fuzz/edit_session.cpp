@@ -217,9 +217,7 @@ class Host {
     noted(function(context_, &buffer, ids.size(), data_.ConsumeBool() ? 1 : 0));
   }
 
-  int polls() {
-    return data_.ConsumeBool() ? kMostPolls : data_.ConsumeIntegralInRange(0, 60);
-  }
+  int polls() { return data_.ConsumeBool() ? kMostPolls : data_.ConsumeIntegralInRange(0, 60); }
 
   /// What a call that may move charts has led to.
   void moved(beltrami_status status) {
@@ -319,8 +317,7 @@ class Host {
     surface.corner_uvs = {places.data(), 0, BELTRAMI_F64, 0};
     auto certificate = sized<beltrami_atlas_certificate>();
     // A face may be turned over in the surface, and all of its chart with it.
-    const beltrami_status status =
-        beltrami_check_atlas(&surface, 1, &certificate, nullptr, 0);
+    const beltrami_status status = beltrami_check_atlas(&surface, 1, &certificate, nullptr, 0);
     return status == BELTRAMI_OK && certificate.overlaps == 0;
   }
 

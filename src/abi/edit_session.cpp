@@ -151,6 +151,27 @@ void EditSession::set_pins(const beltrami_buffer* corners, const beltrami_buffer
   session_.set_pins(read_pins(with_pins, surface_, atlas_options(options_), Work(1)));
 }
 
+void EditSession::set_pin_kinds(const beltrami_buffer* kinds, const beltrami_buffer* directions,
+                                std::uint64_t count) {
+  std::vector<Pin> pins = session_.state().pins;
+  const auto set = pins.empty() ? 0 : static_cast<std::uint64_t>(pins.back().number) + 1;
+  if (count != set) {
+    throw Error(Fault::kInvalidArgument, "there are " + std::to_string(count) + " kinds, and " +
+                                             std::to_string(set) +
+                                             " pins are set: give one kind for each");
+  }
+  if (count == 0) return;
+  if (kinds == nullptr) throw Error(Fault::kInvalidArgument, "the kinds of pins are NULL");
+  const std::vector<std::uint64_t> numbers =
+      read_integers(*kinds, count, 1, "kinds of pins", Work(1));
+  std::vector<double> along;
+  if (directions != nullptr) along = read_numbers(*directions, count, 2, "directions", Work(1));
+  for (Pin& pin : pins) {
+    hold_by(numbers[pin.number], along.empty() ? nullptr : &along[2 * pin.number], pin);
+  }
+  session_.set_pins(std::move(pins));
+}
+
 void EditSession::select(const beltrami_buffer* faces, std::uint64_t count) {
   const std::vector<Index> chosen = read_indices(faces, count, 1, header_.face_count, "faces");
   std::vector<Index> triangles;

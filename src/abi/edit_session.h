@@ -29,6 +29,8 @@ class EditSession {
   /// INDEX_OUT_OF_RANGE for the caller's arrays.
   void set_seams(const beltrami_buffer* edges, std::uint64_t count, bool open);
   void set_pins(const beltrami_buffer* corners, const beltrami_buffer* uvs, std::uint64_t count);
+  void set_pin_kinds(const beltrami_buffer* kinds, const beltrami_buffer* directions,
+                     std::uint64_t count);
   void select(const beltrami_buffer* faces, std::uint64_t count);
   void lock(const beltrami_buffer* charts, std::uint64_t count, bool locked);
   void renew(const beltrami_buffer* charts, std::uint64_t count, bool cold);

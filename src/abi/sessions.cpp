@@ -74,8 +74,7 @@ beltrami_session_chart describe_chart(const EditSession& session, std::uint64_t 
   }
   report.id = static_cast<std::uint64_t>(chart.id);
   report.triangles = static_cast<std::uint64_t>(chart.faces());
-  report.first_face = static_cast<std::uint64_t>(
-      session.face_of(chart.first));
+  report.first_face = static_cast<std::uint64_t>(session.face_of(chart.first));
   report.symmetric_dirichlet = chart.energy;
   report.scale = std::ldexp(chart.scale, ground.exponent);
   return report;
@@ -118,6 +117,13 @@ beltrami_status beltrami_session_set_seams(beltrami_context* context, const belt
 beltrami_status beltrami_session_set_pins(beltrami_context* context, const beltrami_buffer* corners,
                                           const beltrami_buffer* uvs, uint64_t count) {
   return with_session(context, [&](EditSession& own) { own.set_pins(corners, uvs, count); });
+}
+
+beltrami_status beltrami_session_set_pin_kinds(beltrami_context* context,
+                                               const beltrami_buffer* kinds,
+                                               const beltrami_buffer* directions, uint64_t count) {
+  return with_session(context,
+                      [&](EditSession& own) { own.set_pin_kinds(kinds, directions, count); });
 }
 
 beltrami_status beltrami_session_select(beltrami_context* context, const beltrami_buffer* faces,

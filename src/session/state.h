@@ -9,6 +9,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
+#include "chart/hold.h"
 #include "cut/edge_marks.h"
 #include "mesh/disk_mesh.h"
 
@@ -25,7 +26,13 @@ enum class Due {
 struct MetPin {
   Index corner;  ///< of the input, 3 * face + corner
   Vec2 place;
+  PinKind kind = PinKind::kPoint;
+  Vec2 along = Vec2::Zero();  ///< of kLine: its direction
 
+  /// Whether it holds the same of the same vertex, wherever that is to be.
+  bool is_like(const MetPin& other) const {
+    return corner == other.corner && kind == other.kind && along == other.along;
+  }
   bool operator==(const MetPin& other) const = default;
 };
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
+#include "chart/hold.h"
 #include "cut/edge_marks.h"
 #include "mesh/surface.h"
 #include "session/carry.h"
@@ -29,6 +31,20 @@ Error named(const Error& error, const SessionChart& chart) {
   if (error.element().kind != ElementKind::kNothing) return error;
   return {error.fault(), "the chart of face " + std::to_string(chart.first) + ": " + error.what(),
           Element::face(static_cast<std::uint64_t>(chart.first))};
+}
+
+/// Relative to the coordinates: a line goes through few numbers.
+constexpr double kOnLine = 1e-12;
+
+MetPin met_pin(const Pin& pin, Index corner) {
+  return {corner, pin.uv, pin.kind, pin.along};
+}
+
+/// Whether a vertex lies where its pin wants it.
+bool is_met(const ChartPin& pin, const Vec2& w) {
+  const Vec2 normal = HeldVertex{pin.vertex, pin.place, pin.kind, pin.along}.normal();
+  if (normal.isZero(0)) return w == pin.place;
+  return std::abs(normal.dot(pin.place - w)) <= kOnLine * (w.norm() + pin.place.norm());
 }
 
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
@@ -136,9 +152,8 @@ void Updater::replace(const std::vector<bool>& affected, std::vector<SessionChar
   for (std::size_t c = 0; c < affected.size(); ++c) {
     if (!affected[c]) charts.push_back(std::move(next_.charts[c]));
   }
-  std::sort(charts.begin(), charts.end(), [](const SessionChart& a, const SessionChart& b) {
-    return a.first < b.first;
-  });
+  std::sort(charts.begin(), charts.end(),
+            [](const SessionChart& a, const SessionChart& b) { return a.first < b.first; });
   for (Index c = 0; c < size_of(charts); ++c) {
     for (Index f = 0; f < charts[c].faces(); ++f) {
       next_.chart_of_face[charts[c].part->chart.input_face[f]] = c;
@@ -160,8 +175,8 @@ std::vector<Updater::Pins> Updater::pins_of_charts() const {
     const Index vertex = chart.mesh().faces[chart.local_face(corner / 3)][corner % 3];
     const auto [at, is_first] = first_at.try_emplace({c, vertex}, i);
     if (is_first) {
-      pins[c].push_back({vertex, pin.uv, i});
-    } else if (next_.pins[at->second].uv != pin.uv) {
+      pins[c].push_back({vertex, pin.uv, i, pin.kind, pin.along});
+    } else if (met_pin(next_.pins[at->second], 0) != met_pin(pin, 0)) {
       throw unmet(pin, "lies apart from " + name_of(next_.pins[at->second]) +
                            ", and both are of one UV vertex: give one place, or cut between them");
     }
@@ -173,7 +188,7 @@ std::vector<MetPin> Updater::met_pins(const Pins& pins) const {
   std::vector<MetPin> met;
   for (const ChartPin& pin : pins) {
     const Pin& own = next_.pins[pin.pin];
-    met.push_back({3 * own.face + own.corner, own.uv});
+    met.push_back(met_pin(own, 3 * own.face + own.corner));
   }
   return met;
 }
@@ -194,7 +209,7 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
     if (chart.due == Due::kNothing) continue;
     Job job{c, std::move(pins[c]), held_vertices(next_, *chart.part), {}, {}};
     for (const ChartPin& pin : job.pins) {
-      if (!job.held[pin.vertex] || (*chart.uvs)[pin.vertex] == pin.place) continue;
+      if (!job.held[pin.vertex] || is_met(pin, (*chart.uvs)[pin.vertex])) continue;
       throw unmet(next_.pins[pin.pin],
                   "is of a vertex that may not move: unlock its chart, or select its faces");
     }
@@ -206,9 +221,8 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
 void Updater::map(Job& job, const Work& work) const {
   const SessionChart& chart = next_.charts[job.chart];
   std::vector<MetPin> met = met_pins(job.pins);
-  const bool same_pins =
-      std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
-                 [](const MetPin& a, const MetPin& b) { return a.corner == b.corner; });
+  const bool same_pins = std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
+                                    [](const MetPin& a, const MetPin& b) { return a.is_like(b); });
   const RemapTask task{.part = *chart.part,
                        .start = *chart.uvs,
                        .placed = chart.placed,

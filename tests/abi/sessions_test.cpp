@@ -282,8 +282,7 @@ TEST(Sessions, RefuseWhatThereIsNot) {
   const beltrami_buffer nowhere = {places, 0, BELTRAMI_F64, 0};
   const Numbers corner = {4};
   const beltrami_buffer corners = numbers_of(corner);
-  EXPECT_EQ(beltrami_session_set_pins(context.get(), &corners, &nowhere, 1),
-            BELTRAMI_E_NON_FINITE);
+  EXPECT_EQ(beltrami_session_set_pins(context.get(), &corners, &nowhere, 1), BELTRAMI_E_NON_FINITE);
   EXPECT_EQ(beltrami_error_element_kind(context.get()), BELTRAMI_ELEMENT_CORNER);
   EXPECT_EQ(beltrami_error_element(context.get()), 4u);
 }
@@ -401,8 +400,7 @@ TEST(Sessions, CancelledAnywhereTheyAreAsBefore) {
     ASSERT_EQ(set_seams(context, {6, 19, 19, 32, 32, 45}, true), BELTRAMI_OK);
     ASSERT_EQ(renew(context, true), BELTRAMI_OK);
     Countdown countdown{after};
-    const beltrami_status status =
-        beltrami_session_update(context.get(), 0, 0, end_at, &countdown);
+    const beltrami_status status = beltrami_session_update(context.get(), 0, 0, end_at, &countdown);
     if (status == BELTRAMI_OK) break;
     ASSERT_EQ(status, BELTRAMI_E_CANCELLED);
     EXPECT_TRUE(same_bits(session_uvs(context), before)) << after;

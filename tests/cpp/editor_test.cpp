@@ -38,8 +38,8 @@ TEST(CppEditor, OpensAndClosesSeamsAndGoesBack) {
   EXPECT_EQ(editor.update(), Status::kOk);
   const std::vector<Uv> before = editor.corner_uvs();
   const std::uint64_t mark = editor.save();
-  const Edges across = {{4, 13}, {13, 22}, {22, 31}, {31, 40}, {40, 49}, {49, 58}, {58, 67},
-                        {67, 76}};
+  const Edges across = {{4, 13},  {13, 22}, {22, 31}, {31, 40},
+                        {40, 49}, {49, 58}, {58, 67}, {67, 76}};
   editor.open_seams(across);
   EXPECT_EQ(editor.update(), Status::kOk);
   EXPECT_EQ(editor.charts().size(), 2u);
@@ -74,6 +74,26 @@ TEST(CppEditor, ChangesAreWhatMoved) {
   EXPECT_EQ(uvs[0], place[0]);
   editor.update();
   EXPECT_TRUE(editor.changes<Uv32>().corners.empty());
+}
+
+TEST(CppEditor, PinsSlide) {
+  const Triangles mesh = hump(6);
+  Context context;
+  Editor editor(context, view(mesh));
+  editor.update();
+  const Numbers corner = {0}, kinds = {BELTRAMI_PIN_V}, line = {BELTRAMI_PIN_LINE};
+  const std::vector<Uv> place = {{7, 3}}, along = {{1, 1}};
+  editor.set_pins(corner, place);
+  editor.set_pin_kinds(kinds);
+  editor.update();
+  EXPECT_EQ(editor.corner_uvs()[0][1], 3);
+  EXPECT_LT(editor.corner_uvs()[0][0], 6);  // it goes no way that nothing asks for
+  EXPECT_EQ(editor.try_set_pin_kinds(line).status(), Status::kInvalidArgument);
+  editor.set_pins(corner, place);
+  editor.set_pin_kinds(line, along);
+  editor.update();
+  EXPECT_NEAR(editor.corner_uvs()[0][0] - editor.corner_uvs()[0][1], 4, 1e-9);
+  EXPECT_NE(editor.check().injective, 0);
 }
 
 TEST(CppEditor, StepsAndSelectionsGoOn) {

@@ -275,12 +275,9 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomEdits, ::testing::Range(0, kMeshes));
 
 TEST(SessionEdits, MapsThatNothingAsksToMoveDoNotDrift) {
   const TriangleList mesh = meshes::bumps(12, 12);
-  Session session({.positions = mesh.positions,
-                   .faces = mesh.faces,
-                   .seams = {},
-                   .corner_uvs = {},
-                   .pins = {}},
-                  {}, {}, false, Work());
+  Session session(
+      {.positions = mesh.positions, .faces = mesh.faces, .seams = {}, .corner_uvs = {}, .pins = {}},
+      {}, {}, false, Work());
   session.update(0, Work());
   const SessionChart before = session.state().charts[0];
   for (int update = 0; update < 200; ++update) {

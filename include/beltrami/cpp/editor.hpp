@@ -45,8 +45,8 @@ class Editor {
     const std::shared_ptr<detail::Handle> handle = context.handle_;
     if (!handle) return Context::moved_from();
     if (surface.defect()) return Failure(Status::kInvalidArgument, surface.defect());
-    const beltrami_status status = beltrami_session_begin(handle->context, &surface.c(),
-                                                          progress.function(), progress.user());
+    const beltrami_status status =
+        beltrami_session_begin(handle->context, &surface.c(), progress.function(), progress.user());
     progress.rethrow();
     if (status < 0) return handle->failure(status);
     ++handle->numbers[detail::kSession];
@@ -86,6 +86,17 @@ class Editor {
     }
     return source_.call(&beltrami_session_set_pins, &corners.buffer(), &uvs.buffer(),
                         count(corners));
+  }
+  /// What is held of each of them, BELTRAMI_PIN_, and of lines their directions, or Reals<2>(): all
+  /// are points at first.
+  Result<void> try_set_pin_kinds(const Indices<1>& kinds, const Reals<2>& directions = {}) {
+    if (Result<void> is = sound(kinds); !is) return is;
+    if (Result<void> is = sound(directions); !is) return is;
+    if (directions.size() != 0 && directions.size() != kinds.size()) {
+      return Failure(Status::kInvalidArgument, "there is not one direction per pin");
+    }
+    const beltrami_buffer* along = directions.size() == 0 ? nullptr : &directions.buffer();
+    return source_.call(&beltrami_session_set_pin_kinds, &kinds.buffer(), along, count(kinds));
   }
   /// The faces that may move alone, which makes their charts due; Indices<1>(): all may.
   Result<void> try_select(const Indices<1>& faces) {
@@ -206,27 +217,54 @@ class Editor {
   Editor(Context& context, const Surface& surface, Progress progress = {})
       : Editor(begin(context, surface, std::move(progress)).value()) {}
 
-  void open_seams(const Indices<2>& edges) { try_open_seams(edges).value(); }
-  void close_seams(const Indices<2>& edges) { try_close_seams(edges).value(); }
+  void open_seams(const Indices<2>& edges) {
+    try_open_seams(edges).value();
+  }
+  void close_seams(const Indices<2>& edges) {
+    try_close_seams(edges).value();
+  }
   void set_pins(const Indices<1>& corners, const Reals<2>& uvs) {
     try_set_pins(corners, uvs).value();
   }
-  void select(const Indices<1>& faces) { try_select(faces).value(); }
-  void lock(const Indices<1>& charts, bool locked = true) { try_lock(charts, locked).value(); }
-  void renew(const Indices<1>& charts, bool cold = false) { try_renew(charts, cold).value(); }
+  void set_pin_kinds(const Indices<1>& kinds, const Reals<2>& directions = {}) {
+    try_set_pin_kinds(kinds, directions).value();
+  }
+  void select(const Indices<1>& faces) {
+    try_select(faces).value();
+  }
+  void lock(const Indices<1>& charts, bool locked = true) {
+    try_lock(charts, locked).value();
+  }
+  void renew(const Indices<1>& charts, bool cold = false) {
+    try_renew(charts, cold).value();
+  }
   Status update(double seconds = 0, std::int32_t steps = 0, Progress progress = {}) {
     return try_update(seconds, steps, std::move(progress)).value();
   }
-  Status pack(Progress progress = {}) { return try_pack(std::move(progress)).value(); }
+  Status pack(Progress progress = {}) {
+    return try_pack(std::move(progress)).value();
+  }
   Status pack_charts(const Indices<1>& charts, Progress progress = {}) {
     return try_pack_charts(charts, std::move(progress)).value();
   }
-  AtlasCertificate check() const { return try_check().value(); }
-  std::uint64_t save() { return try_save().value(); }
-  void restore(std::uint64_t mark) { try_restore(mark).value(); }
-  void forget(std::uint64_t mark) { try_forget(mark).value(); }
-  EditorInfo info() const { return try_info().value(); }
-  std::vector<EditorChart> charts() const { return try_charts().value(); }
+  AtlasCertificate check() const {
+    return try_check().value();
+  }
+  std::uint64_t save() {
+    return try_save().value();
+  }
+  void restore(std::uint64_t mark) {
+    try_restore(mark).value();
+  }
+  void forget(std::uint64_t mark) {
+    try_forget(mark).value();
+  }
+  EditorInfo info() const {
+    return try_info().value();
+  }
+  std::vector<EditorChart> charts() const {
+    return try_charts().value();
+  }
   template <class Item = Uv>
   std::vector<Item> corner_uvs() const {
     return try_corner_uvs<Item>().value();

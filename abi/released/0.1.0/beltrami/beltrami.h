@@ -1092,6 +1092,15 @@ BELTRAMI_API beltrami_status beltrami_session_set_pins(beltrami_context* context
                                                        const beltrami_buffer* corners,
                                                        const beltrami_buffer* uvs, uint64_t count);
 
+/* Says what is held of the pins that are set, which all are POINT at first: `count` items of 1, U32
+ * or U64, BELTRAMI_PIN_ numbers in the order of the pins, and as many of 2, F32 or F64, directions
+ * of those of kind LINE, or NULL without any. A chart slides and turns as its pins let it. Errors:
+ * INVALID_ARGUMENT (also for another count than that of the pins). */
+BELTRAMI_API beltrami_status beltrami_session_set_pin_kinds(beltrami_context* context,
+                                                            const beltrami_buffer* kinds,
+                                                            const beltrami_buffer* directions,
+                                                            uint64_t count);
+
 /* Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
  * are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
  * INDEX_OUT_OF_RANGE. */

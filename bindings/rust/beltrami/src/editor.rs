@@ -285,6 +285,30 @@ impl Editor {
         })
     }
 
+    /// What is held of each pin that is set, a [`PinKind`](crate::PinKind) as an integer, and a
+    /// direction for each, which says something of [`PinKind::Line`](crate::PinKind::Line) alone. All
+    /// are points at first.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidArgument`](ErrorKind::InvalidArgument) where there are not as many as pins, or a kind
+    /// or direction is none, with the corner.
+    pub fn set_pin_kinds<'a>(
+        &mut self,
+        kinds: impl Into<Integers<'a>>,
+        directions: impl Into<Uvs<'a>>,
+    ) -> Result<(), Error> {
+        let (kinds, directions) = (kinds.into(), directions.into());
+        if kinds.len() != directions.len() {
+            return Err(Error::argument("there is not one direction for each kind of a pin"));
+        }
+        let along = directions.0.raw();
+        self.edit(kinds.0, |context, buffer, count| {
+            // SAFETY: the context is alive, and `count` kinds and directions are borrowed.
+            unsafe { sys::beltrami_session_set_pin_kinds(context, buffer, &along, count) }
+        })
+    }
+
     /// Lets these faces move alone, by their numbers, which makes their charts due; the vertices of
     /// all others stay where they are. None lets all move.
     ///

@@ -8,7 +8,7 @@ use std::sync::mpsc;
 use std::thread;
 
 use beltrami::{
-    Budget, CancelToken, Control, Editor, ErrorKind, Status, Surface, UnwrapOptions, View,
+    Budget, CancelToken, Control, Editor, ErrorKind, PinKind, Status, Surface, UnwrapOptions, View,
 };
 use support::{sheet, single};
 
@@ -80,6 +80,20 @@ fn changes_are_what_moved_and_pins_are_met() {
 
 fn room_for(len: usize) -> Vec<[f64; 2]> {
     vec![[0.0; 2]; len]
+}
+
+#[test]
+fn pins_slide() {
+    let mut editor = editor(6);
+    let along = [[1.0_f64, 1.0]];
+    editor.set_pins(&[0_u32], &[[7.0_f64, 3.0]]).unwrap();
+    editor.set_pin_kinds(&[PinKind::Line as u32], &along).unwrap();
+    assert_eq!(editor.update().unwrap(), Status::Injective);
+    let [u, v] = editor.corner_uvs::<[f64; 2]>()[0];
+    assert!((u - v - 4.0).abs() < 1e-9);
+    let kinds = [PinKind::V as u32; 2];
+    let error = editor.set_pin_kinds(&kinds, &[[0.0_f64, 0.0]; 2]).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::InvalidArgument);
 }
 
 #[test]
