@@ -13,11 +13,13 @@
 #include "abi/core_options.h"
 #include "abi/edit_session.h"
 #include "abi/reports.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
+#include "pack/types.h"
 #include "session/ground.h"
 #include "session/state.h"
 
@@ -156,8 +158,10 @@ beltrami_status beltrami_session_pack(beltrami_context* context, const beltrami_
                                       uint64_t count, beltrami_progress progress, void* user) {
   return enter(context, [&](beltrami_context& self) {
     const std::vector<beltrami::Index> ids = EditSession::read_charts(charts, count);
+    beltrami::PackOptions options = beltrami::pack_options(self.options);
+    options.effort *= beltrami::atlas_options(self.options).effort.packing;
     return self.run_session(0, progress, user, [&](EditSession& own, const Work& work) {
-      return beltrami::status_of(own.pack(ids, beltrami::pack_options(self.options), work));
+      return beltrami::status_of(own.pack(ids, options, work));
     });
   });
 }
