@@ -56,6 +56,7 @@ pub use view::{Index, Real, Scalar, View, ViewMut};
 
 /// Guides whose snippets are documentation tests.
 #[cfg(doctest)]
+#[doc = include_str!("guides/pins.md")]
 #[doc = include_str!("guides/project.md")]
 #[doc = include_str!("guides/rust.md")]
 mod guides {}
