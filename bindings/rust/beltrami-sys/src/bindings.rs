@@ -2194,13 +2194,14 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Packs charts onto pages by the options of beltrami_pack and effort, of which QUICK takes the first
- layout that fits: those of the numbers given, as for beltrami_session_lock, among the others,
- which stay; or with a count of 0 all. Locked charts and those with pins stay as well. Charts keep
- their sizes to each other, and where some stay to these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
- injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
- errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
- INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY.*/
+    /** Packs charts onto pages by the options of beltrami_pack and effort, of which QUICK takes the
+ first layout that fits: those of the numbers given, as for beltrami_session_lock, among the
+ others, which stay; or with a count of 0 all. Locked charts and those with pins stay as well.
+ Charts keep their sizes to each other, and where some stay to these. Where there is no room
+ elsewhere charts stay where they are, if that is on the pages and injective. Page p is the unit
+ square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE; errors: NO_ROOM, INVALID_ARGUMENT
+ (also where a chart that stays lies on no page, with a face), INVALID_STATE (also before the
+ first update), CANCELLED, OUT_OF_MEMORY.*/
     pub fn beltrami_session_pack(
         context: *mut beltrami_context,
         charts: *const beltrami_buffer,
