@@ -302,27 +302,34 @@ TEST(OutOfMemory, ASessionAnswersWhereverMemoryEnds) {
   ASSERT_EQ(beltrami_session_pack(c, nullptr, 0, nullptr, nullptr), BELTRAMI_OK);
   std::uint64_t mark = 0;
   ASSERT_EQ(beltrami_session_save(c, &mark), BELTRAMI_OK);
-  // Calls that change the maps begin where the session was saved.
-  const auto from_mark = [&](const auto& call) {
-    expect_status_wherever_memory_ends(call, 60, [&] {
-      const auto left = uvs();
-      EXPECT_EQ(call(), BELTRAMI_OK);
-      const auto made = uvs();
-      EXPECT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
-      EXPECT_TRUE(same_bits(left, made) || same_bits(left, uvs()));  // all of it, or nothing
-      return made;
-    });
+  const auto saved = uvs();
+  // All of a call is done, or nothing: from where the session was saved.
+  const auto all_or_nothing = [&](const auto& call) {
+    ASSERT_EQ(call(), BELTRAMI_OK);
+    const auto made = uvs();
+    ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+    const long all = allocations_of(call), stride = std::max(1L, all / 60);
+    EXPECT_TRUE(same_bits(uvs(), made));
+    ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+    const long before = living;
+    for (long after = 0; after < all; after += stride) {
+      const beltrami_status status = call_with(Fails::kOne, after, call);
+      EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_OK) << after;
+      EXPECT_TRUE(same_bits(uvs(), status == BELTRAMI_OK ? made : saved)) << after;
+      ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+      EXPECT_EQ(living, before) << after;
+    }
   };
   const std::array<std::uint32_t, 6> ends = {2, 8, 8, 14, 14, 20};
   const beltrami_buffer edges = {ends.data(), 0, BELTRAMI_U32, 0};
-  from_mark([&] {
+  all_or_nothing([&] {
     const beltrami_status noted = beltrami_session_set_seams(c, &edges, 3, 1);
     return noted == BELTRAMI_OK ? beltrami_session_update(c, 0, 0, nullptr, nullptr) : noted;
   });
-  from_mark([&] { return beltrami_session_pack(c, nullptr, 0, nullptr, nullptr); });
-  from_mark([&] { return beltrami_session_restore(c, mark); });
+  all_or_nothing([&] { return beltrami_session_pack(c, nullptr, 0, nullptr, nullptr); });
+  all_or_nothing([&] { return beltrami_session_restore(c, mark); });
   auto certificate = sized<beltrami_atlas_certificate>();
-  from_mark([&] { return beltrami_session_check(c, &certificate); });
+  all_or_nothing([&] { return beltrami_session_check(c, &certificate); });
 }
 
 TEST(OutOfMemory, ABakingAnswersWhereverMemoryEnds) {
