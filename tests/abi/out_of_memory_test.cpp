@@ -310,6 +310,8 @@ TEST(OutOfMemory, ASessionAnswersWhereverMemoryEnds) {
     ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
     const long all = allocations_of(call), stride = std::max(1L, all / 60);
     EXPECT_TRUE(same_bits(uvs(), made));
+    // The sentence of a failure is kept as well.
+    EXPECT_EQ(call_with(Fails::kOne, 0, call), BELTRAMI_E_OUT_OF_MEMORY);
     ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
     const long before = living;
     for (long after = 0; after < all; after += stride) {
