@@ -8,6 +8,7 @@ mod check;
 mod context;
 mod control;
 mod editor;
+mod editor_report;
 mod error;
 mod flattener;
 mod host_loop;
@@ -37,7 +38,8 @@ pub use check::{
     check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,
 };
 pub use control::{CancelToken, Control, Progress};
-pub use editor::{Budget, Changes, Editor, EditorChart, EditorSummary, Mark};
+pub use editor::Editor;
+pub use editor_report::{Budget, Changes, EditorChart, EditorSummary, Mark};
 pub use error::{Element, Error, ErrorKind};
 pub use flattener::Flattener;
 pub use library::{build_info, has, version};
