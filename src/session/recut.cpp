@@ -1,6 +1,5 @@
 #include "session/recut.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <utility>

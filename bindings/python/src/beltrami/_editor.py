@@ -84,7 +84,8 @@ class Editor:
     progress : bool or callable, optional
         As for `parameterize`, of the beginning.
     **options
-        Those of `unwrap` that concern flattening, welding, holes, packing, `float32` and `threads`.
+        Those of `unwrap` that concern flattening, welding, holes, packing, `effort` of packing,
+        `float32` and `threads`.
 
     Raises
     ------
