@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "abi/host.h"
-#include "base/types.h"
+#include "base/vectors.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <random>
-#include <set>
 #include <utility>
 #include <vector>
 
+#include "atlas/pins.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
@@ -19,6 +17,8 @@
 #include "base/work.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
+#include "pack/types.h"
+#include "session/ground.h"
 #include "session/session.h"
 #include "session/state.h"
 #include "support/meshes.h"
