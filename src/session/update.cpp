@@ -25,6 +25,9 @@ namespace beltrami {
 namespace {
 
 constexpr double kCut = 0.1;  // where cutting ends in the progress
+/// Relative gain of an update of few steps that is the last: as of the last of many steps. Sides
+/// that lie on each other and are parted may never gain so little in one step that it says so.
+constexpr double kSettled = 1e-3;
 
 /// The failure of a chart, which is named by its first face.
 Error named(const Error& error, const SessionChart& chart) {
@@ -288,13 +291,20 @@ void Updater::take(Job& job, const Vec2& shift) {
   }
   Remapped made =
       finish(*chart.part, *std::move(job.draft), shift, session_.float32_, work_.aside());
+  std::vector<MetPin> met = met_pins(job.pins);
+  const bool again = chart.due == Due::kWarm && chart.energy > 0 && chart.pins == met;
+  const bool is_limited = steps_ > 0 && !work_.out_of_time();
+  if (again && is_limited && chart.energy - made.energy <= kSettled * made.energy) {
+    made.converged = true;
+    if (made.outcome == Outcome::kNotConverged) made.outcome = Outcome::kOk;
+  }
   const bool goes_on = !made.converged && (steps_ > 0 || work_.out_of_time());
   chart.due = goes_on ? Due::kWarm : Due::kNothing;
   chart.placed = true;
   chart.scale = made.scale;
   chart.outcome = made.outcome;
   chart.energy = made.energy;
-  chart.pins = met_pins(job.pins);
+  chart.pins = std::move(met);
   if (made.uvs != *chart.uvs) {
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(made.uvs));
   }

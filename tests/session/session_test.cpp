@@ -97,6 +97,18 @@ TEST(Session, TwoShortUpdatesComeCloseToAColdOne) {
   EXPECT_LE(warm, 1.005 * session.energy());
 }
 
+TEST(Session, ShortUpdatesComeToAnEnd) {
+  // A seam that ends inside: its sides would rather lie on each other.
+  const TriangleList mesh = meshes::bumps(16, 16);
+  Session session = session_of(mesh);
+  session.update(0, Work());
+  session.set_seams(Edges{{8, 25}, {25, 42}, {42, 59}, {59, 76}, {76, 93}, {93, 110}}, true);
+  int updates = 1;
+  while (session.update(1, Work()).due > 0 && updates < 100) ++updates;
+  EXPECT_LT(updates, 30);
+  EXPECT_EQ(session.state().charts[0].outcome, Outcome::kOk);
+}
+
 TEST(Session, NothingDueChangesNothing) {
   Session session = session_of(meshes::bumps(10, 10));
   EXPECT_EQ(session.update(0, Work()).mapped, 1);
