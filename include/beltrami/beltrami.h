@@ -1092,6 +1092,15 @@ BELTRAMI_API beltrami_status beltrami_session_set_pins(beltrami_context* context
                                                        const beltrami_buffer* corners,
                                                        const beltrami_buffer* uvs, uint64_t count);
 
+/* Says what is held of the pins that are set, which all are POINT at first: `count` items of 1, U32
+ * or U64, BELTRAMI_PIN_ numbers in the order of the pins, and as many of 2, F32 or F64, directions
+ * of those of kind LINE, or NULL without any. A chart slides and turns as its pins let it. Errors:
+ * INVALID_ARGUMENT (also for another count than that of the pins). */
+BELTRAMI_API beltrami_status beltrami_session_set_pin_kinds(beltrami_context* context,
+                                                            const beltrami_buffer* kinds,
+                                                            const beltrami_buffer* directions,
+                                                            uint64_t count);
+
 /* Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
  * are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
  * INDEX_OUT_OF_RANGE. */
@@ -1122,13 +1131,14 @@ BELTRAMI_API beltrami_status beltrami_session_update(beltrami_context* context, 
                                                      int32_t steps, beltrami_progress progress,
                                                      void* user);
 
-/* Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
- * beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
- * those with pins stay as well. Charts keep their sizes to each other, and where some stay to
- * these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
- * injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
- * errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
- * INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY. */
+/* Packs charts onto pages by the options of beltrami_pack and effort, of which QUICK takes the
+ * first layout that fits: those of the numbers given, as for beltrami_session_lock, among the
+ * others, which stay; or with a count of 0 all. Locked charts and those with pins stay as well.
+ * Charts keep their sizes to each other, and where some stay to these. Where there is no room
+ * elsewhere charts stay where they are, if that is on the pages and injective. Page p is the unit
+ * square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE; errors: NO_ROOM, INVALID_ARGUMENT
+ * (also where a chart that stays lies on no page, with a face), INVALID_STATE (also before the
+ * first update), CANCELLED, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_session_pack(beltrami_context* context,
                                                    const beltrami_buffer* charts, uint64_t count,
                                                    beltrami_progress progress, void* user);

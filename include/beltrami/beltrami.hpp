@@ -15,6 +15,7 @@
 #include <beltrami/cpp/bake.hpp>
 #include <beltrami/cpp/checks.hpp>
 #include <beltrami/cpp/context.hpp>
+#include <beltrami/cpp/editor.hpp>
 #include <beltrami/cpp/options.hpp>
 #include <beltrami/cpp/result.hpp>
 #include <beltrami/cpp/results.hpp>

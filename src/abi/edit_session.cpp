@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "abi/pins.h"
 #include "abi/unwrapped.h"
 #include "admit/admit.h"
+#include "atlas/pins.h"
 #include "atlas/types.h"
 #include "base/error.h"
 #include "chart/flattening.h"
@@ -21,6 +24,8 @@
 
 namespace beltrami {
 namespace {
+
+constexpr std::size_t kBits = 64;  // of a word of EditSession::moved_
 
 void require_no_others(const beltrami_surface& header) {
   const std::pair<const char*, const beltrami_buffer*> others[] = {
@@ -106,15 +111,24 @@ void EditSession::find_sources() {
   std::vector<Index> next = start_;
   followers_.resize(source_.size());
   for (Index c = 0; c < size_of(source_); ++c) followers_[next[source_[c]]++] = c;
+  changes_.reserve(source_.size());
+  moved_.resize(source_.size() / kBits + 1);
 }
 
-void EditSession::find_changes() {
+void EditSession::find_changes() noexcept {
   changes_.clear();
+  std::fill(moved_.begin(), moved_.end(), 0);
   for (const Index corner : session_.changes()) {
-    changes_.insert(changes_.end(), followers_.begin() + start_[corner],
-                    followers_.begin() + start_[corner + 1]);
+    for (Index i = start_[corner]; i < start_[corner + 1]; ++i) {
+      const auto follower = static_cast<std::size_t>(followers_[i]);
+      moved_[follower / kBits] |= std::uint64_t{1} << follower % kBits;
+    }
   }
-  std::sort(changes_.begin(), changes_.end());
+  for (std::size_t w = 0; w < moved_.size(); ++w) {
+    for (std::uint64_t word = moved_[w]; word != 0; word &= word - 1) {
+      changes_.push_back(static_cast<Index>(kBits * w) + std::countr_zero(word));
+    }
+  }
 }
 
 void EditSession::set_seams(const beltrami_buffer* edges, std::uint64_t count, bool open) {
@@ -136,6 +150,27 @@ void EditSession::set_pins(const beltrami_buffer* corners, const beltrami_buffer
     with_pins.pin_uvs = *uvs;
   }
   session_.set_pins(read_pins(with_pins, surface_, atlas_options(options_), Work(1)));
+}
+
+void EditSession::set_pin_kinds(const beltrami_buffer* kinds, const beltrami_buffer* directions,
+                                std::uint64_t count) {
+  std::vector<Pin> pins = session_.state().pins;
+  const auto set = pins.empty() ? 0 : static_cast<std::uint64_t>(pins.back().number) + 1;
+  if (count != set) {
+    throw Error(Fault::kInvalidArgument, "there are " + std::to_string(count) + " kinds, and " +
+                                             std::to_string(set) +
+                                             " pins are set: give one kind for each");
+  }
+  if (count == 0) return;
+  if (kinds == nullptr) throw Error(Fault::kInvalidArgument, "the kinds of pins are NULL");
+  const std::vector<std::uint64_t> numbers =
+      read_integers(*kinds, count, 1, "kinds of pins", Work(1));
+  std::vector<double> along;
+  if (directions != nullptr) along = read_numbers(*directions, count, 2, "directions", Work(1));
+  for (Pin& pin : pins) {
+    hold_by(numbers[pin.number], along.empty() ? nullptr : &along[2 * pin.number], pin);
+  }
+  session_.set_pins(std::move(pins));
 }
 
 void EditSession::select(const beltrami_buffer* faces, std::uint64_t count) {

@@ -29,6 +29,8 @@ class EditSession {
   /// INDEX_OUT_OF_RANGE for the caller's arrays.
   void set_seams(const beltrami_buffer* edges, std::uint64_t count, bool open);
   void set_pins(const beltrami_buffer* corners, const beltrami_buffer* uvs, std::uint64_t count);
+  void set_pin_kinds(const beltrami_buffer* kinds, const beltrami_buffer* directions,
+                     std::uint64_t count);
   void select(const beltrami_buffer* faces, std::uint64_t count);
   void lock(const beltrami_buffer* charts, std::uint64_t count, bool locked);
   void renew(const beltrami_buffer* charts, std::uint64_t count, bool cold);
@@ -57,7 +59,8 @@ class EditSession {
 
  private:
   void find_sources();
-  void find_changes();
+  /// There is room for all: the session has changed already, so this must not fail.
+  void find_changes() noexcept;
 
   beltrami_surface header_;  ///< its counts alone
   Options options_;
@@ -68,6 +71,7 @@ class EditSession {
   std::vector<Index> start_,
       followers_;  ///< per corner of the ground those that it is the source of
   std::vector<Index> changes_;
+  std::vector<std::uint64_t> moved_;  ///< a bit per corner of the caller
 };
 
 }  // namespace beltrami

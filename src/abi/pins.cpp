@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "pins/hold.h"
 
 namespace beltrami {
@@ -28,11 +29,6 @@ void require_effect(const beltrami_surface& header, const AtlasOptions& options)
 /// Throws Error where the place of a pin is no number that can be delivered.
 void require_number(const Pin& pin, bool float32) {
   const auto corner = Element::corner(static_cast<std::uint64_t>(pin.of_caller));
-  if (pin.kind == PinKind::kLine && !(pin.along.allFinite() && !pin.along.isZero(0))) {
-    throw Error(Fault::kInvalidArgument,
-                "the direction of " + name_of(pin) + " is none: give two numbers, not both 0",
-                corner);
-  }
   if (!pin.uv.allFinite()) {
     throw Error(Fault::kNonFinite, "the UV of " + name_of(pin) + " is infinite or not a number",
                 corner);
@@ -70,15 +66,7 @@ std::vector<Pin> read_places(const beltrami_surface& header,
             {uvs[2 * i], uvs[2 * i + 1]},
             static_cast<Index>(i),
             static_cast<Index>(corners[i])};
-    if (!kinds.empty()) pin.kind = pin_kind_of(kinds[i], name_of(pin));
-    if (pin.kind == PinKind::kLine && directions.empty()) {
-      throw Error(Fault::kInvalidArgument,
-                  name_of(pin) + " is of the kind BELTRAMI_PIN_LINE: give pin_directions");
-    }
-    if (pin.kind == PinKind::kLine) pin.along = {directions[2 * i], directions[2 * i + 1]};
-    // What says nothing is to do no harm.
-    if (pin.kind == PinKind::kU) pin.uv.y() = 0;
-    if (pin.kind == PinKind::kV) pin.uv.x() = 0;
+    if (!kinds.empty()) hold_by(kinds[i], directions.empty() ? nullptr : &directions[2 * i], pin);
     require_number(pin, float32);
     pins.push_back(pin);
   }
@@ -101,6 +89,24 @@ PinKind pin_kind_of(std::uint64_t number, const std::string& name) {
       throw Error(Fault::kInvalidArgument, name + " is of kind " + std::to_string(number) +
                                                ": give a BELTRAMI_PIN_ number, from 0 to 3");
   }
+}
+
+void hold_by(std::uint64_t kind, const double* direction, Pin& pin) {
+  const auto corner = Element::corner(static_cast<std::uint64_t>(pin.of_caller));
+  pin.kind = pin_kind_of(kind, name_of(pin));
+  if (pin.kind == PinKind::kLine && direction == nullptr) {
+    throw Error(Fault::kInvalidArgument,
+                name_of(pin) + " is of the kind BELTRAMI_PIN_LINE: give pin_directions", corner);
+  }
+  pin.along = pin.kind == PinKind::kLine ? Vec2(direction[0], direction[1]) : Vec2(0, 0);
+  if (pin.kind == PinKind::kLine && !(pin.along.allFinite() && !pin.along.isZero(0))) {
+    throw Error(Fault::kInvalidArgument,
+                "the direction of " + name_of(pin) + " is none: give two numbers, not both 0",
+                corner);
+  }
+  // What says nothing is to do no harm.
+  if (pin.kind == PinKind::kU) pin.uv.y() = 0;
+  if (pin.kind == PinKind::kV) pin.uv.x() = 0;
 }
 
 std::vector<Pin> read_pins(const beltrami_surface& header, const LoadedSurface& surface,

@@ -13,11 +13,13 @@
 #include "abi/core_options.h"
 #include "abi/edit_session.h"
 #include "abi/reports.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
+#include "pack/types.h"
 #include "session/ground.h"
 #include "session/state.h"
 
@@ -74,8 +76,7 @@ beltrami_session_chart describe_chart(const EditSession& session, std::uint64_t 
   }
   report.id = static_cast<std::uint64_t>(chart.id);
   report.triangles = static_cast<std::uint64_t>(chart.faces());
-  report.first_face = static_cast<std::uint64_t>(
-      session.face_of(ground.admitted.input_face[chart.part->chart.input_face[0]]));
+  report.first_face = static_cast<std::uint64_t>(session.face_of(chart.first));
   report.symmetric_dirichlet = chart.energy;
   report.scale = std::ldexp(chart.scale, ground.exponent);
   return report;
@@ -120,6 +121,13 @@ beltrami_status beltrami_session_set_pins(beltrami_context* context, const beltr
   return with_session(context, [&](EditSession& own) { own.set_pins(corners, uvs, count); });
 }
 
+beltrami_status beltrami_session_set_pin_kinds(beltrami_context* context,
+                                               const beltrami_buffer* kinds,
+                                               const beltrami_buffer* directions, uint64_t count) {
+  return with_session(context,
+                      [&](EditSession& own) { own.set_pin_kinds(kinds, directions, count); });
+}
+
 beltrami_status beltrami_session_select(beltrami_context* context, const beltrami_buffer* faces,
                                         uint64_t count) {
   return with_session(context, [&](EditSession& own) { own.select(faces, count); });
@@ -150,8 +158,10 @@ beltrami_status beltrami_session_pack(beltrami_context* context, const beltrami_
                                       uint64_t count, beltrami_progress progress, void* user) {
   return enter(context, [&](beltrami_context& self) {
     const std::vector<beltrami::Index> ids = EditSession::read_charts(charts, count);
+    beltrami::PackOptions options = beltrami::pack_options(self.options);
+    options.effort *= beltrami::atlas_options(self.options).effort.packing;
     return self.run_session(0, progress, user, [&](EditSession& own, const Work& work) {
-      return beltrami::status_of(own.pack(ids, beltrami::pack_options(self.options), work));
+      return beltrami::status_of(own.pack(ids, options, work));
     });
   });
 }

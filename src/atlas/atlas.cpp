@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "admit/admit.h"
+#include "admit/arrange_admitted.h"
 #include "atlas/assemble.h"
 #include "atlas/chart_parts.h"
 #include "atlas/map_charts.h"
@@ -26,7 +27,6 @@
 #include "chart/flattening.h"
 #include "mesh/chart.h"
 #include "mesh/disk_mesh.h"
-#include "mesh/locality.h"
 #include "mesh/surface.h"
 #include "multilevel/chart_map.h"
 #include "multilevel/options.h"
@@ -61,25 +61,6 @@ Admitted admitted_surface(const std::vector<Vec3>& positions, const std::vector<
   apart.weld_distance.reset();
   Admitted as_it_stands = admit(positions, faces, apart, work);
   return is_disk(as_it_stands) ? as_it_stands : admitted;
-}
-
-/// Numbers a large surface by where it is: what follows goes over it many times, and takes half the
-/// time where neighbours lie close in memory. Its vertices and faces are no longer in the order of
-/// the input's.
-void arrange_surface(Admitted& admitted, const Work& work) {
-  if (admitted.surface.face_count() < kWorthArranging) return;
-  std::vector<Triangle> faces = std::move(admitted.surface.faces);
-  const Arrangement order = arrange(admitted.surface.positions, faces, work);
-  admitted.surface = build_surface(in_order(admitted.surface.positions, order.vertices, work),
-                                   std::move(faces), work);
-  admitted.topology = topology_of(admitted.surface, work);
-  admitted.input_vertex = in_order(admitted.input_vertex, order.vertices, work);
-  admitted.input_face = in_order(admitted.input_face, order.faces, work);
-  std::vector<bool> reversed(order.faces.size());
-  for (std::size_t f = 0; f < reversed.size(); ++f) {
-    reversed[f] = admitted.reversed[order.faces[f]];
-  }
-  admitted.reversed = std::move(reversed);
 }
 
 /// Scales every map by the mean density of its faces, weighted by area. One per chart.
@@ -164,7 +145,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
   int exponent = 0;
   stage("admit", 0, kAdmitted, [&](const Work& inner) {
     admitted = admitted_surface(input.positions, input.faces, options, inner);
-    arrange_surface(admitted, inner);
+    // What follows goes over it many times, and takes half the time where neighbours lie close.
+    if (admitted.surface.face_count() >= kWorthArranging) arrange_admitted(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
   });
   MappedSurface mapped =

@@ -140,6 +140,7 @@ class OnePage {
   /// Tries orders near the best, at a density at which that does not fit yet.
   void improve() {
     const auto budget = static_cast<std::int64_t>(kSteps * problem_.options().effort);
+    if (budget <= 0) return;
     Numbers numbers;
     Rule rule = Rule::kLowest;
     raise_density();

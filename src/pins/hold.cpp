@@ -57,26 +57,6 @@ Similarity similarity_of_points(const std::vector<Vec2>& uvs, Pins pins) {
   return fit_similarity(pairs, false);
 }
 
-/// Two points say all of a similarity; fewer leave its turn or its scale to the lines.
-Similarity best_similarity(const std::vector<Vec2>& uvs, Pins pins) {
-  std::vector<HeldVertex> points;
-  for (const HeldVertex& pin : pins) {
-    if (pin.kind == PinKind::kPoint) points.push_back(pin);
-  }
-  if (points.size() == pins.size() || points.size() > 1) return similarity_of_points(uvs, points);
-  std::vector<LineFit> fits;
-  for (const HeldVertex& pin : pins) {
-    if (pin.kind == PinKind::kPoint) {
-      fits.push_back({uvs[pin.vertex], pin.place, {1, 0}});
-      fits.push_back({uvs[pin.vertex], pin.place, {0, 1}});
-    } else {
-      fits.push_back({uvs[pin.vertex], pin.place, pin.normal()});
-    }
-  }
-  const LineSimilarity fit = fit_to_lines(fits);
-  return {.turn = fit.turn, .from = Vec2::Zero(), .to = fit.shift};
-}
-
 double size_of_map(const std::vector<Vec2>& uvs) {
   Eigen::AlignedBox2d box;
   for (const Vec2& w : uvs) box.extend(w);
@@ -364,7 +344,7 @@ void put_at(Pins pins, std::vector<Vec2>& uvs) {
 /// The map that meets the pins; nothing where none was found. `relaxed`: and has the least energy.
 std::optional<HeldMap> meet(WayToPins& way, const std::vector<Vec2>& start, Pins pins, bool relaxed,
                             const Work& work) {
-  const Similarity frame = best_similarity(start, pins);
+  const Similarity frame = fit_to_pins(start, pins);
   way.set_pins(frame, pins);
   HeldMap map{start, modulus(frame.turn)};
   if (!way.fits(start)) {
@@ -407,6 +387,25 @@ Vec2 HeldVertex::normal() const {
   return Vec2::Zero();
 }
 
+Similarity fit_to_pins(const std::vector<Vec2>& uvs, std::span<const HeldVertex> pins) {
+  std::vector<HeldVertex> points;
+  for (const HeldVertex& pin : pins) {
+    if (pin.kind == PinKind::kPoint) points.push_back(pin);
+  }
+  if (points.size() == pins.size() || points.size() > 1) return similarity_of_points(uvs, points);
+  std::vector<LineFit> fits;
+  for (const HeldVertex& pin : pins) {
+    if (pin.kind == PinKind::kPoint) {
+      fits.push_back({uvs[pin.vertex], pin.place, {1, 0}});
+      fits.push_back({uvs[pin.vertex], pin.place, {0, 1}});
+    } else {
+      fits.push_back({uvs[pin.vertex], pin.place, pin.normal()});
+    }
+  }
+  const LineSimilarity fit = fit_to_lines(fits);
+  return {.turn = fit.turn, .from = Vec2::Zero(), .to = fit.shift};
+}
+
 HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work) {
@@ -422,40 +421,36 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
 }
 
 HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
-                  const Work& work) {
+                  const std::vector<HeldVertex>& pins, Touching touching,
+                  const ChartOptions& options, const Work& work) {
   const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
-  WayToPins way(mesh, rest, options, false, work);
+  const bool may_touch = touching == Touching::kAllowed;
+  WayToPins way(mesh, rest, options, !may_touch, work);
   const auto reach = [&](Pins some, std::vector<Vec2>& map) {
     way.set_pins({}, some);
     return way.fits(map) || way.go(map);
   };
   HeldMap map{uvs};
-  if (!reach(pins, map.uvs)) {
+  const bool met = reach(pins, map.uvs);
+  if (!met && !may_touch) {
+    HeldMap none;
+    none.failed = 0;
+    return none;
+  }
+  if (!met) {
     return first_failure(pins, work, [&](Pins some) {
       std::vector<Vec2> trial = uvs;
       return reach(some, trial);
     });
   }
-  put_at(pins, map.uvs);
-  map.converged = way.relax_nearby(work.part(kThere, 1), map.uvs);
-  return map;
-}
-
-HeldMap hold_from(const DiskMesh& mesh, std::vector<Vec2> start,
-                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
-                  const Work& work) {
-  const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
-  WayToPins way(mesh, rest, options, true, work);
-  way.set_pins({}, pins);
-  HeldMap map;
-  if (!way.fits(start) && !way.go(start)) {
-    map.failed = 0;
+  const Work relaxing = work.part(kThere, 1);
+  if (!may_touch) {
+    map.converged = way.relax(relaxing, map.uvs);
+    put_at(pins, map.uvs);
     return map;
   }
-  map.converged = way.relax(work.part(kThere, 1), start);
-  put_at(pins, start);
-  map.uvs = std::move(start);
+  put_at(pins, map.uvs);
+  map.converged = way.relax_nearby(relaxing, map.uvs);
   return map;
 }
 

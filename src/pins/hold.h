@@ -1,6 +1,7 @@
 // A map with some of its vertices held at given places.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -8,6 +9,7 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "multilevel/options.h"
+#include "pins/similarity.h"
 
 namespace beltrami {
 
@@ -35,6 +37,11 @@ struct HeldMap {
   Index failed = kNone;
 };
 
+/// The similarity after which a map meets its pins best: two points say all of it; fewer leave its
+/// turn or its scale to the lines, and what these leave open as it is. Keeps the orientation.
+/// Precondition: one pin at least.
+Similarity fit_to_pins(const std::vector<Vec2>& uvs, std::span<const HeldVertex> pins);
+
 /// Puts a map in place by the similarity that fits the pins best, which keeps its orientation, and
 /// by its own scale where they do not say how large it is, and
 /// bends it from there in steps that fold no face until every pin is met; then minimises the energy
@@ -49,21 +56,19 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work);
 
+/// Whether the boundary may touch itself where pins ask for it.
+enum class Touching { kAllowed, kRefused };
+
 /// The same from a map of positive faces that lies where it is to be: it is neither turned nor
 /// scaled, which leaves its scale at 1, and its energy is minimised even where the pins are met
 /// already. The work is that of a few steps where the map is near its minimum.
-/// Where sides of the boundary lie on each other they are let go first, and parted by hardly
-/// anything where they come to lie over each other; where that does not do they press, and a map
-/// that steps too few have left with more energy than before is not taken.
+/// Touching::kAllowed: where sides of the boundary lie on each other they are let go first, and
+/// parted by hardly anything where they come to lie over each other; where that does not do they
+/// press, and a map that steps too few have left with more energy than before is not taken.
+/// Touching::kRefused: from an injective map by steps that keep it so; `failed` is 0 where they get
+/// stuck.
 HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
-                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
-                  const Work& work);
-
-/// From an injective map that lies where it is to be, at its own scale: brings the pins into place
-/// by steps that keep it so, and minimises the energy with them held, also where they were met.
-/// `failed` is 0 where the steps get stuck.
-HeldMap hold_from(const DiskMesh& mesh, std::vector<Vec2> start,
-                  const std::vector<HeldVertex>& pins, const ChartOptions& options,
-                  const Work& work);
+                  const std::vector<HeldVertex>& pins, Touching touching,
+                  const ChartOptions& options, const Work& work);
 
 }  // namespace beltrami

@@ -354,19 +354,20 @@ StraightMap straighten_at_once(const DiskMesh& mesh, const std::vector<Vec2>& uv
   const bool near = rails.are_near(start);
   if (!near && paths.size() > paths_straight + 1) return {};
   if (near) {
-    held = hold_from(mesh, start, rails.pins(), options, work.part(0, 0.3));
+    held = drag_pins(mesh, start, rails.pins(), Touching::kRefused, options, work.part(0, 0.3));
   }
   if (held.failed != kNone) {
-    const HeldMap ordered =
-        hold_from(mesh, start, rails.points_in_order(start), options, work.part(0.3, 0.6));
+    const HeldMap ordered = drag_pins(mesh, start, rails.points_in_order(start), Touching::kRefused,
+                                      options, work.part(0.3, 0.6));
     if (ordered.failed == kNone) {
-      held = hold_from(mesh, ordered.uvs, rails.pins(), options, work.part(0.6, 0.8));
+      held = drag_pins(mesh, ordered.uvs, rails.pins(), Touching::kRefused, options,
+                       work.part(0.6, 0.8));
     }
   }
   if (held.failed != kNone && paths.size() == 1) {
     const Line line = line_of(start, paths.front());
-    held = hold_from(mesh, embedded(mesh, paths.front(), line, work.aside()), rails.pins(), options,
-                     work.part(0.8, 1));
+    held = drag_pins(mesh, embedded(mesh, paths.front(), line, work.aside()), rails.pins(),
+                     Touching::kRefused, options, work.part(0.8, 1));
   }
   if (held.failed != kNone) return {};
   return {std::move(held.uvs), held.converged, rails.released()};
@@ -407,7 +408,7 @@ StraightMap to_rectangle(const DiskMesh& mesh, const std::array<Index, 4>& corne
       if (!rails.add(sides.path(k), Sides::line(k, sizes))) return {};
     }
     const double part = 1.0 / kMostFits;
-    HeldMap held = hold_from(mesh, std::move(uvs), rails.pins(), options,
+    HeldMap held = drag_pins(mesh, uvs, rails.pins(), Touching::kRefused, options,
                              work.part(part * fit, part * (fit + 1)));
     if (held.failed != kNone) return {};
     map = {std::move(held.uvs), held.converged, rails.released()};

@@ -1,7 +1,7 @@
 #include "session/recut.h"
 
-#include <algorithm>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include "base/disjoint_sets.h"
@@ -167,10 +167,12 @@ Recut recut(const Ground& ground, const std::vector<Index>& faces, const EdgeMar
   for (const SurfacePiece& component : components_of(std::move(parted), work)) {
     open(component, work, result);
   }
-  std::sort(result.charts.begin(), result.charts.end(),
-            [](const AtlasChart& a, const AtlasChart& b) {
-              return a.chart.input_face[0] < b.chart.input_face[0];
-            });
+  std::map<Index, AtlasChart> by_first_face;
+  for (AtlasChart& chart : result.charts) {
+    by_first_face.emplace(first_input_face(chart, ground.admitted), std::move(chart));
+  }
+  result.charts.clear();
+  for (auto& [first, chart] : by_first_face) result.charts.push_back(std::move(chart));
   return result;
 }
 

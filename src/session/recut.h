@@ -12,7 +12,8 @@
 namespace beltrami {
 
 struct Recut {
-  std::vector<AtlasChart> charts;  ///< of the ground, in its unit, by their least face
+  std::vector<AtlasChart> charts;  ///< of the ground, in its unit, by their least face of
+                                   ///< the input
   std::vector<Index> opened;       ///< half-edges of the ground beyond the seams that were cut
 };
 

@@ -47,6 +47,7 @@ class Mapper {
  private:
   bool is_free() const { return task_.pins.empty() && !any(task_.held); }
   void set_unit(double scale);
+  std::vector<HeldVertex> pinned_places() const;
   std::vector<HeldVertex> held_places() const;
   void fit_pins();
   void map_anew();
@@ -69,14 +70,19 @@ void Mapper::set_unit(double scale) {
   draft.exponent = normalise(draft.disk.positions, draft.disk.faces, work_).exponent;
 }
 
-std::vector<HeldVertex> Mapper::held_places() const {
-  const Draft& draft = result_.draft;
+std::vector<HeldVertex> Mapper::pinned_places() const {
   std::vector<HeldVertex> places;
-  std::vector<bool> known(start_.size(), false);
   for (const ChartPin& pin : task_.pins) {
-    known[pin.vertex] = true;
-    places.push_back({pin.vertex, scaled(pin.place, draft.exponent)});
+    const Vec2 place = scaled(pin.place, result_.draft.exponent);
+    places.push_back({pin.vertex, place, pin.kind, pin.along});
   }
+  return places;
+}
+
+std::vector<HeldVertex> Mapper::held_places() const {
+  std::vector<HeldVertex> places = pinned_places();
+  std::vector<bool> known(start_.size(), false);
+  for (const HeldVertex& pin : places) known[pin.vertex] = true;
   for (std::size_t v = 0; v < task_.held.size(); ++v) {
     if (task_.held[v] && !known[v]) places.push_back({static_cast<Index>(v), start_[v]});
   }
@@ -85,11 +91,7 @@ std::vector<HeldVertex> Mapper::held_places() const {
 
 /// Takes the start to where its pins fit best, with its scale.
 void Mapper::fit_pins() {
-  std::vector<std::pair<Vec2, Vec2>> pairs;
-  for (const ChartPin& pin : task_.pins) {
-    pairs.emplace_back(start_[pin.vertex], scaled(pin.place, result_.draft.exponent));
-  }
-  const Similarity fit = fit_similarity(pairs, false);
+  const Similarity fit = fit_to_pins(start_, pinned_places());
   const int before = result_.draft.exponent;
   set_unit(result_.draft.scale * fit.scale());
   for (Vec2& w : start_) w = scaled(fit(w), result_.draft.exponent - before);
@@ -125,8 +127,9 @@ void Mapper::hold(bool from_anywhere) {
   if (places.empty()) places.push_back({draft.disk.boundary[0], start_[draft.disk.boundary[0]]});
   ChartOptions limited = options_;
   if (task_.steps > 0) limited.max_iterations = std::min(limited.max_iterations, task_.steps);
-  const HeldMap map = from_anywhere ? hold_pins(draft.disk, draft.placed, places, options_, work_)
-                                    : drag_pins(draft.disk, start_, places, limited, work_);
+  const HeldMap map =
+      from_anywhere ? hold_pins(draft.disk, draft.placed, places, options_, work_)
+                    : drag_pins(draft.disk, start_, places, Touching::kAllowed, limited, work_);
   if (map.failed != kNone) {
     const auto failed = static_cast<std::size_t>(map.failed);
     if (failed < task_.pins.size()) {

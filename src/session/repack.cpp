@@ -134,8 +134,9 @@ Outcome Session::pack(std::span<const Index> ids, const PackOptions& options, co
     if (any_locked || !chart.pins.empty()) moves[c] = false;
   }
   if (std::find(moves.begin(), moves.end(), true) == moves.end()) {
+    const Outcome verdict = check(work).injective() ? Outcome::kOk : Outcome::kNotInjective;
     changes_.clear();
-    return Outcome::kOk;
+    return verdict;
   }
   const bool some_stay = std::find(moves.begin(), moves.end(), false) != moves.end();
   PackOptions own = options;

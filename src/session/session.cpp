@@ -61,6 +61,7 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
     SessionChart own;
     own.id = state_.next_id++;
     own.scale = std::ldexp(1.0, -ground_.exponent);
+    own.first = first_input_face(part, ground_.admitted);
     own.part = std::make_shared<const AtlasChart>(std::move(part));
     for (Index f = 0; f < own.faces(); ++f) {
       state_.chart_of_face[own.part->chart.input_face[f]] = size_of(state_.charts);
@@ -100,6 +101,7 @@ void Session::set_seams(std::span<const std::array<Index, 2>> edges, bool open) 
     if (inside && open) refuse(name + ", lies inside a polygon: no seam runs there");
     halfedges.insert(halfedges.end(), found.begin(), found.end());
   }
+  state_.toggled.reserve(state_.toggled.size() + halfedges.size());  // all are noted, or none
   for (const Index h : halfedges) {
     if (surface.twin[h] == kNone) continue;
     const bool is_opened = state_.opened[h];

@@ -11,6 +11,7 @@
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "mesh/disk_mesh.h"
+#include "pins/hold.h"
 
 namespace beltrami {
 
@@ -25,12 +26,19 @@ enum class Due {
 struct MetPin {
   Index corner;  ///< of the input, 3 * face + corner
   Vec2 place;
+  PinKind kind = PinKind::kPoint;
+  Vec2 along = Vec2::Zero();  ///< of kLine: its direction
 
+  /// Whether it holds the same of the same vertex, wherever that is to be.
+  bool is_like(const MetPin& other) const {
+    return corner == other.corner && kind == other.kind && along == other.along;
+  }
   bool operator==(const MetPin& other) const = default;
 };
 
 struct SessionChart {
   Index id = 0;
+  Index first = 0;                               ///< the least of its faces, of the input
   std::shared_ptr<const AtlasChart> part;        ///< of the ground, in its unit
   std::shared_ptr<const std::vector<Vec2>> uvs;  ///< one per vertex, as delivered
   bool placed = false;                           ///< `uvs` say where it lies
@@ -53,7 +61,7 @@ struct SessionState {
   std::vector<Pin> pins;
   std::vector<bool> locked;          ///< per face of the ground
   std::vector<bool> selected;        ///< likewise; none: all are
-  std::vector<SessionChart> charts;  ///< by their least face of the ground
+  std::vector<SessionChart> charts;  ///< by their least face of the input
   std::vector<Index> chart_of_face;  ///< per face of the ground
   Index next_id = 0;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -14,6 +15,7 @@
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "mesh/surface.h"
+#include "pins/hold.h"
 #include "session/carry.h"
 #include "session/ground.h"
 #include "session/recut.h"
@@ -23,13 +25,29 @@ namespace beltrami {
 namespace {
 
 constexpr double kCut = 0.1;  // where cutting ends in the progress
+/// Relative gain of an update of few steps that is the last: as of the last of many steps. Sides
+/// that lie on each other and are parted may never gain so little in one step that it says so.
+constexpr double kSettled = 1e-3;
 
 /// The failure of a chart, which is named by its first face.
-Error named(const Error& error, const Ground& ground, const SessionChart& chart) {
+Error named(const Error& error, const SessionChart& chart) {
   if (error.element().kind != ElementKind::kNothing) return error;
-  const Index face = ground.admitted.input_face[chart.part->chart.input_face[0]];
-  return {error.fault(), "the chart of face " + std::to_string(face) + ": " + error.what(),
-          Element::face(static_cast<std::uint64_t>(face))};
+  return {error.fault(), "the chart of face " + std::to_string(chart.first) + ": " + error.what(),
+          Element::face(static_cast<std::uint64_t>(chart.first))};
+}
+
+/// Relative to the coordinates: a line goes through few numbers.
+constexpr double kOnLine = 1e-12;
+
+MetPin met_pin(const Pin& pin, Index corner) {
+  return {corner, pin.uv, pin.kind, pin.along};
+}
+
+/// Whether a vertex lies where its pin wants it.
+bool is_met(const ChartPin& pin, const Vec2& w) {
+  const Vec2 normal = HeldVertex{pin.vertex, pin.place, pin.kind, pin.along}.normal();
+  if (normal.isZero(0)) return w == pin.place;
+  return std::abs(normal.dot(pin.place - w)) <= kOnLine * (w.norm() + pin.place.norm());
 }
 
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
@@ -99,6 +117,7 @@ void Updater::cut() {
     chart.due = carried.warm ? Due::kWarm : Due::kCold;
     chart.pins = std::move(carried.pins);
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(carried.uvs));
+    chart.first = first_input_face(part, ground.admitted);
     chart.part = std::make_shared<const AtlasChart>(std::move(part));
     fresh.push_back(std::move(chart));
   }
@@ -136,9 +155,8 @@ void Updater::replace(const std::vector<bool>& affected, std::vector<SessionChar
   for (std::size_t c = 0; c < affected.size(); ++c) {
     if (!affected[c]) charts.push_back(std::move(next_.charts[c]));
   }
-  std::sort(charts.begin(), charts.end(), [](const SessionChart& a, const SessionChart& b) {
-    return a.part->chart.input_face[0] < b.part->chart.input_face[0];
-  });
+  std::sort(charts.begin(), charts.end(),
+            [](const SessionChart& a, const SessionChart& b) { return a.first < b.first; });
   for (Index c = 0; c < size_of(charts); ++c) {
     for (Index f = 0; f < charts[c].faces(); ++f) {
       next_.chart_of_face[charts[c].part->chart.input_face[f]] = c;
@@ -160,8 +178,8 @@ std::vector<Updater::Pins> Updater::pins_of_charts() const {
     const Index vertex = chart.mesh().faces[chart.local_face(corner / 3)][corner % 3];
     const auto [at, is_first] = first_at.try_emplace({c, vertex}, i);
     if (is_first) {
-      pins[c].push_back({vertex, pin.uv, i});
-    } else if (next_.pins[at->second].uv != pin.uv) {
+      pins[c].push_back({vertex, pin.uv, i, pin.kind, pin.along});
+    } else if (met_pin(next_.pins[at->second], 0) != met_pin(pin, 0)) {
       throw unmet(pin, "lies apart from " + name_of(next_.pins[at->second]) +
                            ", and both are of one UV vertex: give one place, or cut between them");
     }
@@ -173,7 +191,7 @@ std::vector<MetPin> Updater::met_pins(const Pins& pins) const {
   std::vector<MetPin> met;
   for (const ChartPin& pin : pins) {
     const Pin& own = next_.pins[pin.pin];
-    met.push_back({3 * own.face + own.corner, own.uv});
+    met.push_back(met_pin(own, 3 * own.face + own.corner));
   }
   return met;
 }
@@ -194,7 +212,7 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
     if (chart.due == Due::kNothing) continue;
     Job job{c, std::move(pins[c]), held_vertices(next_, *chart.part), {}, {}};
     for (const ChartPin& pin : job.pins) {
-      if (!job.held[pin.vertex] || (*chart.uvs)[pin.vertex] == pin.place) continue;
+      if (!job.held[pin.vertex] || is_met(pin, (*chart.uvs)[pin.vertex])) continue;
       throw unmet(next_.pins[pin.pin],
                   "is of a vertex that may not move: unlock its chart, or select its faces");
     }
@@ -206,9 +224,8 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
 void Updater::map(Job& job, const Work& work) const {
   const SessionChart& chart = next_.charts[job.chart];
   std::vector<MetPin> met = met_pins(job.pins);
-  const bool same_pins =
-      std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
-                 [](const MetPin& a, const MetPin& b) { return a.corner == b.corner; });
+  const bool same_pins = std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
+                                    [](const MetPin& a, const MetPin& b) { return a.is_like(b); });
   const RemapTask task{.part = *chart.part,
                        .start = *chart.uvs,
                        .placed = chart.placed,
@@ -228,7 +245,7 @@ void Updater::map(Job& job, const Work& work) const {
     }
     job.draft = std::move(made.draft);
   } catch (const Error& error) {
-    job.error = named(error, session_.ground_, chart);
+    job.error = named(error, chart);
   }
 }
 
@@ -274,13 +291,20 @@ void Updater::take(Job& job, const Vec2& shift) {
   }
   Remapped made =
       finish(*chart.part, *std::move(job.draft), shift, session_.float32_, work_.aside());
+  std::vector<MetPin> met = met_pins(job.pins);
+  const bool again = chart.due == Due::kWarm && chart.energy > 0 && chart.pins == met;
+  const bool is_limited = steps_ > 0 && !work_.out_of_time();
+  if (again && is_limited && chart.energy - made.energy <= kSettled * made.energy) {
+    made.converged = true;
+    if (made.outcome == Outcome::kNotConverged) made.outcome = Outcome::kOk;
+  }
   const bool goes_on = !made.converged && (steps_ > 0 || work_.out_of_time());
   chart.due = goes_on ? Due::kWarm : Due::kNothing;
   chart.placed = true;
   chart.scale = made.scale;
   chart.outcome = made.outcome;
   chart.energy = made.energy;
-  chart.pins = met_pins(job.pins);
+  chart.pins = std::move(met);
   if (made.uvs != *chart.uvs) {
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(made.uvs));
   }

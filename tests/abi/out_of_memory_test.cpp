@@ -286,6 +286,56 @@ TEST(OutOfMemory, APackingAnswersWhereverMemoryEnds) {
   expect_status_wherever_memory_ends(pack, 1L << 40, results);
 }
 
+TEST(OutOfMemory, ASessionAnswersWhereverMemoryEnds) {
+  const TriangleList mesh = meshes::bumps(5, 5);
+  const beltrami_surface surface = surface_view(mesh);
+  const Context context = for_small_pages();
+  beltrami_context* const c = context.get();
+  const auto begin = [&] { return beltrami_session_begin(c, &surface, nullptr, nullptr); };
+  const auto uvs = [&] {
+    std::vector<std::array<double, 2>> uvs(3 * mesh.faces.size());
+    EXPECT_EQ(beltrami_get_session_uvs(c, uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
+    return uvs;
+  };
+  expect_status_wherever_memory_ends(begin, 60, uvs);
+  ASSERT_EQ(beltrami_session_update(c, 0, 0, nullptr, nullptr), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_session_pack(c, nullptr, 0, nullptr, nullptr), BELTRAMI_OK);
+  std::uint64_t mark = 0;
+  ASSERT_EQ(beltrami_session_save(c, &mark), BELTRAMI_OK);
+  const auto saved = uvs();
+  // All of a call is done, or nothing: from where the session was saved.
+  const auto all_or_nothing = [&](const auto& call) {
+    ASSERT_EQ(call(), BELTRAMI_OK);
+    const auto made = uvs();
+    ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+    const long all = allocations_of(call), stride = std::max(1L, all / 60);
+    EXPECT_TRUE(same_bits(uvs(), made));
+    ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+    long before = -1;  // of the first round alone what is kept from then on
+    for (long after = 0; after < all; after += stride) {
+      const beltrami_status status = call_with(Fails::kOne, after, call);
+      EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_OK) << after;
+      EXPECT_TRUE(same_bits(uvs(), status == BELTRAMI_OK ? made : saved)) << after;
+      ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
+      const long left = living;
+      if (before >= 0 && status != BELTRAMI_OK) {
+        EXPECT_EQ(left, before) << after;
+      }
+      before = left;
+    }
+  };
+  const std::array<std::uint32_t, 6> ends = {2, 8, 8, 14, 14, 20};
+  const beltrami_buffer edges = {ends.data(), 0, BELTRAMI_U32, 0};
+  all_or_nothing([&] {
+    const beltrami_status noted = beltrami_session_set_seams(c, &edges, 3, 1);
+    return noted == BELTRAMI_OK ? beltrami_session_update(c, 0, 0, nullptr, nullptr) : noted;
+  });
+  all_or_nothing([&] { return beltrami_session_pack(c, nullptr, 0, nullptr, nullptr); });
+  all_or_nothing([&] { return beltrami_session_restore(c, mark); });
+  auto certificate = sized<beltrami_atlas_certificate>();
+  all_or_nothing([&] { return beltrami_session_check(c, &certificate); });
+}
+
 TEST(OutOfMemory, ABakingAnswersWhereverMemoryEnds) {
   // Normals of an image that is made smaller, and places of another surface.
   const std::vector<double> old_uvs = {0, 0, 3, 0, 3, 3, 0, 0, 3, 3, 0, 3};

@@ -60,6 +60,12 @@ TEST(CppMemory, WhereItRunsOutThereIsAFailureAndNothingIsThrown) {
   EXPECT_GT(until_there_is_room([&] { return context.try_flatten(surface); }), 0);
   EXPECT_GT(until_there_is_room([&] { return context.try_unwrap(surface); }), 0);
 
+  EXPECT_GT(until_there_is_room([&] { return Editor::begin(context, surface); }), 0);
+  Editor editor(context, surface);
+  EXPECT_GT(until_there_is_room([&] { return editor.try_update(); }), 0);
+  EXPECT_GT(until_there_is_room([&] { return editor.try_changes(); }), 0);
+  EXPECT_GT(until_there_is_room([&] { return editor.try_charts(); }), 0);
+
   const Atlas atlas = context.unwrap(surface);
   const Flattening flat = context.flatten(surface);
   EXPECT_GT(until_there_is_room([&] { return atlas.try_corner_uvs(); }), 0);

@@ -26,6 +26,8 @@ beltrami_status unwrap_without_exceptions() {
   const Result<Flattening> flat = context->try_flatten(Surface(positions, good));
   if (!flat || !flat->try_uvs()) return BELTRAMI_E_INTERNAL;
   if (!context->try_pack(UvMesh(*uvs, good))) return BELTRAMI_E_INTERNAL;
+  Result<Editor> editor = Editor::begin(*context, Surface(positions, good));
+  if (!editor || !editor->try_update() || !editor->try_changes()) return BELTRAMI_E_INTERNAL;
   return static_cast<beltrami_status>(context->try_unwrap(Surface(positions, bad)).status());
 }
 

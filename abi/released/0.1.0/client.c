@@ -419,6 +419,7 @@ static void edit(beltrami_context* context) {
   place[0] = corner_uvs[0][0] + 1;
   place[1] = corner_uvs[0][1];
   REQUIRE(beltrami_session_set_pins(context, &first, &places, 1) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_set_pin_kinds(context, &first, NULL, 1) == BELTRAMI_OK);
   REQUIRE(beltrami_session_update(context, 0, 2, count_calls, &calls) >= BELTRAMI_OK);
   ARM(session);
   REQUIRE(beltrami_get_session(context, &session.value) == BELTRAMI_OK);

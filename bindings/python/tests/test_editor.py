@@ -247,3 +247,20 @@ def test_random_edits_are_judged_right_and_repeat(seed: int) -> None:
 
     for one, other in zip(play(), play()):
         np.testing.assert_array_equal(one, other)
+
+
+def test_pins_slide() -> None:
+    vertices, faces = grid(8)
+    with beltrami.Editor(vertices, faces) as editor:
+        editor.update()
+        editor.set_pins([0, 5], [[9.0, 2.0], [4.0, 7.0]], ["v", "u"])
+        editor.update()
+        uvs = editor.corner_uvs
+        assert (uvs[0, 1], uvs[5, 0]) == (2.0, 4.0)
+        editor.set_pins([0], [[1.0, 2.0]], ["line"], [[1.0, 1.0]])
+        editor.update()
+        u, v = editor.corner_uvs[0]
+        assert v - u == pytest.approx(1, abs=1e-9)
+        assert judged(editor, vertices, faces)
+        with pytest.raises(ValueError, match="directions"):
+            editor.set_pins([0], [[1.0, 2.0]], ["line"])

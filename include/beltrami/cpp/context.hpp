@@ -32,6 +32,7 @@ class Canceller {
 
  private:
   friend class Context;
+  friend class Editor;
   std::shared_ptr<const detail::Handle> handle_;
 };
 
@@ -244,6 +245,8 @@ class Context {
 #endif
 
  private:
+  friend class Editor;
+
   struct Unset {};
   explicit Context(Unset) noexcept {}
 

@@ -114,7 +114,7 @@ class Progress {
 namespace detail {
 
 /// What kind of results a context has one of at a time.
-enum Kind : std::size_t { kRun, kUnwrap, kPack };
+enum Kind : std::size_t { kRun, kUnwrap, kPack, kSession };
 
 /// A context of C, and the numbers of the results of each kind that it has had: results of which
 /// there are newer ones know by them that theirs are gone.
@@ -142,7 +142,7 @@ struct Handle {
   }
 
   beltrami_context* context = nullptr;
-  std::uint64_t numbers[3] = {0, 0, 0};
+  std::uint64_t numbers[4] = {0, 0, 0, 0};
   bool pages_of_atlas = false;
 };
 

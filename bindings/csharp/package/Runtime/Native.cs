@@ -1217,6 +1217,13 @@ namespace Beltrami
             ulong count);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_set_pin_kinds(
+            IntPtr context,
+            NativeBuffer* kinds,
+            NativeBuffer* directions,
+            ulong count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status beltrami_session_select(
             IntPtr context,
             NativeBuffer* faces,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import types
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _polygons
+from . import _arrays, _polygons, _straight
 from ._arrays import Array
 from ._errors import NotInjectiveWarning
 from ._library import UNWRAP
@@ -83,7 +84,8 @@ class Editor:
     progress : bool or callable, optional
         As for `parameterize`, of the beginning.
     **options
-        Those of `unwrap` that concern flattening, welding, holes, packing, `float32` and `threads`.
+        Those of `unwrap` that concern flattening, welding, holes, packing, `effort` of packing,
+        `float32` and `threads`.
 
     Raises
     ------
@@ -177,7 +179,13 @@ class Editor:
         """
         self._context.edit("set_seams", _integers("edges", edges, 2), 0)
 
-    def set_pins(self, corners: npt.ArrayLike, uvs: npt.ArrayLike) -> None:
+    def set_pins(
+        self,
+        corners: npt.ArrayLike,
+        uvs: npt.ArrayLike,
+        kinds: Sequence[str] | None = None,
+        directions: npt.ArrayLike | None = None,
+    ) -> None:
         """Set pins in place of all before.
 
         Parameters
@@ -186,6 +194,10 @@ class Editor:
             Corners, counted from 0, face after face; none takes all pins off.
         uvs : (k, 2) array_like of floats
             Where they are to be; with the option `float32` numbers of that type.
+        kinds : sequence of str, optional
+            What is held of each: "point" (the default), "u", "v", or "line", along which it slides.
+        directions : (k, 2) array_like of floats, optional
+            Of lines, through their UVs; others are not read.
 
         Raises
         ------
@@ -198,7 +210,10 @@ class Editor:
         numbers = _integers("corners", corners, None)
         if len(places) != len(numbers):
             raise ValueError(f"there are {len(numbers)} corners and {len(places)} UVs")
+        held = None if kinds is None else _straight.held(kinds, directions, len(numbers))
         self._context.set_pins(numbers, np.ascontiguousarray(places))
+        if held is not None:
+            self._context.set_pin_kinds(*held)
 
     def select(self, faces: npt.ArrayLike | None) -> None:
         """Let some faces move alone; their charts are due.

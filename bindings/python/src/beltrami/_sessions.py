@@ -111,6 +111,11 @@ class SessionContext(Context):
         views = (ffi.new("beltrami_buffer*", buffer(array)) for array in (corners, uvs))
         self._check(lib.beltrami_session_set_pins(self._context, *views, len(corners)))
 
+    def set_pin_kinds(self, kinds: Array, directions: Array) -> None:
+        """Say what is held of each pin."""
+        views = (ffi.new("beltrami_buffer*", buffer(array)) for array in (kinds, directions))
+        self._check(lib.beltrami_session_set_pin_kinds(self._context, *views, len(kinds)))
+
     def update(self, seconds: float, steps: int, hook: Hook) -> str:
         """Return the name of the status. Raises what the hook raises."""
         return self.call(lib.beltrami_session_update, (seconds, steps), hook)

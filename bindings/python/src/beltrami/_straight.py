@@ -39,18 +39,22 @@ def pins(values: Any, faces: Polygons) -> tuple[Array, Array, tuple[Array, Array
     corners, uvs = _polygons.pins(values[:2], faces)
     if len(values) == 2:
         return corners, uvs, None
-    kinds = _kinds(values[2], len(corners), "pins")
-    directions = np.zeros((len(corners), 2))
-    if len(values) == 4:
-        directions = np.ascontiguousarray(values[3], np.float64)
-    elif (kinds == _KINDS["line"]).any():
+    return corners, uvs, held(values[2], values[3] if len(values) == 4 else None, len(corners))
+
+
+def held(kinds: Any, directions: Any, count: int) -> tuple[Array, Array]:
+    """Return kinds (k,) and directions (k, 2) of as many pins. Raises TypeError, ValueError."""
+    numbers = _kinds(kinds, count, "pins")
+    along = np.zeros((count, 2))
+    if directions is not None:
+        along = np.ascontiguousarray(directions, np.float64)
+    elif (numbers == _KINDS["line"]).any():
         raise ValueError("pins of the kind 'line' have directions: give these after the kinds")
-    if directions.shape != (len(corners), 2):
+    if along.shape != (count, 2):
         raise ValueError(
-            f"the directions of pins must have the shape ({len(corners)}, 2), "
-            f"not {directions.shape}"
+            f"the directions of pins must have the shape ({count}, 2), not {along.shape}"
         )
-    return corners, uvs, (kinds, directions)
+    return numbers, along
 
 
 def edges(values: Any) -> tuple[Array, Array]:

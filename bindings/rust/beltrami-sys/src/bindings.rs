@@ -2135,6 +2135,18 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
+    /** Says what is held of the pins that are set, which all are POINT at first: `count` items of 1, U32
+ or U64, BELTRAMI_PIN_ numbers in the order of the pins, and as many of 2, F32 or F64, directions
+ of those of kind LINE, or NULL without any. A chart slides and turns as its pins let it. Errors:
+ INVALID_ARGUMENT (also for another count than that of the pins).*/
+    pub fn beltrami_session_set_pin_kinds(
+        context: *mut beltrami_context,
+        kinds: *const beltrami_buffer,
+        directions: *const beltrami_buffer,
+        count: u64,
+    ) -> beltrami_status;
+}
+extern "C" {
     /** Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
  are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
  INDEX_OUT_OF_RANGE.*/
@@ -2182,13 +2194,14 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Packs charts onto pages by the options of beltrami_pack: those of the numbers given, as for
- beltrami_session_lock, among the others, which stay; or with a count of 0 all. Locked charts and
- those with pins stay as well. Charts keep their sizes to each other, and where some stay to
- these. Where there is no room elsewhere charts stay where they are, if that is on the pages and
- injective. Page p is the unit square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE;
- errors: NO_ROOM, INVALID_ARGUMENT (also where a chart that stays lies on no page, with a face),
- INVALID_STATE (also before the first update), CANCELLED, OUT_OF_MEMORY.*/
+    /** Packs charts onto pages by the options of beltrami_pack and effort, of which QUICK takes the
+ first layout that fits: those of the numbers given, as for beltrami_session_lock, among the
+ others, which stay; or with a count of 0 all. Locked charts and those with pins stay as well.
+ Charts keep their sizes to each other, and where some stay to these. Where there is no room
+ elsewhere charts stay where they are, if that is on the pages and injective. Page p is the unit
+ square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE; errors: NO_ROOM, INVALID_ARGUMENT
+ (also where a chart that stays lies on no page, with a face), INVALID_STATE (also before the
+ first update), CANCELLED, OUT_OF_MEMORY.*/
     pub fn beltrami_session_pack(
         context: *mut beltrami_context,
         charts: *const beltrami_buffer,

@@ -286,11 +286,15 @@ impl<'a> Atlas<'a> {
 }
 
 /// A getter that writes to an array: its type and stride come last.
-type Get =
+pub(crate) type Get =
     unsafe extern "C" fn(*mut sys::beltrami_context, *mut c_void, i32, u64) -> sys::beltrami_status;
 
 /// Fails unless there is room for `len` UVs.
-fn require_room<'a>(room: UvsMut<'a>, len: usize, each: &str) -> Result<UvsMut<'a>, Error> {
+pub(crate) fn require_room<'a>(
+    room: UvsMut<'a>,
+    len: usize,
+    each: &str,
+) -> Result<UvsMut<'a>, Error> {
     if room.len() == len {
         return Ok(room);
     }

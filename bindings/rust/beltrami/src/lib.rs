@@ -7,6 +7,8 @@ mod bake;
 mod check;
 mod context;
 mod control;
+mod editor;
+mod editor_report;
 mod error;
 mod flattener;
 mod host_loop;
@@ -36,6 +38,8 @@ pub use check::{
     check_triangles_with, measure, measure_faces, measure_faces_with, measure_with, FaceDistortion,
 };
 pub use control::{CancelToken, Control, Progress};
+pub use editor::Editor;
+pub use editor_report::{Budget, Changes, EditorChart, EditorSummary, Mark};
 pub use error::{Element, Error, ErrorKind};
 pub use flattener::Flattener;
 pub use library::{build_info, has, version};
@@ -54,6 +58,7 @@ pub use view::{Index, Real, Scalar, View, ViewMut};
 
 /// Guides whose snippets are documentation tests.
 #[cfg(doctest)]
+#[doc = include_str!("guides/pins.md")]
 #[doc = include_str!("guides/project.md")]
 #[doc = include_str!("guides/rust.md")]
 mod guides {}
