@@ -78,7 +78,12 @@ void judge_atlas(beltrami_context* context, beltrami_surface surface) {
   promise(beltrami_get_packing(context, &packing) == BELTRAMI_OK, "an atlas is packed");
   if (packing.pages != 1) return;
   surface.corner_uvs = {uvs.data(), 0, BELTRAMI_F64, 0};
-  const beltrami_status status = beltrami_check_atlas(&surface, 0, &other, nullptr, 0);
+  // A chart of faces that run against most of their component is mirrored in their own winding.
+  beltrami_atlas atlas{};
+  atlas.struct_size = sizeof atlas;
+  promise(beltrami_get_atlas(context, &atlas) == BELTRAMI_OK, "an atlas has counts");
+  const beltrami_status status =
+      beltrami_check_atlas(&surface, atlas.reversed_faces > 0, &other, nullptr, 0);
   promise((status == BELTRAMI_OK) == (own.injective != 0), "both checks agree");
 }
 

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "process/failure.h"
 #include "target.h"
 
 /// main() of program/main.cpp, which the build gives this name here.
@@ -38,7 +39,8 @@ class Folder {
  public:
   Folder() : before_(open(".", O_PATH | O_CLOEXEC)) {
     const char* const shared = "/dev/shm";
-    const fs::path parent = access(shared, W_OK) == 0 ? fs::path(shared) : fs::temp_directory_path();
+    const fs::path parent =
+        access(shared, W_OK) == 0 ? fs::path(shared) : fs::temp_directory_path();
     std::string name = (parent / "beltrami_fuzz_XXXXXX").string();
     promise(before_ >= 0 && mkdtemp(name.data()) != nullptr, "there is a folder to run in");
     outer_ = name;
@@ -109,6 +111,7 @@ End run(std::vector<std::string> words) {
   End end;
   std::fflush(nullptr);
   const Caught out(1), err(2);
+  cli::forget_what_was_told();
   end.code = beltrami_main(static_cast<int>(words.size()), pointers.data());
   std::fflush(nullptr);
   end.out = out.text();
@@ -207,7 +210,7 @@ void judge_output(const std::vector<std::string>& words, const End& end) {
   for (const char* word : {"--st", "--sh", "--uv", "--pack", "--max-p", "--tex", "-"}) {
     if (word == std::string("-") ? has(words, "-h") : has(words, word)) return;
   }
-  const End check = run({"check", output, "--within-page"});
+  const End check = run({"check", output, "--within-page", "--mirrored"});
   if (check.code == 0) return;
   std::fprintf(stderr, "%s%s", check.out.c_str(), check.err.c_str());
   broken("what is written is injective to the program itself");
