@@ -104,6 +104,13 @@ class Host {
  public:
   explicit Host(Provider& data) : data_(data), input_(data) {
     promise(beltrami_create(&context_) == BELTRAMI_OK, "a context is made");
+    // Small pages and no search, so that there are many runs; calls may set them otherwise.
+    beltrami_set_int(context_, BELTRAMI_OPTION_RESOLUTION, 16);
+    beltrami_set_int(context_, BELTRAMI_OPTION_THREADS, 1);
+    beltrami_set_int(context_, BELTRAMI_OPTION_EFFORT, BELTRAMI_EFFORT_QUICK);
+    if (data.ConsumeIntegralInRange(0, 3)) {
+      beltrami_set_int(context_, BELTRAMI_OPTION_CUT, BELTRAMI_CUT_MINIMAL);
+    }
   }
   ~Host() { beltrami_destroy(context_); }
   Host(const Host&) = delete;

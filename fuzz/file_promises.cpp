@@ -121,7 +121,8 @@ void unwrap_file(const MeshFile& file, int polls, std::uint64_t most_faces) {
   const Context context = make_context();
   beltrami_context* const made = context.get();
   beltrami_set_int(made, BELTRAMI_OPTION_CUT, BELTRAMI_CUT_MINIMAL);
-  beltrami_set_int(made, BELTRAMI_OPTION_RESOLUTION, 256);
+  beltrami_set_int(made, BELTRAMI_OPTION_RESOLUTION, 32);
+  beltrami_set_int(made, BELTRAMI_OPTION_THREADS, 1);
   const cli::SurfaceView view(file);
   const beltrami_surface surface = view.surface();
   const beltrami_status status = beltrami_unwrap(made, &surface, count_down, &polls);

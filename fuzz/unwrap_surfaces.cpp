@@ -58,6 +58,19 @@ struct Part {
   }
 };
 
+/// What is asked for goes together, mostly: all calls would be refused otherwise.
+struct Plan {
+  bool pins, pages, searches, anything;
+
+  explicit Plan(Provider& data) {
+    const int kind = data.ConsumeIntegralInRange(0, 15);
+    pins = kind < 3;
+    pages = kind > 3;
+    searches = kind == 5;
+    anything = kind == 6;
+  }
+};
+
 /// Rows and columns of quads, rolled up or not, some of them cut into triangles.
 void add_grid(Provider& data, Part& part) {
   const auto columns = data.ConsumeIntegralInRange<std::uint32_t>(1, 4);
@@ -159,7 +172,7 @@ void add_straight(Provider& data, Part& part) {
   part.rectangle_corners = numbers(data, 4 * part.rectangles.size(), part.vertices() - 1);
 }
 
-Part part(Provider& data) {
+Part part(Provider& data, const Plan& plan) {
   Part out;
   for (int n = data.ConsumeIntegralInRange(1, 2); n > 0; --n) {
     data.ConsumeIntegralInRange(0, 3) ? add_grid(data, out) : add_chaos(data, out);
@@ -169,38 +182,41 @@ Part part(Provider& data) {
   }
   const auto has = [&](int one_of) { return data.ConsumeIntegralInRange(1, one_of) == 1; };
   if (has(4)) out.labels = numbers(data, out.sizes.size(), 1);
-  if (has(6)) out.materials = numbers(data, out.sizes.size(), 1);
-  if (has(6)) out.densities = factors(data, out.sizes.size());
-  if (has(6)) out.vertex_paint = factors(data, out.vertices());
+  const bool paints = plan.searches || plan.anything, pins = plan.pins || plan.anything;
+  if (paints && has(2)) out.materials = numbers(data, out.sizes.size(), 1);
+  if (paints && has(2)) out.vertex_paint = factors(data, out.vertices());
+  if ((!plan.pins || plan.anything) && has(6)) out.densities = factors(data, out.sizes.size());
   for (int i = has(3) ? 3 : 0; i > 0; --i) {
     const auto ends = edge(data, out);
     out.seams.insert(out.seams.end(), ends.begin(), ends.end());
   }
-  if (has(8)) {
+  if (paints && has(2)) {
     const auto ends = edge(data, out);
     out.painted = {ends[0], ends[1]};
     out.edge_paint = {0.5};
   }
-  if (has(3)) add_straight(data, out);
-  if (has(4)) add_pins(data, out);
+  if ((!plan.pins || plan.anything) && has(3)) add_straight(data, out);
+  if (pins && has(2)) add_pins(data, out);
   return out;
 }
 
-void set_options(Provider& data, beltrami_context* context) {
+void set_options(Provider& data, const Plan& plan, beltrami_context* context) {
   const auto set = [&](std::int32_t key, std::int64_t value) {
     promise(beltrami_set_int(context, key, value) == BELTRAMI_OK, "an option is set");
   };
-  const bool searches = data.ConsumeIntegralInRange(0, 15) == 0;
-  set(BELTRAMI_OPTION_CUT, searches ? BELTRAMI_CUT_AUTO : BELTRAMI_CUT_MINIMAL);
-  set(BELTRAMI_OPTION_EFFORT, BELTRAMI_EFFORT_QUICK);
+  set(BELTRAMI_OPTION_CUT, plan.searches ? BELTRAMI_CUT_AUTO : BELTRAMI_CUT_MINIMAL);
   set(BELTRAMI_OPTION_THREADS, 1);
-  set(BELTRAMI_OPTION_RESOLUTION, data.ConsumeBool() ? 64 : 32);
-  set(BELTRAMI_OPTION_RECTIFY, data.ConsumeIntegralInRange(0, 3) == 0);
-  set(BELTRAMI_OPTION_SNAP_TEXELS, data.ConsumeIntegralInRange(0, 3) == 0);
   set(BELTRAMI_OPTION_FLOAT32, data.ConsumeBool());
-  set(BELTRAMI_OPTION_STACK, std::max(0, data.ConsumeIntegralInRange(-4, 2)));
-  set(BELTRAMI_OPTION_PACK, data.ConsumeIntegralInRange(0, 3) == 0);
   set(BELTRAMI_OPTION_SHARE_COPIES, data.ConsumeIntegralInRange(0, 7) == 0);
+  if (!plan.pins) {
+    set(BELTRAMI_OPTION_RECTIFY, data.ConsumeIntegralInRange(0, 3) == 0);
+    set(BELTRAMI_OPTION_STACK, std::max(0, data.ConsumeIntegralInRange(-6, 2)));
+    if (!plan.pages) set(BELTRAMI_OPTION_PACK, BELTRAMI_PACK_NONE);
+  }
+  if (!plan.pages && !plan.anything) return;
+  set(BELTRAMI_OPTION_EFFORT, BELTRAMI_EFFORT_QUICK);
+  set(BELTRAMI_OPTION_RESOLUTION, data.ConsumeBool() ? 64 : 32);
+  set(BELTRAMI_OPTION_SNAP_TEXELS, data.ConsumeIntegralInRange(0, 3) == 0);
   set(BELTRAMI_OPTION_PACK_TURNS, data.ConsumeIntegralInRange(0, 2));
   beltrami_set_float(context, BELTRAMI_OPTION_MARGIN, data.ConsumeIntegralInRange(0, 4) / 2.0);
 }
@@ -305,9 +321,10 @@ void run_one(std::string_view bytes) {
   constexpr int kPolls = 2000;
   Provider data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   const Context context = make_context();
-  set_options(data, context.get());
+  const Plan plan(data);
+  set_options(data, plan, context.get());
   std::deque<Part> parts;
-  for (int n = data.ConsumeIntegralInRange(1, 3); n > 0; --n) parts.push_back(part(data));
+  for (int n = data.ConsumeIntegralInRange(1, 3); n > 0; --n) parts.push_back(part(data, plan));
   const bool again = data.ConsumeIntegralInRange(0, 7) == 0;
   std::vector<beltrami_surface> surfaces;
   for (const Part& one : parts) surfaces.push_back(one.surface());

@@ -35,7 +35,16 @@ MEMORY_MIB = 3072
 # Shapes of the generator that one turn makes, at most.
 SHAPES = 1_000_000
 # Their sizes are held down: what takes long is found with few bytes or not at all.
-MOST_INPUT = {"library": 1024, "exact": 256, "pack": 256, "search": 256}
+MOST_INPUT = {
+    "bake": 1024,
+    "exact": 256,
+    "library": 1024,
+    "pack": 256,
+    "program": 2048,
+    "search": 256,
+    "surfaces": 1024,
+    "unwrap_file": 1024,
+}
 
 
 @dataclass
