@@ -47,7 +47,6 @@ void judge_pins(const cli::Pins& pins, const cli::MeshFile& file) {
   promise(pins.lines.size() == pins.corners.size(), "every pin has a line");
   promise(pins.kinds.size() == pins.corners.size(), "every pin has a kind");
   promise(pins.directions.size() == 2 * pins.corners.size(), "every pin has a direction");
-  for (const double x : pins.uvs) promise(std::isfinite(x), "UVs of pins are finite");
   for (const std::uint64_t corner : pins.corners) {
     promise(corner < file.polygons.corners().size(), "every pin is on a corner");
   }
