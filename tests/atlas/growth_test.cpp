@@ -2,15 +2,11 @@
 // like. Counted in looks at requests to end, which no machine changes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <optional>
 #include <ostream>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "atlas/atlas.h"
 #include "atlas/types.h"
@@ -83,28 +79,6 @@ TriangleList plate(Index n) {
   return mesh;
 }
 
-/// The same with a lower side and walls: closed, a handle for each hole.
-TriangleList handles(Index n) {
-  const TriangleList top = plate(n);
-  const Index vertices = size_of(top.positions);
-  TriangleList mesh = top;
-  for (const Vec3& p : top.positions) mesh.positions.emplace_back(p.x(), p.y(), -1);
-  for (const auto& [a, b, c] : top.faces) {
-    mesh.faces.push_back({vertices + a, vertices + c, vertices + b});
-  }
-  // Edges of one face are where walls are.
-  std::vector<std::pair<Index, Index>> edges;
-  for (const Triangle& face : top.faces) {
-    for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(face[k], face[(k + 1) % 3]);
-  }
-  std::sort(edges.begin(), edges.end());
-  for (const auto& [a, b] : edges) {
-    if (std::binary_search(edges.begin(), edges.end(), std::pair(b, a))) continue;
-    add_quad(mesh, b, a, vertices + a, vertices + b);
-  }
-  return mesh;
-}
-
 /// A strip of quads, a million times as long as it is wide.
 TriangleList strip(Index n) {
   TriangleList mesh;
@@ -159,7 +133,6 @@ TEST_P(Growth, IsThatOfTheSizeTimesItsLogarithm) {
 INSTANTIATE_TEST_SUITE_P(Surfaces, Growth,
                          testing::Values(Family{"crumbs", crumbs, 500}, Family{"hub", hub, 2000},
                                          Family{"book", book, 500}, Family{"plate", plate, 900},
-                                         Family{"handles", handles, 225},
                                          Family{"strip", strip, 2000},
                                          Family{"coincident", coincident, 500}),
                          [](const auto& family) { return std::string(family.param.name); });
