@@ -34,7 +34,8 @@ TriangleList crumbs(Index n) {
   TriangleList mesh;
   const Index side = static_cast<Index>(std::ceil(std::sqrt(n)));
   for (Index i = 0; i < n; ++i) {
-    const double x = i % side, y = i / side, tilt = 0.01 * (i % 7);
+    const Index row = i / side;
+    const double x = i % side, y = row, tilt = 0.01 * (i % 7);
     const Index first = size_of(mesh.positions);
     mesh.positions.insert(mesh.positions.end(),
                           {{x, y, tilt}, {x + 0.1, y, 0}, {x, y + 0.1 + tilt, 0}});
