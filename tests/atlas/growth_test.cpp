@@ -8,13 +8,10 @@
 #include <ostream>
 #include <string>
 
-#include "atlas/atlas.h"
 #include "atlas/types.h"
 #include "base/portable_math.h"
 #include "base/types.h"
-#include "base/vectors.h"
-#include "base/work.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/polls.h"
