@@ -25,13 +25,13 @@ using cli::MeshFile;
 using Json = nlohmann::ordered_json;
 
 void judge_textures(const MeshFile& file) {
-  for (const cli::TextureUse& use : cli::gltf_textures(file)) {
-    cli::gltf_faces_of(file, use.material);
-    try {
+  try {
+    for (const cli::TextureUse& use : cli::gltf_textures(file)) {
+      cli::gltf_faces_of(file, use.material);
       cli::gltf_image(file, use);
-    } catch (const cli::Failure& failure) {
-      promise(*failure.what() != '\0', "a refusal has a sentence");
     }
+  } catch (const cli::Failure& failure) {
+    promise(*failure.what() != '\0', "a refusal has a sentence");
   }
   cli::gltf_sources(file);
   cli::gltf_attribute(file, "NORMAL", 3);

@@ -1,8 +1,11 @@
-// Seams, pins and paint beside a mesh: the first byte says which.
+// Seams, pins, paint and straight borders beside a mesh: the first byte says which.
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <beltrami/beltrami.h>
+
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +14,7 @@
 #include "files/mesh_file.h"
 #include "files/paint.h"
 #include "files/pins.h"
+#include "files/straight.h"
 #include "process/failure.h"
 #include "target.h"
 
@@ -41,11 +45,13 @@ class MemoryFile {
 void judge_pins(const cli::Pins& pins, const cli::MeshFile& file) {
   promise(pins.uvs.size() == 2 * pins.corners.size(), "every pin has a UV");
   promise(pins.lines.size() == pins.corners.size(), "every pin has a line");
+  promise(pins.kinds.size() == pins.corners.size(), "every pin has a kind");
+  promise(pins.directions.size() == 2 * pins.corners.size(), "every pin has a direction");
   for (const std::uint64_t corner : pins.corners) {
     promise(corner < file.polygons.corners().size(), "every pin is on a corner");
   }
   for (const char* word : {"pin 0", "pin 99999999999999999999", "pin"}) {
-    cli::with_lines(word, pins);
+    cli::with_lines(word, "pin", pins.lines);
   }
 }
 
@@ -58,6 +64,23 @@ void judge_paint(const cli::Paint& paint, const cli::MeshFile& file) {
   for (const double x : paint.of_edges) promise(std::isfinite(x) && x >= 0, "factors count");
 }
 
+void judge_straight(const cli::Straight& straight, const cli::MeshFile& file) {
+  promise(straight.edges.size() == 2 * straight.kinds.size(), "every edge has a kind");
+  promise(straight.edge_lines.size() == straight.kinds.size(), "every edge has a line");
+  promise(straight.rectangle_corners.size() == 4 * straight.rectangles.size(),
+          "every rectangle has corners, or none");
+  promise(straight.rectangle_lines.size() == straight.rectangles.size(),
+          "every rectangle has a line");
+  for (const std::uint64_t v : straight.edges)
+    promise(v < file.vertex_count(), "ends are vertices");
+  for (const std::uint64_t f : straight.rectangles) {
+    promise(f < file.polygons.size(), "a rectangle is that of a face");
+  }
+  for (const std::uint64_t v : straight.rectangle_corners) {
+    promise(v < file.vertex_count() || v == BELTRAMI_NO_ELEMENT, "corners are vertices");
+  }
+}
+
 }  // namespace
 
 void run_one(std::string_view bytes) {
@@ -67,7 +90,7 @@ void run_one(std::string_view bytes) {
   if (bytes.empty()) return;
   const MemoryFile list(bytes.substr(1));
   try {
-    switch (static_cast<unsigned char>(bytes[0]) % 3) {
+    switch (static_cast<unsigned char>(bytes[0]) % 4) {
       case 0:
         for (const std::uint32_t v : cli::read_seams(list.path(), mesh)) {
           promise(v < mesh.vertex_count(), "ends of seams are vertices");
@@ -75,6 +98,9 @@ void run_one(std::string_view bytes) {
         break;
       case 1:
         judge_pins(cli::read_pins(list.path(), mesh), mesh);
+        break;
+      case 2:
+        judge_straight(cli::read_straight(list.path(), mesh), mesh);
         break;
       default:
         judge_paint(cli::read_paint(list.path(), mesh), mesh);

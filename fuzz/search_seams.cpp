@@ -21,7 +21,7 @@ using shapes::Shape;
 
 /// A torus, a tube, a sphere or a sheet of a few cells, of which vertices are shifted.
 Shape bent_grid(Provider& data) {
-  shapes::GridSize size{data.ConsumeIntegralInRange(1, 5), data.ConsumeIntegralInRange(1, 5)};
+  shapes::GridSize size{data.ConsumeIntegralInRange(1, 3), data.ConsumeIntegralInRange(1, 4)};
   size.quads = data.ConsumeBool();
   const double around = data.ConsumeFloatingPointInRange(0.0, 6.3);
   const double along = data.ConsumeFloatingPointInRange(0.0, 6.3);
@@ -38,7 +38,7 @@ Shape bent_grid(Provider& data) {
 
 /// A shape of the tests' own kinds, or a bent grid; some of its faces are left out.
 Shape any_shape(Provider& data) {
-  constexpr std::size_t kMostFaces = 60;
+  constexpr std::size_t kMostFaces = 24;
   Shape shape = data.ConsumeBool() ? bent_grid(data)
                                    : shapes::make_shape(data.ConsumeIntegral<std::uint32_t>());
   shape.flat = false;
@@ -51,7 +51,7 @@ Shape any_shape(Provider& data) {
     }
     shape = shapes::only(shape, keep);
   }
-  shape.resolution = data.ConsumeBool() ? 256 : 64;
+  shape.resolution = data.ConsumeIntegralInRange(0, 7) ? 32 : 256;
   shape.margin = data.ConsumeIntegralInRange(0, 4);
   return shape;
 }

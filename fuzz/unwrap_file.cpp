@@ -30,7 +30,7 @@ cli::MeshFile read(char format, std::string_view bytes) {
 
 void run_one(std::string_view bytes) {
   constexpr int kPolls = 400;
-  constexpr std::uint64_t kMostFaces = 60;
+  constexpr std::uint64_t kMostFaces = 24;
   if (bytes.empty()) return;
   try {
     unwrap_file(read(bytes[0], bytes.substr(1)), kPolls, kMostFaces);

@@ -2,9 +2,10 @@
 
     soak_faults.py PROGRAM --seconds N [--seed N]
 
-Each round starts the program on a small mesh, and disturbs it: by a signal at a random time, by a
-limit of the size of files, or by a second run that writes the same file. An output is to be the old
-file or a whole new one, nothing is to be left beside it, and the exit code is to be a known one.
+Each round starts the program on a small mesh, and disturbs it: by a signal at a random time, or by
+the one that it cannot handle, by a limit of the size of files or of memory, or by a second run that
+writes the same file. An output is to be the old file or a whole new one, nothing is to be left
+beside it, and the exit code is to be a known one.
 Prints a line for each broken promise, and the count of rounds. The exit code is 1 where one broke.
 """
 
@@ -24,10 +25,13 @@ from pathlib import Path
 
 OLD = b"what was there before\n"
 CELLS = 12  # of a bent sheet to a side
-EXIT_DONE, EXIT_UNUSABLE, EXIT_CANCELLED = 0, 2, 130
+EXIT_DONE, EXIT_UNUSABLE, EXIT_NO_MEMORY, EXIT_CANCELLED = 0, 2, 4, 130
 # An output of another size than these is cut off by a limit.
 LONGEST_DELAY = 0.4  # seconds; a run takes less
 LONGEST_FILE = 20_000  # bytes; an output is longer
+MIB = 2**20
+STEP_OF_MEMORY = 2 * MIB  # in which the least is sought that the program starts in
+MORE_MEMORY = 24 * MIB  # than that: some runs end by it, and some do not
 
 
 def sheet() -> str:
@@ -41,9 +45,9 @@ def sheet() -> str:
     return "\n".join(lines) + "\n"
 
 
-def limit_files(size: int) -> None:
-    """Hold the files of a child down to a size; in the child."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+def limit(what: int, size: int) -> None:
+    """Hold a resource down to a size; in the child."""
+    resource.setrlimit(what, (size, size))
 
 
 class Runs:
@@ -56,6 +60,20 @@ class Runs:
         process = self.start()
         process.communicate()
         self.whole = self.out.read_bytes()
+        self.least_memory = self.memory_to_start()
+
+    def memory_to_start(self) -> int:
+        """Return a size of memory in which the program can say its version."""
+        size, code = 0, 1
+        while code:
+            size += STEP_OF_MEMORY
+            code = subprocess.run(
+                [str(self.program), "--version"],
+                capture_output=True,
+                check=False,
+                preexec_fn=partial(limit, resource.RLIMIT_AS, size),
+            ).returncode
+        return size
 
     def start(self, prepare: Callable[[], None] | None = None) -> subprocess.Popen[bytes]:
         """Start one run."""
@@ -97,12 +115,32 @@ class Runs:
     def by_limit(self, chance: random.Random) -> list[str]:
         """Have the output be too long for the limit."""
         size = chance.randrange(min(LONGEST_FILE, len(self.whole)))
-        process = self.start(partial(limit_files, size))
+        process = self.start(partial(limit, resource.RLIMIT_FSIZE, size))
         errors = process.communicate()[1]
         wrong = self.faults({process.returncode}, {EXIT_UNUSABLE})
         if errors.count(b"\n") != 1:
             wrong.append(f"{errors.count(b'%c' % 10)} lines on stderr")
         return wrong
+
+    def by_memory(self, chance: random.Random) -> list[str]:
+        """Have memory end anywhere."""
+        size = self.least_memory + chance.randrange(MORE_MEMORY)
+        process = self.start(partial(limit, resource.RLIMIT_AS, size))
+        errors = process.communicate()[1]
+        wrong = self.faults({process.returncode}, {EXIT_DONE, EXIT_NO_MEMORY})
+        if errors.count(b"\n") != (process.returncode != EXIT_DONE):
+            wrong.append(f"{errors.count(b'%c' % 10)} lines on stderr")
+        return wrong
+
+    def by_kill(self, chance: random.Random) -> list[str]:
+        """End a run at once: what it was writing may stay, under a name of its own."""
+        process = self.start()
+        time.sleep(chance.uniform(0, LONGEST_DELAY))
+        process.kill()
+        process.communicate()
+        for left in self.folder.glob("*.tmp"):
+            left.unlink()
+        return self.faults({process.returncode}, {EXIT_DONE, -signal.SIGKILL})
 
     def by_each_other(self, _chance: random.Random) -> list[str]:
         """Have two runs write one file."""
@@ -124,7 +162,7 @@ def main() -> int:
     rounds, broken = 0, 0
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(arguments.program.resolve(), Path(folder))
-        ways = [runs.by_signal, runs.by_limit, runs.by_each_other]
+        ways = [runs.by_signal, runs.by_limit, runs.by_memory, runs.by_kill, runs.by_each_other]
         while time.monotonic() < end:
             way = ways[rounds % len(ways)]
             runs.fresh()

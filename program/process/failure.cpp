@@ -49,6 +49,9 @@ std::string_view take_shown(std::string_view& text) {
   return !whole ? "?" : is_control(character) ? " " : as_it_is;
 }
 
+/// The exit code of what was told.
+std::atomic<int> told{0};
+
 /// Why the process is being terminated. Rethrowing needs no memory, other than copying would.
 int tell_reason() noexcept {
   if (!std::current_exception()) {
@@ -96,7 +99,6 @@ std::string one_line(std::string_view text) {
 }
 
 int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept {
-  static std::atomic<int> told{0};
   int none = 0;
   if (!told.compare_exchange_strong(none, exit_code)) return none;
   std::array<char, 4096>
@@ -113,6 +115,10 @@ int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept 
   line[used++] = '\n';
   write_all(kStandardError, {line.data(), used});  // where else could a failure be told?
   return exit_code;
+}
+
+void forget_what_was_told() noexcept {
+  told = 0;
 }
 
 int print(std::string_view text, const char* what, int exit_code) noexcept {

@@ -62,6 +62,9 @@ std::string one_line(std::string_view text);
 /// of the first call. Needs no memory.
 int tell(int exit_code, std::initializer_list<std::string_view> parts) noexcept;
 
+/// The next call of tell() is a first one again: for a process that runs several commands.
+void forget_what_was_told() noexcept;
+
 /// Writes `text` to standard output. Returns `exit_code`, or kExitUnprinted once that has been
 /// told: `what`, such as "the summary", is lost. Needs no memory.
 int print(std::string_view text, const char* what, int exit_code) noexcept;

@@ -6,6 +6,7 @@
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "cut/across.h"
+#include "cut/bridges.h"
 #include "cut/seam_paths.h"
 #include "cut/seam_search.h"
 #include "mesh/surface.h"
@@ -79,8 +80,9 @@ bool SeamSearch::is_alone(Index halfedge) const {
 }
 
 /// Whether the two parts were joined at less cost, or a handle opened. Where the seams stay joined
-/// without it, the arc goes around a handle, or between charts and stays.
-bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
+/// without it, as they do unless it `may_part` them, the arc goes around a handle, or between
+/// charts and stays.
+bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles, bool may_part) {
   double cost = 0;
   for (const Index h : arc) {
     // What was moved before may end here now.
@@ -90,9 +92,10 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
   }
   for (const Index h : arc) mark(h, false);
   const Index end = surface_.target(arc.back());
-  const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
+  std::vector<bool> joined;
+  if (may_part) joined = joined_to(surface_.origin(arc.front()));
   std::vector<Index> path = arc;
-  if (!joined[end]) {
+  if (may_part && !joined[end]) {
     const SeamPaths paths(surface_, joined, cost_, cost);
     const std::vector<bool> others = joined_to(end);
     Index nearest = end;
@@ -117,10 +120,14 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles) {
 
 bool SeamSearch::reconnect_all(bool around_handles) {
   bool gained = false;
+  // There may be hundreds of arcs around charts. One that is on a cycle stays so while others are
+  // joined elsewhere, but not while they go around handles elsewhere.
+  const std::vector<bool> parts =
+      around_handles ? std::vector<bool>(surface_.twin.size(), true) : bridges(surface_, seams_);
   for (const std::vector<Index>& arc : arcs(true)) {
     poll_interrupt();
     if (work_.out_of_time()) return false;
-    gained = reconnect(arc, around_handles) || gained;
+    gained = reconnect(arc, around_handles, parts[arc.front()]) || gained;
   }
   return gained;
 }

@@ -110,7 +110,7 @@ class SeamSearch {
   std::vector<std::vector<Index>> arcs(bool ends_at_anchors) const;
   std::vector<bool> joined_to(Index vertex) const;
   bool is_alone(Index halfedge) const;
-  bool reconnect(const std::vector<Index>& arc, bool around_handles);
+  bool reconnect(const std::vector<Index>& arc, bool around_handles, bool may_part);
   bool reconnect_all(bool around_handles);
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);

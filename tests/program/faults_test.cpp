@@ -2,6 +2,7 @@
 // is there when a rename fails. By libraries that are loaded before the program's own.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "gltf_builder.h"
+#include "picture/stb_in_one_place.h"
 #include "run_program.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -35,6 +37,10 @@ class OutOfMemory : public testing::TestWithParam<Command> {
     }
     directory.file("in.obj", kSquareWithUvs);
     directory.file("out.obj", "precious");
+    directory.file("textured.obj", "mtllib m.mtl\nusemtl a\n" + kSquareWithUvs);
+    directory.file("m.mtl", "newmtl a\nmap_Kd t.png\n");
+    const std::vector<std::uint8_t> texels = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
+    directory.file("t.png", png_bytes(2, 2, 3, texels.data()));
     around.environment.emplace_back("LD_PRELOAD", BELTRAMI_FAIL_ALLOCATIONS);
     return run(arguments, around);
   }
@@ -63,7 +69,9 @@ class OutOfMemory : public testing::TestWithParam<Command> {
     if (outcome.exit_code == 0) {  // a library had a way round
       EXPECT_EQ(outcome.err, "");
       EXPECT_EQ(directory.read("out.obj") != "precious", writes("out.obj"));
-      EXPECT_EQ(nlohmann::json::parse(directory.read("r.json"))["status"], "BELTRAMI_OK");
+      if (writes("r.json")) {
+        EXPECT_EQ(nlohmann::json::parse(directory.read("r.json"))["status"], "BELTRAMI_OK");
+      }
       return;
     }
     EXPECT_EQ(outcome.exit_code, 4) << outcome.signal << outcome.err;
@@ -89,7 +97,30 @@ INSTANTIATE_TEST_SUITE_P(
         Command{"check", {"check", "in.obj", "--report", "r.json"}, 5},
         Command{
             "flatten", {"flatten", "in.obj", "out.obj", "--report", "r.json", "--threads", "1"}, 3},
-        Command{"picture", {"check", "in.obj", "--report", "r.json", "--picture", "p.png"}, 499}),
+        Command{"picture", {"check", "in.obj", "--report", "r.json", "--picture", "p.png"}, 499},
+        Command{"unwrap",
+                {"unwrap", "in.obj", "out.obj", "--report", "r.json", "--threads", "1",
+                 "--resolution", "32", "--cut", "minimal"},
+                449},
+        Command{"search",
+                {"unwrap", "in.obj", "out.obj", "--report", "r.json", "--threads", "1",
+                 "--resolution", "32", "--html", "page.html", "--masks", "mask.png"},
+                997},
+        Command{"pack",
+                {"pack", "in.obj", "out.obj", "--report", "r.json", "--threads", "1",
+                 "--resolution", "32"},
+                449},
+        Command{"bake",
+                {"unwrap", "textured.obj", "out.obj", "--report", "r.json", "--threads", "1",
+                 "--resolution", "32", "--cut", "minimal", "--bake"},
+                499},
+        Command{"merge",
+                {"unwrap", "textured.obj", "new.glb", "--report", "r.json", "--threads", "1",
+                 "--resolution", "32", "--cut", "minimal", "--bake", "--merge-materials"},
+                499},
+        Command{"transfer",
+                {"transfer", "in.obj", "textured.obj", "t.png", "o.png", "--resolution", "8"},
+                197}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(Disk, HasEveryFileBeforeTheFirstIsReplacedAndEveryNameAtTheEnd) {
