@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,7 @@ using Weights = std::array<double, 3>;
 constexpr int kBandRows = 16;
 /// Places along a side of a texel, where it is parted.
 constexpr int kParts = 4;
+static_assert(kParts * kParts == kPartsOfTexel);
 constexpr std::uint16_t kAllParts = 0xFFFF;
 /// Texels of the old page from one place of a new texel to the next: bilinear reading spans as
 /// many, and every mean of more places would blur.
@@ -335,7 +337,7 @@ class Baker {
     band.count.covered += count;
     std::array<TexelSums, kAtOnce> sums;
     std::fill_n(sums.begin(), count, TexelSums{});
-    if (job_.source_of) return settle_each(placed, row, columns, band);
+    if (job_.show) return settle_each(placed, row, columns, band);
     if (job_.sources[placed.number].page == kNoPage) {
       band.count.without_source += count;
       return;
@@ -366,7 +368,8 @@ class Baker {
   void settle_each(const Placed& placed, int row, const Columns& columns, Band& band) const {
     for (int column = columns.from; column < columns.to; ++column) {
       TexelSums sums{};
-      if (!read_found(placed, {column + 0.5, row + 0.5}, 0, sums, band.hint)) {
+      const Weights weights = placed.slopes.weights(column + 0.5, row + 0.5);
+      if (!job_.show(placed.number, weights, kWholeTexel, band.hint, sums)) {
         ++band.count.without_source;
         continue;
       }
@@ -412,27 +415,21 @@ class Baker {
       const double y = row + (static_cast<double>(part_row) + 0.5) / kParts;
       if (!is_inside(placed.slopes.weights(x, y))) continue;
       gathered.taken = static_cast<std::uint16_t>(gathered.taken | bit);
-      const int level = placed.density.level_of_parts;
-      if (read_found(placed, {x, y}, level, gathered.sums, hint)) gathered.count += 1;
+      if (read_part(placed, {x, y}, part, gathered.sums, hint)) gathered.count += 1;
     }
   }
 
   /// Adds what is shown at a place of the page, within the triangle, if that has a source.
-  bool read_found(const Placed& placed, const std::array<double, 2>& at, int level, TexelSums& sums,
-                  std::size_t& hint) const {
+  bool read_part(const Placed& placed, const std::array<double, 2>& at, int part, TexelSums& sums,
+                 std::size_t& hint) const {
     const auto [x, y] = at;
-    if (job_.source_of) {
-      const std::optional<TexelSource> found =
-          job_.source_of(placed.number, placed.slopes.weights(x, y), hint);
-      if (!found) return false;
-      const Place place{found->u, found->v};
-      job_.pages[found->page].add({&place, 1}, job_.reading, level, {&sums, 1});
-      return true;
+    if (job_.show) {
+      return job_.show(placed.number, placed.slopes.weights(x, y), part, hint, sums);
     }
     if (job_.sources[placed.number].page == kNoPage) return false;
     const Place place{placed.u[0] * x + placed.u[1] * y + placed.u[2],
                       placed.v[0] * x + placed.v[1] * y + placed.v[2]};
-    read(placed, {&place, 1}, at, level, {&sums, 1});
+    read(placed, {&place, 1}, at, placed.density.level_of_parts, {&sums, 1});
     return true;
   }
 
