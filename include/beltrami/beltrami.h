@@ -287,7 +287,10 @@ enum {
   /* Those that a rigid motion carries onto one before them, lengths within a ten thousandth. */
   BELTRAMI_STACK_COPIES = 1,
   /* Mirror images, too. */
-  BELTRAMI_STACK_MIRRORED = 2
+  BELTRAMI_STACK_MIRRORED = 2,
+  /* And the halves of what is symmetric to the plane of the whole surface: it is cut along the
+   * edges in that, if no face lies across it. */
+  BELTRAMI_STACK_HALVES = 3
 };
 
 /* Which charts become rectangles, beside those that a surface names. */

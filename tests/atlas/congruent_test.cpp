@@ -183,6 +183,63 @@ TEST(Stack, CopiesLieOnTheFirstOfTheirKindToTheLastBit) {
   }
 }
 
+/// A relief over x >= 0 that is symmetric in no way, and its mirror image, which meet at x = 0;
+/// `beyond`: how far the first column of the relief lies on the other side, and its faces with it.
+TriangleList butterfly(double beyond) {
+  constexpr int kSide = 9;
+  TriangleList wing;
+  for (int j = 0; j <= kSide; ++j) {
+    for (int i = 0; i <= kSide; ++i) {
+      const double x = double(i) / kSide, y = double(j) / kSide;
+      const double height = i == 0 ? 0 : 0.2 * std::sin(3 * x + 1) * std::cos(4 * y) + 0.1 * x * y;
+      wing.positions.emplace_back(i == 0 ? beyond : x, y * (1 + 0.3 * x), height);
+    }
+  }
+  for (Index j = 0; j < kSide; ++j) {
+    for (Index i = 0; i < kSide; ++i) {
+      const Index a = j * (kSide + 1) + i, b = a + kSide + 1;
+      wing.faces.push_back({a, a + 1, b + 1});
+      wing.faces.push_back({a, b + 1, b});
+    }
+  }
+  return meshes::together({wing, reflected(wing)});
+}
+
+TEST(Stack, TheHalvesOfWhatIsSymmetricLieOnEachOther) {
+  const TriangleList mesh = butterfly(0);
+  const Index n = size_of(mesh.faces) / 2;
+  for (const bool is_searched : {true, false}) {
+    AtlasOptions options;
+    if (is_searched) options.target = SeamTarget{};
+    options.pack = PackOptions{};
+    options.stack = Stack::kMirrored;
+    const Atlas whole = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(whole.stacked_parts, 0) << "it is one component";
+    options.stack = Stack::kHalves;
+    const Atlas halves = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(halves.outcome, Outcome::kOk);
+    EXPECT_EQ(halves.stacked_parts, 1);
+    EXPECT_EQ(uv_triangles(halves, 0, n), uv_triangles(halves, n, 2 * n));
+    EXPECT_GT(halves.pages->texels_per_unit, whole.pages->texels_per_unit);
+    expect_own_vertices(mesh, halves);
+  }
+}
+
+TEST(Stack, WhatHasNoHalvesStaysInOnePiece) {
+  const TriangleList across = butterfly(-0.03), blob_alone = blob();
+  for (const TriangleList& mesh : {across, blob_alone}) {
+    AtlasOptions options;
+    options.target = SeamTarget{};
+    options.stack = Stack::kHalves;
+    const Atlas atlas = atlases::unwrapped(mesh, options);
+    options.stack = Stack::kMirrored;
+    const Atlas mirrored = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(atlas.outcome, Outcome::kOk);
+    EXPECT_EQ(atlas.stacked_parts, mirrored.stacked_parts);
+    EXPECT_EQ(atlas.charts.size(), mirrored.charts.size());
+  }
+}
+
 TEST(Stack, AFaceLiesOnTheOneThatItIsACopyOf) {
   const TriangleList mesh = meshes::together({blob(), copied(reflected(blob()), 7)});
   AtlasOptions options;

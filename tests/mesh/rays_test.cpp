@@ -52,7 +52,7 @@ TEST(Rays, MeetWhatTheFirstOfAllFacesIs) {
   const FaceTree tree(mesh.positions, mesh.faces);
   const Rays rays(mesh.positions, mesh.faces, tree);
   int met = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     const Ray ray{2 * numbers.vector(), numbers.vector().normalized(), 3};
     double first = ray.reach;
     bool stopped = false;
