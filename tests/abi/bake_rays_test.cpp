@@ -63,8 +63,7 @@ struct Job {
 
   beltrami_status bake(std::int64_t threads = 1) {
     const Context context = create();
-    EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_THREADS, threads),
-              BELTRAMI_OK);
+    EXPECT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_THREADS, threads), BELTRAMI_OK);
     const beltrami_image view = {image.data(), 2, 2, 0, BELTRAMI_F32, 1};
     std::vector<double> read = fine.uvs;
     for (double& x : read) x = 0.25 + 0.5 * x;

@@ -183,30 +183,39 @@ TEST(Stack, CopiesLieOnTheFirstOfTheirKindToTheLastBit) {
   }
 }
 
-/// A relief over x >= 0 that is symmetric in no way, and its mirror image, which meet at x = 0;
-/// `beyond`: how far the first column of the relief lies on the other side, and its faces with it.
-TriangleList butterfly(double beyond) {
-  constexpr int kSide = 9;
-  TriangleList wing;
-  for (int j = 0; j <= kSide; ++j) {
-    for (int i = 0; i <= kSide; ++i) {
-      const double x = double(i) / kSide, y = double(j) / kSide;
-      const double height = i == 0 ? 0 : 0.2 * std::sin(3 * x + 1) * std::cos(4 * y) + 0.1 * x * y;
-      wing.positions.emplace_back(i == 0 ? beyond : x, y * (1 + 0.3 * x), height);
+/// Of a relief that is symmetric to x = 0, and to nothing else.
+Vec3 on_relief(double x, double y) {
+  const double off = std::abs(x), height = 0.2 * std::sin(3 * off + 1) * std::cos(4 * y);
+  return {x, y * (1 + 0.3 * off), height + 0.1 * off * y};
+}
+
+/// A grid on it, of `columns` from x = `first` to 1.
+TriangleList relief(double first, int columns) {
+  constexpr int kRows = 9;
+  TriangleList mesh;
+  for (int j = 0; j <= kRows; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      mesh.positions.push_back(
+          on_relief(first + (1 - first) * double(i) / columns, double(j) / kRows));
     }
   }
-  for (Index j = 0; j < kSide; ++j) {
-    for (Index i = 0; i < kSide; ++i) {
-      const Index a = j * (kSide + 1) + i, b = a + kSide + 1;
-      wing.faces.push_back({a, a + 1, b + 1});
-      wing.faces.push_back({a, b + 1, b});
+  for (Index j = 0; j < kRows; ++j) {
+    for (Index i = 0; i < columns; ++i) {
+      const Index a = j * (columns + 1) + i, b = a + columns + 1;
+      mesh.faces.push_back({a, a + 1, b + 1});
+      mesh.faces.push_back({a, b + 1, b});
     }
   }
-  return meshes::together({wing, reflected(wing)});
+  return mesh;
+}
+
+/// One side of it, and its mirror image, which meet at x = 0.
+TriangleList butterfly() {
+  return meshes::together({relief(0, 9), reflected(relief(0, 9))});
 }
 
 TEST(Stack, TheHalvesOfWhatIsSymmetricLieOnEachOther) {
-  const TriangleList mesh = butterfly(0);
+  const TriangleList mesh = butterfly();
   const Index n = size_of(mesh.faces) / 2;
   for (const bool is_searched : {true, false}) {
     AtlasOptions options;
@@ -226,8 +235,8 @@ TEST(Stack, TheHalvesOfWhatIsSymmetricLieOnEachOther) {
 }
 
 TEST(Stack, WhatHasNoHalvesStaysInOnePiece) {
-  const TriangleList across = butterfly(-0.03), blob_alone = blob();
-  for (const TriangleList& mesh : {across, blob_alone}) {
+  // The middle column lies across the plane.
+  for (const TriangleList& mesh : {relief(-1, 9), blob()}) {
     AtlasOptions options;
     options.target = SeamTarget{};
     options.stack = Stack::kHalves;

@@ -233,8 +233,8 @@ def test_a_wall_hides_half_of_the_sky_by_its_sine(dtype: Any) -> None:
 
 def test_a_cage_sees_what_is_too_far_for_the_nearest_place() -> None:
     image = noise(np.uint8, 3)
-    above = PLACES + [0, 0, 0.3]
-    given: Any = dict(vertices=PLACES, source_vertices=above, resolution=32)
+    above = PLACES + np.array([0, 0, 0.3])
+    given: Any = {"vertices": PLACES, "source_vertices": above, "resolution": 32}
     with pytest.raises(beltrami.InvalidArgumentError, match="no source"):
         beltrami.bake(image, SQUARE, SQUARE, **given)
     baked = beltrami.bake(image, SQUARE, SQUARE, cage=0.5, **given)

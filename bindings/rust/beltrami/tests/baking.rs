@@ -94,7 +94,7 @@ fn a_cage_sees_what_is_too_far_for_the_nearest_place() {
         .positions(&below)
         .source_positions(&above)
         .resolution(32);
-    assert_eq!(bake.bake().unwrap_err().kind(), ErrorKind::InvalidArgument);
+    assert_eq!(bake.bake().unwrap_err().kind, ErrorKind::InvalidArgument);
     assert_eq!(bake.cage(0.5).bake().unwrap().pixels, pixels);
 }
 
