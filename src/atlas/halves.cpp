@@ -7,6 +7,7 @@
 #include "base/interrupt.h"
 #include "base/vectors.h"
 #include "cut/mirror.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
