@@ -149,9 +149,9 @@ class Bake {
     if (sees_sky()) {
       // The parts of a texel look into their share of the directions each.
       const bool whole = part == kWholeTexel;
-      const double open =
-          surface_->open_share(*found, directions_, whole ? 0 : static_cast<std::size_t>(part),
-                               whole ? 1 : kPartsOfTexel);
+      const double open = surface_->open_share(
+          *found, directions_, whole ? 0 : static_cast<std::size_t>(part) % directions_.size(),
+          whole ? 1 : kPartsOfTexel);
       for (float& sum : sums) sum += 2 * textures_.front().zero() * static_cast<float>(open);
       return true;
     }

@@ -380,9 +380,9 @@ class Baker {
 
   /// Gathers places of texels that belong to no triangle alone.
   void draw_shared(const Placed& placed, Band& band) const {
-    poll_interrupt();
     const auto [begin, end] = rows_of(placed, band);
     for (int row = begin; row < end; ++row) {
+      poll_interrupt();
       gather(placed, row, columns(placed, row, placed.outer), band);
     }
   }
