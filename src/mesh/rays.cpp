@@ -45,12 +45,12 @@ double entry(const Vec3& origin, const Vec3& per_direction, double reach,
              const Eigen::AlignedBox3d& box) {
   double first = 0, last = reach;
   for (Eigen::Index d = 0; d < 3; ++d) {
-    double near = (box.min()[d] - origin[d]) * per_direction[d];
-    double far = (box.max()[d] - origin[d]) * per_direction[d];
-    if (near > far) std::swap(near, far);
-    // A ray within a side of the box has no numbers here, and is not kept out by them.
-    first = std::max(first, near);
-    last = std::min(last, far);
+    const double low = (box.min()[d] - origin[d]) * per_direction[d];
+    const double high = (box.max()[d] - origin[d]) * per_direction[d];
+    // A ray within a side of the box has one that is no number, and is not kept out by it: min and
+    // max give their first argument then, and so the order of these matters.
+    first = std::max(first, std::min(low, high));
+    last = std::min(last, std::max(high, low));
   }
   constexpr double kRounding = 1e-12;  // of the way to the box
   return first <= last * (1 + kRounding) ? first : kNever;
