@@ -1,7 +1,9 @@
 #include "atlas/halves.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "base/interrupt.h"
@@ -17,18 +19,32 @@ namespace {
 /// congruent pieces may be.
 constexpr double kSamePlace = 1e-4;
 
+/// Corners of faces, in ascending order.
+std::vector<Triangle> sorted_faces(const Surface& surface) {
+  std::vector<Triangle> faces = surface.faces;
+  for (Triangle& face : faces) std::sort(face.begin(), face.end());
+  sort_interruptibly(faces.begin(), faces.end(), std::less<>());
+  return faces;
+}
+
 /// The mirror as the faces of a surface have it.
 class Halves {
  public:
   Halves(const Surface& surface, const Mirror& mirror, double tolerance)
-      : surface_(surface), mirror_(mirror), tolerance_(tolerance) {}
+      : surface_(surface), mirror_(mirror), tolerance_(tolerance), faces_(sorted_faces(surface)) {}
 
-  /// 1 or -1 for a face on a side of the plane; 0 for one that is on both, or has a vertex without
-  /// a partner.
+  /// 1 or -1 for a face on a side of the plane; 0 for one that is on both, or is mirrored to no
+  /// face.
   int side(Index face) const {
     int side = 0;
-    for (const Index v : surface_.faces[face]) {
+    Triangle image = surface_.faces[face];
+    for (Index& v : image) {
       if (!has_partner(v)) return 0;
+      v = partner(v);
+    }
+    std::sort(image.begin(), image.end());
+    if (!std::binary_search(faces_.begin(), faces_.end(), image)) return 0;
+    for (const Index v : surface_.faces[face]) {
       if (mirror_.side[v] == 0) continue;
       if (side != 0 && side != mirror_.side[v]) return 0;
       side = mirror_.side[v];
@@ -37,8 +53,10 @@ class Halves {
   }
 
  private:
+  Index partner(Index v) const { return mirror_.side[v] == 0 ? v : mirror_.image[v]; }
+
   bool has_partner(Index v) const {
-    const Index other = mirror_.side[v] == 0 ? v : mirror_.image[v];
+    const Index other = partner(v);
     if (other == kNone) return false;
     if (other != v && (mirror_.image[other] != v || mirror_.side[other] == mirror_.side[v])) {
       return false;
@@ -51,6 +69,7 @@ class Halves {
   const Surface& surface_;
   const Mirror& mirror_;
   double tolerance_;
+  std::vector<Triangle> faces_;
 };
 
 /// Per face, a number of its component.
