@@ -1,13 +1,16 @@
 #include "atlas/halves.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <map>
 #include <optional>
+#include <utility>
 
+#include "atlas/congruent.h"
+#include "atlas/open.h"
 #include "base/interrupt.h"
 #include "base/vectors.h"
+#include "cut/given.h"
 #include "cut/mirror.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
@@ -19,32 +22,18 @@ namespace {
 /// congruent pieces may be.
 constexpr double kSamePlace = 1e-4;
 
-/// Corners of faces, in ascending order.
-std::vector<Triangle> sorted_faces(const Surface& surface) {
-  std::vector<Triangle> faces = surface.faces;
-  for (Triangle& face : faces) std::sort(face.begin(), face.end());
-  sort_interruptibly(faces.begin(), faces.end(), std::less<>());
-  return faces;
-}
-
 /// The mirror as the faces of a surface have it.
 class Halves {
  public:
   Halves(const Surface& surface, const Mirror& mirror, double tolerance)
-      : surface_(surface), mirror_(mirror), tolerance_(tolerance), faces_(sorted_faces(surface)) {}
+      : surface_(surface), mirror_(mirror), tolerance_(tolerance) {}
 
-  /// 1 or -1 for a face on a side of the plane; 0 for one that is on both, or is mirrored to no
-  /// face.
+  /// 1 or -1 for a face on a side of the plane; 0 for one that is on both, or has a vertex without
+  /// a partner.
   int side(Index face) const {
     int side = 0;
-    Triangle image = surface_.faces[face];
-    for (Index& v : image) {
-      if (!has_partner(v)) return 0;
-      v = partner(v);
-    }
-    std::sort(image.begin(), image.end());
-    if (!std::binary_search(faces_.begin(), faces_.end(), image)) return 0;
     for (const Index v : surface_.faces[face]) {
+      if (!has_partner(v)) return 0;
       if (mirror_.side[v] == 0) continue;
       if (side != 0 && side != mirror_.side[v]) return 0;
       side = mirror_.side[v];
@@ -53,10 +42,8 @@ class Halves {
   }
 
  private:
-  Index partner(Index v) const { return mirror_.side[v] == 0 ? v : mirror_.image[v]; }
-
   bool has_partner(Index v) const {
-    const Index other = partner(v);
+    const Index other = mirror_.side[v] == 0 ? v : mirror_.image[v];
     if (other == kNone) return false;
     if (other != v && (mirror_.image[other] != v || mirror_.side[other] == mirror_.side[v])) {
       return false;
@@ -69,7 +56,6 @@ class Halves {
   const Surface& surface_;
   const Mirror& mirror_;
   double tolerance_;
-  std::vector<Triangle> faces_;
 };
 
 /// Per face, a number of its component.
@@ -96,15 +82,16 @@ std::vector<Index> components(const Surface& surface) {
   return component;
 }
 
-}  // namespace
+/// An edge where its component is to be parted, as half-edge.
+struct Parting {
+  Index half_edge, component;
+};
 
-std::vector<std::array<Index, 2>> edges_between_halves(const Admitted& admitted, const Work& work) {
-  const Surface& surface = admitted.surface;
+std::vector<Parting> partings(const Surface& surface, const std::vector<Index>& component,
+                              const Work& work) {
   const std::optional<Mirror> mirror = find_mirror(surface, kSamePlace, work);
   if (!mirror) return {};
-  const double tolerance = kSamePlace * std::sqrt(surface_area(surface, work));
-  const Halves halves(surface, *mirror, tolerance);
-  const std::vector<Index> component = components(surface);
+  const Halves halves(surface, *mirror, kSamePlace * std::sqrt(surface_area(surface, work)));
   std::vector<std::int8_t> side(surface.faces.size());
   std::vector<bool> parts(surface.faces.size(), true);  // of the numbers of components
   PollSometimes poll;
@@ -113,16 +100,58 @@ std::vector<std::array<Index, 2>> edges_between_halves(const Admitted& admitted,
     side[f] = static_cast<std::int8_t>(halves.side(f));
     if (side[f] == 0) parts[component[f]] = false;
   }
-  std::vector<std::array<Index, 2>> edges;
+  std::vector<Parting> found;
   for (Index h = 0; h < size_of(surface.twin); ++h) {
-    poll();
     const Index twin = surface.twin[h];
     if (twin < h || twin == kNone || side[h / 3] == side[twin / 3]) continue;
-    if (!parts[component[h / 3]]) continue;
-    edges.push_back(
-        {admitted.input_vertex[surface.origin(h)], admitted.input_vertex[surface.target(h)]});
+    if (parts[component[h / 3]]) found.push_back({h, component[h / 3]});
   }
-  return edges;
+  return found;
+}
+
+/// Per number of a component whether each of its pieces has the shape of another one of them.
+std::vector<bool> is_halved(const std::vector<SurfacePiece>& pieces,
+                            const std::vector<Index>& component) {
+  const std::vector<Index> first = first_congruent(pieces);
+  // The component and the first of its kind, per piece.
+  std::map<std::pair<Index, Index>, Index> alike;
+  const auto kind = [&](Index p) { return std::pair(component[pieces[p].face.front()], first[p]); };
+  for (Index p = 0; p < size_of(pieces); ++p) ++alike[kind(p)];
+  std::vector<bool> halved(component.size(), true);
+  for (Index p = 0; p < size_of(pieces); ++p) {
+    if (alike[kind(p)] < 2) halved[kind(p).first] = false;
+  }
+  return halved;
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> edges_between_halves(const AtlasInput& input,
+                                                       const Admitted& admitted,
+                                                       const AtlasOptions& options,
+                                                       const Work& work) {
+  const Surface& surface = admitted.surface;
+  const std::vector<Index> component = components(surface);
+  std::vector<Parting> found = partings(surface, component, work);
+  const auto edges_of = [&] {
+    std::vector<std::array<Index, 2>> edges;
+    for (const Parting& parting : found) {
+      edges.push_back({admitted.input_vertex[surface.origin(parting.half_edge)],
+                       admitted.input_vertex[surface.target(parting.half_edge)]});
+    }
+    return edges;
+  };
+  if (found.empty()) return {};
+  // Whether halves are alike is seen once they are apart.
+  GivenCuts cuts = input.cuts;
+  const std::vector<std::array<Index, 2>> edges = edges_of();
+  cuts.edges.insert(cuts.edges.end(), edges.begin(), edges.end());
+  ReadySurface ready =
+      make_ready(admitted, cuts, options.fill_limit, options.admit.polygons, input.hints, work);
+  const std::vector<bool> halved =
+      is_halved(components_of(std::move(ready.whole), work), component);
+  std::erase_if(found, [&](const Parting& parting) { return !halved[parting.component]; });
+  return edges_of();
 }
 
 }  // namespace beltrami

@@ -132,7 +132,7 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   run_stage("cut", work.part(0, kReady), stages, [&](StageStatistics&, const Work& inner) {
     GivenCuts cuts = input.cuts;
     if (options.stack == Stack::kHalves) {
-      const auto between = edges_between_halves(admitted, inner.aside());
+      const auto between = edges_between_halves(input, admitted, options, inner.aside());
       cuts.edges.insert(cuts.edges.end(), between.begin(), between.end());
     }
     ReadySurface ready =

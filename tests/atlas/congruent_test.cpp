@@ -209,9 +209,20 @@ TriangleList relief(double first, int columns) {
   return mesh;
 }
 
-/// One side of it, and its mirror image, which meet at x = 0.
+/// One side of it, and its mirror image, which have their vertices at x = 0 in common.
 TriangleList butterfly() {
-  return meshes::together({relief(0, 9), reflected(relief(0, 9))});
+  TriangleList mesh = relief(0, 9);
+  const TriangleList image = reflected(mesh);
+  std::vector<Index> number(image.positions.size());
+  for (Index v = 0; v < size_of(number); ++v) {
+    const bool in_common = image.positions[v].x() == 0;
+    number[v] = in_common ? v : size_of(mesh.positions);
+    if (!in_common) mesh.positions.push_back(image.positions[v]);
+  }
+  for (const Triangle& face : image.faces) {
+    mesh.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
+  }
+  return mesh;
 }
 
 TEST(Stack, TheHalvesOfWhatIsSymmetricLieOnEachOther) {
