@@ -55,8 +55,8 @@ struct AtlasInput {
   std::vector<ChartRectangle> rectangles = {};
 };
 
-/// Which components of one shape lie on each other; with kHalves those that are symmetric to a plane
-/// of the surface are cut along it, and so are two that do.
+/// Which components of one shape lie on each other; with kHalves those that are symmetric to the
+/// plane of the whole surface are cut along it, and their halves do.
 enum class Stack { kNone, kCopies, kMirrored, kHalves };
 
 struct AtlasOptions {
