@@ -94,10 +94,14 @@ constexpr const char* kTransfer =
     "With 'normals' OUT is a normal map of what the fine mesh OLD has and the coarse mesh NEW has\n"
     "not, along the tangents of MikkTSpace; with 'heights' it is how far OLD is from NEW along "
     "the\n"
-    "normals of NEW.\n\n"
+    "normals of NEW; with 'occlusion' how much of a grey sky OLD sees there.\n\n"
+    "With --cage a texel shows what is seen of OLD from outside: a ray comes along the smooth "
+    "normal\n"
+    "of NEW, from D above it to D below it. Where it meets nothing, the nearest place is taken.\n\n"
     "  beltrami unwrap painted.obj better.obj\n"
     "  beltrami transfer painted.obj better.obj paint.png better.png --margin 4\n"
-    "  beltrami transfer scan.ply coarse.glb normals bumps.png --resolution 2048";
+    "  beltrami transfer scan.ply coarse.glb normals bumps.png --resolution 2048\n"
+    "  beltrami transfer scan.ply coarse.glb occlusion shade.png --cage 0.05";
 
 constexpr const char* kReportHelp =
     "Write a report; - prints it on standard output instead of the summary";
@@ -176,8 +180,8 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->required();
   command
       ->add_option("TEXTURE", arguments.texture,
-                   "Texture to read: .png, .jpg, .webp, .hdr or .exr; or 'normals' or 'heights'\n"
-                   "of OLD itself, which needs no UVs then")
+                   "Texture to read: .png, .jpg, .webp, .hdr or .exr; or 'normals', 'heights' or\n"
+                   "'occlusion' of OLD itself, which needs no UVs then")
       ->required();
   command
       ->add_option("OUT", arguments.output,
@@ -200,6 +204,17 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command
       ->add_option("--margin", arguments.margin, "Texels of gutters to fill [0 to 1024; default 2]")
       ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  command
+      ->add_option("--cage", arguments.cage,
+                   "How far rays along the smooth normals of NEW look for OLD, outwards and\n"
+                   "inwards, in the unit of the meshes; 0 takes the nearest places [default 0]")
+      ->check(CLI::Range(0.0, 1e30))
+      ->type_name("D");
+  command
+      ->add_option("--rays", arguments.rays,
+                   "Rays to the sky of each texel, for 'occlusion' [1 to 4096; default 128]")
+      ->check(CLI::Range(1, 4096))
       ->type_name("N");
   add_reach(*command, arguments.reach);
   command->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");

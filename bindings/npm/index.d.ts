@@ -249,8 +249,8 @@ export interface UnwrapOptions extends Running {
   effort?: 'quick' | 'normal' | 'high';
   /** How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them. A number from 0 to 100. Default: 1.5, or as the preset has it. */
   flatSeams?: number;
-  /** Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams. Default: none. */
-  stack?: 'none' | 'copies' | 'mirrored';
+  /** Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams. Default: none. */
+  stack?: 'none' | 'copies' | 'mirrored' | 'halves';
   /** Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height). Default: none. */
   rectify?: 'none' | 'grids';
   /** True turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room. Default: false. */

@@ -287,7 +287,10 @@ enum {
   /* Those that a rigid motion carries onto one before them, lengths within a ten thousandth. */
   BELTRAMI_STACK_COPIES = 1,
   /* Mirror images, too. */
-  BELTRAMI_STACK_MIRRORED = 2
+  BELTRAMI_STACK_MIRRORED = 2,
+  /* And the halves of what is symmetric to the plane of the whole surface: it is cut along the
+   * edges in that, if no face lies across it. */
+  BELTRAMI_STACK_HALVES = 3
 };
 
 /* Which charts become rectangles, beside those that a surface names. */
@@ -1240,9 +1243,11 @@ enum {
   BELTRAMI_PIXELS_LINEAR = 0, /* as they are: roughness, heights, linear light */
   BELTRAMI_PIXELS_SRGB = 1,   /* colours, in linear light; a second or fourth channel is linear */
   BELTRAMI_PIXELS_SRGB_ALPHA = 2, /* the same, and a colour counts by that channel, its alpha */
-  BELTRAMI_PIXELS_NORMALS = 3     /* of tangent space, with 3 or 4 channels: x and y of normals,
+  BELTRAMI_PIXELS_NORMALS = 3,    /* of tangent space, with 3 or 4 channels: x and y of normals,
                                    * 0 at the middle of the type's range (F32: 0.5), are turned from
                                    * the axes of the old UVs to those of the new ones */
+  BELTRAMI_PIXELS_OCCLUSION = 4   /* none are read: the share of a grey sky that a face sees, from
+                                   * 0 to 1, is written to all channels */
 };
 
 /* An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
@@ -1261,7 +1266,8 @@ typedef struct beltrami_image {
 typedef struct beltrami_bake_job {
   uint32_t struct_size;
   uint32_t flags;               /* 0 */
-  const beltrami_image* images; /* one for each old page, of one type and as many channels */
+  const beltrami_image* images; /* one for each old page, of one type and as many channels. For
+                                 * OCCLUSION one, whose type and channels alone are looked at */
   uint64_t image_count;
   int32_t pixels;             /* BELTRAMI_PIXELS_ */
   int32_t filter;             /* BELTRAMI_FILTER_ */
@@ -1277,8 +1283,8 @@ typedef struct beltrami_bake_job {
   beltrami_buffer old_pages;  /* optional: as new_pages, of images; all bits set: no source */
   beltrami_buffer positions;  /* an item of 3 per corner, F32 or F64; optional but for NORMALS
                                * and with source_positions */
-  beltrami_buffer normals;    /* optional, for NORMALS: an item of 3 per corner, F32 or F64; NaN
-                               * or left out: that of the face */
+  beltrami_buffer normals;    /* optional, for NORMALS and with a cage: an item of 3 per corner, F32
+                               * or F64; NaN or left out: that of the face */
   beltrami_buffer tangents;   /* optional, for NORMALS: an item of 4 per corner, F32 or F64: the
                                * axis of the old u, and -1 where UVs are mirrored, else 1. Left
                                * out: as MikkTSpace has them */
@@ -1293,6 +1299,13 @@ typedef struct beltrami_bake_job {
                           * page */
   uint64_t page_count;   /* new pages, 1 to 1000 */
   const int32_t* cancel; /* as in beltrami_mesh */
+  double cage;           /* with source_positions, in their unit: 0, or how far rays along the
+                          * normals look for the source. One comes from as far outside and goes as
+                          * far inside; the first face that it comes to from outside is shown.
+                          * Where it meets none, the nearest place is. Gaps stay closed where
+                          * corners in one place have one normal */
+  uint64_t rays;         /* for OCCLUSION, 1 to 4096: from each texel to the sky. The faces hide it,
+                          * or with source_positions those of the source */
 } beltrami_bake_job;
 
 /* Room for what is baked, and what is told of it. */

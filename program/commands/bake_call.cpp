@@ -62,7 +62,7 @@ beltrami_bake_job BakeCall::job(const std::vector<beltrami_image>& views) const 
   job.struct_size = sizeof job;
   job.images = views.data();
   job.image_count = views.size();
-  job.pixels = pixels_of(meaning);
+  job.pixels = rays > 0 ? BELTRAMI_PIXELS_OCCLUSION : pixels_of(meaning);
   job.filter = reading.nearest ? BELTRAMI_FILTER_NEAREST : BELTRAMI_FILTER_LINEAR;
   job.wrap_u = wrap_of(reading.along_u);
   job.wrap_v = wrap_of(reading.along_v);
@@ -79,6 +79,8 @@ beltrami_bake_job BakeCall::job(const std::vector<beltrami_image>& views) const 
   job.resolution = static_cast<std::uint64_t>(side);
   job.gutter = gutter;
   job.page_count = page_count;
+  job.cage = cage;
+  job.rays = rays;
   job.cancel = interrupt_number();
   return job;
 }

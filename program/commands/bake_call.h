@@ -37,6 +37,8 @@ struct BakeCall {
   std::vector<std::uint64_t> old_pages, new_pages;   ///< of each triangle, or empty
   std::vector<double> positions, normals, tangents;  ///< of each corner, or empty
   std::vector<double> source_positions;              ///< of each corner of other triangles
+  double cage = 0;
+  std::uint64_t rays = 0;  ///< more than 0: ambient occlusion, and images are not read
 
   std::vector<Pixels> pages;  ///< the result
 

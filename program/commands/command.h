@@ -64,6 +64,8 @@ struct TransferArguments {
   std::string wrap = "auto";  ///< what the texture shows beyond its edges, or that it has tiles
   int resolution = 0;         ///< of the output; 0: of the texture
   int margin = 2;             ///< texels of gutters
+  double cage = 0;            ///< how far rays look for OLD; 0: the nearest places
+  std::uint64_t rays = 0;     ///< to the sky; 0: as many as usual
   Reach reach = Reach::kItsFolder;
   bool quiet = false;
 };

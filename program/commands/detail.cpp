@@ -31,7 +31,8 @@ void append(std::vector<double>& to, const Vector3& value) {
   to.insert(to.end(), value.begin(), value.end());
 }
 
-/// Per corner of `triangles`, the mean of the triangles at its place, by their areas.
+}  // namespace
+
 std::vector<double> smooth_normals(const std::vector<double>& places) {
   PointNumbers<3> numbers;
   std::vector<Vector3> sums;
@@ -53,6 +54,8 @@ std::vector<double> smooth_normals(const std::vector<double>& places) {
   for (const std::uint32_t number : number_of) append(normals, normalized(sums[number], {}));
   return normals;
 }
+
+namespace {
 
 /// Of the file's corners, NaN for none; empty where the file has none.
 std::vector<double> given_normals(const MeshFile& file) {
@@ -89,34 +92,69 @@ std::vector<double> given_normals(const MeshFile& file) {
   return found;
 }
 
-/// Two numbers of each corner of triangles.
-using Pairs = std::vector<std::array<double, 2>>;
+/// Two numbers of each corner of triangles, or of each texel.
+using Pairs = std::vector<std::array<float, 2>>;
+/// What texels of a page have: a vector, and a number beside it.
+using Texels = std::vector<std::array<float, 4>>;
 
-/// Numbers of corners, on the pages of the coarse mesh.
+Vector3 vector_of(const std::array<float, 4>& texel) {
+  return {double(texel[0]), double(texel[1]), double(texel[2])};
+}
+
+/// Numbers of corners, on a page of the coarse mesh.
 class Spreading {
  public:
-  Spreading(const DetailMesh& fine, const DetailMesh& coarse, const DetailLayout& layout,
-            beltrami_context* context, const std::string& name)
-      : fine_(fine), coarse_(coarse), layout_(layout), context_(context), name_(name) {}
+  Spreading(const DetailLooks& looks, const DetailMesh& fine, const DetailMesh& coarse,
+            const std::vector<double>& uvs, beltrami_context* context, const std::string& name)
+      : looks_(looks), fine_(fine), coarse_(coarse), uvs_(uvs), context_(context), name_(name) {}
 
-  /// Per texel of all pages: what the coarse mesh has there, or the nearest place of the fine one.
-  std::vector<Vector3> spread(const std::vector<double>& of_corners, bool of_fine) {
-    Pairs first, second;
-    for (std::size_t c = 0; c < of_corners.size() / 3; ++c) {
-      const Vector3 value = vector_at(of_corners, c);
+  /// Per texel: what the coarse mesh has there, or the fine one where it is found. Corners have a
+  /// vector each, and may have a number beside it.
+  Texels spread(const std::vector<double>& vectors, bool of_fine,
+                const std::vector<double>& beside = {}) {
+    std::vector<std::array<double, 2>> first, second;
+    for (std::size_t c = 0; c < vectors.size() / 3; ++c) {
+      const Vector3 value = vector_at(vectors, c);
       first.push_back({value[0], value[1]});
-      second.push_back({value[2], 0});
+      second.push_back({value[2], beside.empty() ? 0 : beside[c]});
     }
-    const Pairs one = spread_pairs(first, of_fine), two = spread_pairs(second, of_fine);
-    std::vector<Vector3> found(one.size());
-    for (std::size_t i = 0; i < one.size(); ++i) found[i] = {one[i][0], one[i][1], two[i][0]};
+    Texels found;
+    for (const auto& [x, y] : spread_pairs(first, of_fine)) found.push_back({x, y, 0, 0});
+    const Pairs rest = spread_pairs(second, of_fine);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      found[i][2] = rest[i][0];
+      found[i][3] = rest[i][1];
+    }
     return found;
   }
+
+  /// Per texel, what of the sky the fine mesh sees.
+  Pixels sky() {
+    constexpr std::uint64_t kUsualRays = 128;  // steps of less than 1 %
+    BakeCall call = empty_call(true);
+    call.rays = looks_.rays > 0 ? looks_.rays : kUsualRays;
+    call.images.push_back({1, 1, 1, std::vector<std::uint8_t>(sizeof(float), 0), sizeof(float)});
+    outcome_ = call.run(context_, name_, {});
+    return std::move(call.pages.front());
+  }
+
   const BakeOutcome& outcome() const { return outcome_; }
 
  private:
+  BakeCall empty_call(bool of_fine) const {
+    BakeCall call;
+    call.side = looks_.side;
+    call.new_uvs = uvs_;
+    if (!of_fine) return call;
+    call.positions = coarse_.places;
+    call.source_positions = fine_.places;
+    call.cage = looks_.cage;
+    if (looks_.cage > 0) call.normals = coarse_.smooth;
+    return call;
+  }
+
   /// Numbers go through beltrami_bake as places on a ramp, whose texels say where they are read.
-  Pairs spread_pairs(const Pairs& pairs, bool of_fine) {
+  Pairs spread_pairs(const std::vector<std::array<double, 2>>& pairs, bool of_fine) {
     std::array<double, 2> low = {0, 0}, high = {0, 0};
     for (std::size_t k = 0; k < 2; ++k) {
       const auto finite = [&](const auto& pair) { return std::isfinite(pair[k]); };
@@ -129,32 +167,23 @@ class Spreading {
       }
       if (!(high[k] > low[k])) high[k] = low[k] + 1;
     }
-    BakeCall call;
+    BakeCall call = empty_call(of_fine);
     call.reading = {Beyond::kClamp, Beyond::kClamp};
     call.images.push_back(ramp());
-    call.side = layout_.side;
-    call.page_count = layout_.page_count;
-    call.new_uvs = layout_.uvs;
-    call.new_pages = layout_.pages;
     // Between the centres of its two texels a side shows all from 0 to 1.
     for (const auto& pair : pairs) {
       for (std::size_t k = 0; k < 2; ++k) {
         call.old_uvs.push_back(0.25 + 0.5 * (pair[k] - low[k]) / (high[k] - low[k]));
       }
     }
-    if (of_fine) {
-      call.positions = coarse_.places;
-      call.source_positions = fine_.places;
-    }
     const BakeOutcome outcome = call.run(context_, name_, {});
     if (of_fine) outcome_ = outcome;
-    Pairs found;
-    for (const Pixels& page : call.pages) {
-      for (std::size_t i = 0; i < page.values.size(); i += 2 * sizeof(float)) {
-        std::array<float, 2> read{};
-        std::memcpy(read.data(), &page.values[i], sizeof read);
-        found.push_back({low[0] + (high[0] - low[0]) * double(read[0]),
-                         low[1] + (high[1] - low[1]) * double(read[1])});
+    const Pixels& page = call.pages.front();
+    Pairs found(page.values.size() / (2 * sizeof(float)));
+    std::memcpy(found.data(), page.values.data(), page.values.size());
+    for (auto& pair : found) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        pair[k] = static_cast<float>(low[k] + (high[k] - low[k]) * double(pair[k]));
       }
     }
     return found;
@@ -169,37 +198,72 @@ class Spreading {
     return image;
   }
 
+  const DetailLooks& looks_;
   const DetailMesh& fine_;
   const DetailMesh& coarse_;
-  const DetailLayout& layout_;
+  const std::vector<double>& uvs_;
   beltrami_context* context_;
   const std::string& name_;
   BakeOutcome outcome_;
 };
 
-/// Tangents of the coarse mesh, and their sides as vectors of one number.
-std::array<std::vector<double>, 2> tangents_of(const DetailMesh& coarse,
-                                               const DetailLayout& layout) {
-  std::array<std::vector<double>, 2> found;
-  for (const auto& [x, y, z, side] : corner_tangents({coarse.places, coarse.normals, layout.uvs})) {
-    append(found[0], {x, y, z});
-    append(found[1], {side, 0, 0});
-  }
-  return found;
-}
-
-Pixels page_of(const std::vector<Vector3>& values, std::size_t first, int side, int components) {
+/// The page that `shown(texel)` gives, of as many components as its arrays.
+template <class Shown>
+Pixels page_of(int side, int components, const Shown& shown) {
   Pixels page{side, side, components, {}, sizeof(float)};
-  const auto width = static_cast<std::size_t>(components);
   const std::size_t texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+  const auto width = static_cast<std::size_t>(components);
   page.values.resize(sizeof(float) * width * texels);
   for (std::size_t i = 0; i < texels; ++i) {
+    const Vector3 values = shown(i);
     for (std::size_t k = 0; k < width; ++k) {
-      const auto value = static_cast<float>(values[first + i][k]);
+      const auto value = static_cast<float>(values[k]);
       std::memcpy(&page.values[sizeof(float) * (width * i + k)], &value, sizeof value);
     }
   }
   return page;
+}
+
+Pixels heights(Spreading& spreading, const DetailMesh& fine, const DetailMesh& coarse, int side) {
+  const Texels normals = spreading.spread(coarse.normals, false);
+  const Texels there = spreading.spread(fine.places, true);
+  const Texels here = spreading.spread(coarse.places, false);
+  return page_of(side, 1, [&](std::size_t i) -> Vector3 {
+    const Vector3 normal = normalized(vector_of(normals[i]), {});
+    return {dot(vector_of(there[i]) - vector_of(here[i]), normal), 0, 0};
+  });
+}
+
+Pixels directions(Spreading& spreading, const DetailMesh& fine, const DetailMesh& coarse,
+                  const std::vector<double>& uvs, int side) {
+  std::vector<double> tangents, sides;
+  for (const auto& [x, y, z, of_side] : corner_tangents({coarse.places, coarse.normals, uvs})) {
+    append(tangents, {x, y, z});
+    sides.push_back(of_side);
+  }
+  const Texels normals = spreading.spread(coarse.normals, false);
+  const Texels there = spreading.spread(fine.normals, true);
+  const Texels along = spreading.spread(tangents, false, sides);
+  return page_of(side, 3, [&](std::size_t i) -> Vector3 {
+    const Vector3 n = normalized(vector_of(normals[i]), {0, 0, 1});
+    const Vector3 a = vector_of(along[i]);
+    const Vector3 t = normalized(a - dot(a, n) * n, {});
+    const Vector3 b = (along[i][3] < 0 ? -1.0 : 1.0) * cross(n, t);
+    const Vector3 seen = normalized(vector_of(there[i]), n);
+    const Vector3 local =
+        normalized({dot(seen, t), dot(seen, b), std::max(dot(seen, n), 0.0)}, {0, 0, 1});
+    return {0.5 + 0.5 * local[0], 0.5 + 0.5 * local[1], 0.5 + 0.5 * local[2]};
+  });
+}
+
+std::vector<double> of_triangles(const std::vector<double>& values,
+                                 const std::vector<std::size_t>& triangles) {
+  std::vector<double> found;
+  for (const std::size_t t : triangles) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(9 * t);
+    found.insert(found.end(), first, first + 9);
+  }
+  return found;
 }
 
 }  // namespace
@@ -207,6 +271,7 @@ Pixels page_of(const std::vector<Vector3>& values, std::size_t first, int side, 
 std::optional<Detail> detail_named(const std::string& word) {
   if (word == "normals") return Detail::kNormals;
   if (word == "heights") return Detail::kHeights;
+  if (word == "occlusion") return Detail::kOcclusion;
   return std::nullopt;
 }
 
@@ -215,7 +280,7 @@ DetailMesh detail_mesh(const MeshFile& file, const std::vector<std::uint32_t>& t
   for (const std::uint32_t corner : triangles) {
     append(mesh.places, vector_at(file.positions, file.polygons.corners()[corner]));
   }
-  mesh.normals = smooth_normals(mesh.places);
+  mesh.normals = mesh.smooth = smooth_normals(mesh.places);
   const std::vector<double> given = given_normals(file);
   for (std::size_t c = 0; c < triangles.size() && !given.empty(); ++c) {
     const Vector3 own = vector_at(given, triangles[c]);
@@ -226,63 +291,57 @@ DetailMesh detail_mesh(const MeshFile& file, const std::vector<std::uint32_t>& t
   return mesh;
 }
 
-DetailPages bake_detail(Detail detail, const DetailMesh& fine, const DetailMesh& coarse,
-                        const DetailLayout& layout, beltrami_context* context,
-                        const std::string& name) {
-  Spreading spreading(fine, coarse, layout, context, name);
-  const std::vector<Vector3> normals = spreading.spread(coarse.normals, false);
-  std::vector<Vector3> shown;
-  if (detail == Detail::kHeights) {
-    const std::vector<Vector3> there = spreading.spread(fine.places, true);
-    const std::vector<Vector3> here = spreading.spread(coarse.places, false);
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      shown.push_back({dot(there[i] - here[i], normalized(normals[i], {})), 0, 0});
-    }
-  } else {
-    const std::vector<Vector3> there = spreading.spread(fine.normals, true);
-    const auto [tangents, sides] = tangents_of(coarse, layout);
-    const std::vector<Vector3> along = spreading.spread(tangents, false);
-    const std::vector<Vector3> side = spreading.spread(sides, false);
-    for (std::size_t i = 0; i < there.size(); ++i) {
-      const Vector3 n = normalized(normals[i], {0, 0, 1});
-      const Vector3 t = normalized(along[i] - dot(along[i], n) * n, {});
-      const Vector3 b = (side[i][0] < 0 ? -1.0 : 1.0) * cross(n, t);
-      const Vector3 seen = normalized(there[i], n);
-      const Vector3 local =
-          normalized({dot(seen, t), dot(seen, b), std::max(dot(seen, n), 0.0)}, {0, 0, 1});
-      shown.push_back({0.5 + 0.5 * local[0], 0.5 + 0.5 * local[1], 0.5 + 0.5 * local[2]});
-    }
-  }
-  DetailPages pages;
-  pages.outcome = spreading.outcome();
-  const auto side = static_cast<std::size_t>(layout.side);
-  for (std::size_t page = 0; page < layout.page_count; ++page) {
-    pages.pages.push_back(
-        page_of(shown, page * side * side, layout.side, detail == Detail::kHeights ? 1 : 3));
-  }
-  return pages;
+DetailMesh part_of(const DetailMesh& mesh, const std::vector<std::size_t>& triangles) {
+  return {of_triangles(mesh.places, triangles), of_triangles(mesh.normals, triangles),
+          of_triangles(mesh.smooth, triangles)};
 }
 
-std::vector<Pixels> in_16_bits(const std::vector<Pixels>& pages, Detail detail, double& scale) {
-  std::vector<std::vector<float>> all;
-  scale = 0;
-  for (const Pixels& page : pages) {
-    std::vector<float>& values = all.emplace_back(page.values.size() / sizeof(float));
-    std::memcpy(values.data(), page.values.data(), page.values.size());
-    for (const float value : values) scale = std::max(scale, double(std::abs(value)));
+DetailPage bake_detail(const DetailLooks& looks, const DetailMesh& fine, const DetailMesh& coarse,
+                       const std::vector<double>& uvs, beltrami_context* context,
+                       const std::string& name) {
+  Spreading spreading(looks, fine, coarse, uvs, context, name);
+  DetailPage made;
+  switch (looks.detail) {
+    case Detail::kNormals:
+      made.page = directions(spreading, fine, coarse, uvs, looks.side);
+      break;
+    case Detail::kHeights:
+      made.page = heights(spreading, fine, coarse, looks.side);
+      break;
+    case Detail::kOcclusion:
+      made.page = spreading.sky();
+      break;
   }
-  if (detail == Detail::kNormals) scale = 0;
-  std::vector<Pixels> made;
-  for (std::size_t i = 0; i < pages.size(); ++i) {
-    Pixels& page = made.emplace_back(pages[i]);
-    page.bytes = 2;
-    page.values.resize(2 * all[i].size());
-    for (std::size_t k = 0; k < all[i].size(); ++k) {
-      const double unit = scale > 0                    ? 0.5 + 0.5 * double(all[i][k]) / scale
-                          : detail == Detail::kHeights ? 0.5
-                                                       : double(all[i][k]);
-      const auto number = static_cast<std::uint16_t>(65535 * std::clamp(unit, 0.0, 1.0) + 0.5);
-      std::memcpy(&page.values[2 * k], &number, sizeof number);
+  made.outcome = spreading.outcome();
+  return made;
+}
+
+double greatest(const Pixels& page) {
+  double most = 0;
+  for (std::size_t i = 0; i < page.values.size(); i += sizeof(float)) {
+    float value = 0;
+    std::memcpy(&value, &page.values[i], sizeof value);
+    most = std::max(most, double(std::abs(value)));
+  }
+  return most;
+}
+
+Pixels in_whole_numbers(const Pixels& page, Detail detail, double scale) {
+  const bool byte = detail == Detail::kOcclusion;
+  Pixels made{page.width, page.height, page.components, {}, std::size_t{byte ? 1u : 2u}};
+  const std::size_t count = page.values.size() / sizeof(float);
+  made.values.resize(made.bytes * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    float value = 0;
+    std::memcpy(&value, &page.values[sizeof value * i], sizeof value);
+    double unit = double(value);
+    if (detail == Detail::kHeights) unit = scale > 0 ? 0.5 + 0.5 * unit / scale : 0.5;
+    unit = std::clamp(unit, 0.0, 1.0);
+    if (byte) {
+      made.values[i] = static_cast<std::uint8_t>(255 * unit + 0.5);
+    } else {
+      const auto number = static_cast<std::uint16_t>(65535 * unit + 0.5);
+      std::memcpy(&made.values[2 * i], &number, sizeof number);
     }
   }
   return made;

@@ -215,6 +215,24 @@ std::vector<double> numbers_of(const std::vector<TriangleUvs>& triangles) {
   return numbers;
 }
 
+/// u v of the corners of some triangles.
+std::vector<double> picked(const std::vector<TriangleUvs>& uvs,
+                           const std::vector<std::size_t>& triangles) {
+  std::vector<TriangleUvs> some;
+  for (const std::size_t t : triangles) some.push_back(uvs[t]);
+  return numbers_of(some);
+}
+
+/// x y z of the corners of some triangles.
+std::vector<double> picked(const std::vector<SpacePoint>& places,
+                           const std::vector<std::size_t>& triangles) {
+  std::vector<SpacePoint> some;
+  for (const std::size_t t : triangles) {
+    for (std::size_t k = 0; k < 3 && !places.empty(); ++k) some.push_back(places[3 * t + k]);
+  }
+  return numbers_of(some);
+}
+
 class Transfer {
  public:
   explicit Transfer(const TransferArguments& arguments) : arguments_(arguments) {}
@@ -222,14 +240,17 @@ class Transfer {
   int run() {
     require_distinct({arguments_.old_mesh, arguments_.texture, arguments_.output});
     require_distinct({arguments_.new_mesh, arguments_.texture, arguments_.output});
-    if (const std::optional<Detail> detail = detail_named(arguments_.texture)) {
-      return run_detail(*detail);
+    const std::optional<Detail> detail = detail_named(arguments_.texture);
+    if (arguments_.rays > 0 && detail != Detail::kOcclusion) {
+      throw Failure("--rays are for 'occlusion' alone: leave them out");
     }
+    if (detail) return run_detail(*detail);
     if (light_format_of(arguments_.output) == LightFormat::kNone) {
       require_png_name(arguments_.output);
     }
     read_triangles();
     part_into_pages(to_, arguments_.new_mesh, "pack it first");
+    find_pages();
     if (shows_tiles()) {
       part_into_pages(from_, arguments_.old_mesh,
                       "a texture that repeats is read with --wrap repeat");
@@ -244,7 +265,13 @@ class Transfer {
     const MeshFile to = read_mesh(arguments_.new_mesh, Content::kUvs, arguments_.reach);
     const std::vector<std::uint32_t> corners = triangle_corners(to);
     to_ = textured(to, corners);
-    if (same_polygons(from, to)) {
+    // Who gives a cage wants what is seen from there, whatever the faces are.
+    if (arguments_.cage > 0) {
+      const std::vector<double> normals = smooth_normals(numbers_of(to_.places));
+      for (std::size_t i = 0; i < normals.size(); i += 3) {
+        ray_normals_.push_back({normals[i], normals[i + 1], normals[i + 2]});
+      }
+    } else if (same_polygons(from, to)) {
       const bool same_vertices =
           joins_faces(to) && from.polygons.corners() == to.polygons.corners();
       from_ = textured(from, corners);
@@ -303,22 +330,7 @@ class Transfer {
   }
 
   int write_pages() {
-    const std::vector<std::uint64_t> pages = pages_in_use(to_);
-    BakeCall call;
-    call.images = std::move(textures_);
-    call.reading = reading();
-    call.side = side_;
-    call.gutter = static_cast<std::uint64_t>(arguments_.margin);
-    call.old_uvs = numbers_of(from_.uvs);
-    call.old_pages = from_.pages;
-    call.new_uvs = new_uvs();
-    call.page_count = pages.size();
-    call.new_pages = new_pages(pages);
-    if (elsewhere_) {
-      call.positions = numbers_of(to_.places);
-      call.source_positions = numbers_of(from_.places);
-    }
-    const Pixels& known = call.images[pages_in_use(from_).front()];
+    const Pixels& known = textures_[pages_in_use(from_).front()];
     const bool light = known.bytes == sizeof(float);
     const LightFormat format = light_format_of(arguments_.output);
     require_output(arguments_.output, light);
@@ -326,36 +338,73 @@ class Transfer {
       throw Failure(arguments_.output + ": HDR has three components, and the texture has " +
                     std::to_string(known.components) + ": use the extension .exr");
     }
-    const Context context = make_context();
-    const BakeOutcome outcome = call.run(context.get(), arguments_.new_mesh, {});
-    std::vector<std::string> files;
-    for (const Pixels& page : call.pages) {
-      files.push_back(light ? light_bytes(page, format) : png_bytes(page));
+    for (const std::uint64_t page : pages_) {
+      BakeCall call = call_of(triangles_of(page));
+      call.images = std::move(textures_);
+      call.reading = reading();
+      call.gutter = static_cast<std::uint64_t>(arguments_.margin);
+      add(call.run(context_.get(), arguments_.new_mesh, {}));
+      textures_ = std::move(call.images);
+      const Pixels& made = call.pages.front();
+      write_page(page, light ? light_bytes(made, format) : png_bytes(made));
     }
-    return write_files(pages, files, outcome, "");
+    return finish("");
   }
 
-  /// Puts a file for each page in place, and prints the summary, with a line of one kind of output.
-  int write_files(const std::vector<std::uint64_t>& pages, const std::vector<std::string>& files,
-                  const BakeOutcome& outcome, const std::string& line) {
-    const std::uint64_t covered = outcome.texels, without_source = outcome.without_source;
-    std::deque<AtomicFile> outputs;
-    for (std::size_t i = 0; i < pages.size(); ++i) {
-      throw_if_interrupted();
-      AtomicFile& file = outputs.emplace_back(
-          pages.back() > 0 ? path_of_page(arguments_.output, pages[i]) : arguments_.output);
-      file.write(files[i]);
-      file.close();
+  /// Of triangles of NEW, without images.
+  BakeCall call_of(const std::vector<std::size_t>& triangles) const {
+    BakeCall call;
+    call.side = side_;
+    call.new_uvs = picked(to_.uvs, triangles);
+    if (!elsewhere_) {
+      call.old_uvs = picked(from_.uvs, triangles);
+      for (const std::size_t t : triangles) call.old_pages.push_back(from_.pages[t]);
+      return call;
     }
+    call.old_uvs = numbers_of(from_.uvs);
+    call.old_pages = from_.pages;
+    call.positions = picked(to_.places, triangles);
+    call.source_positions = numbers_of(from_.places);
+    call.cage = arguments_.cage;
+    call.normals = picked(ray_normals_, triangles);
+    return call;
+  }
+
+  std::vector<std::size_t> triangles_of(std::uint64_t page) const {
+    std::vector<std::size_t> found;
+    for (std::size_t t = 0; t < to_.pages.size(); ++t) {
+      if (to_.pages[t] == page) found.push_back(t);
+    }
+    return found;
+  }
+
+  void add(const BakeOutcome& outcome) {
+    outcome_.texels += outcome.texels;
+    outcome_.without_source += outcome.without_source;
+  }
+
+  void write_page(std::uint64_t page, const std::string& bytes) {
+    throw_if_interrupted();
+    AtomicFile& file = outputs_.emplace_back(
+        pages_.back() > 0 ? path_of_page(arguments_.output, page) : arguments_.output);
+    file.write(bytes);
+    file.close();
+  }
+
+  /// Puts the files in place, and prints the summary, with a line of one kind of output.
+  int finish(const std::string& line) {
+    const auto& [covered, without_source, old_texels] = outcome_;
     require_sources(covered, without_source);
     throw_if_interrupted();
-    commit(outputs);
+    commit(outputs_);
     if (arguments_.quiet) return kExitInjective;
-    std::string summary =
-        "pages      " + std::to_string(pages.size()) + " of " + std::to_string(side_) + " texels\n";
+    std::string summary = "pages      " + std::to_string(pages_.size()) + " of " +
+                          std::to_string(side_) + " texels\n";
     if (repeats_) summary += "texture    repeats: UVs of OLD go beyond [0,1]^2\n";
     if (elsewhere_) {
-      summary += "faces      others than those of OLD: the nearest places of it are taken\n";
+      summary += arguments_.cage > 0
+                     ? "faces      what rays meet in the cage, else the nearest places of OLD\n"
+                     : "faces      others than those of OLD: the nearest places of it are taken\n";
     }
     if (without_source > 0 || elsewhere_) {
       summary += "no source  " + std::to_string(without_source) + " of " + std::to_string(covered) +
@@ -371,7 +420,7 @@ class Transfer {
     if (format == LightFormat::kNone) require_png_name(arguments_.output);
     const bool exact = format == LightFormat::kExr;
     if (format == LightFormat::kHdr || (exact && !has_exr())) {
-      throw Failure(arguments_.output + ": " + arguments_.texture + " are written as .png" +
+      throw Failure(arguments_.output + ": " + arguments_.texture + " is written as .png" +
                     (has_exr() ? " or .exr" : ": this program is built without OpenEXR"));
     }
     const MeshFile from = read_mesh(arguments_.old_mesh, Content::kSurface, arguments_.reach);
@@ -382,44 +431,41 @@ class Transfer {
     elsewhere_ = true;
     constexpr int kUsual = 1024;  // where nothing says how many texels there are
     side_ = arguments_.resolution > 0 ? arguments_.resolution : kUsual;
-    const std::vector<std::uint64_t> pages = pages_in_use(to_);
-    if (pages.empty()) throw Failure(arguments_.new_mesh + ": no face has UVs that are numbers");
-    const DetailLayout layout = {new_uvs(), new_pages(pages), pages.size(), side_};
-    const Context context = make_context();
-    const DetailPages made =
-        bake_detail(detail, detail_mesh(from, triangle_corners(from)), detail_mesh(to, corners),
-                    layout, context.get(), arguments_.new_mesh);
+    find_pages();
+    DetailLooks looks{detail, arguments_.cage, arguments_.rays, side_};
+    const DetailMesh fine = detail_mesh(from, triangle_corners(from));
+    const DetailMesh coarse = detail_mesh(to, corners);
+    const auto bake = [&](std::uint64_t page) {
+      const std::vector<std::size_t> triangles = triangles_of(page);
+      return bake_detail(looks, fine, part_of(coarse, triangles), picked(to_.uvs, triangles),
+                         context_.get(), arguments_.new_mesh);
+    };
+    std::optional<DetailPage> made;
     double scale = 0;
-    const std::vector<Pixels> deep = in_16_bits(made.pages, detail, scale);
-    std::vector<std::string> files;
-    for (std::size_t i = 0; i < pages.size(); ++i) {
-      files.push_back(exact ? light_bytes(made.pages[i], format) : png_bytes(deep[i]));
+    // All pages have one scale, and one of them is in memory: several are baked twice.
+    for (const std::uint64_t page : pages_) {
+      if (detail != Detail::kHeights) break;
+      made = bake(page);
+      scale = std::max(scale, greatest(made->page));
+    }
+    for (const std::uint64_t page : pages_) {
+      if (!made || pages_.size() > 1) made = bake(page);
+      add(made->outcome);
+      write_page(page, exact ? light_bytes(made->page, format)
+                             : png_bytes(in_whole_numbers(made->page, detail, scale)));
     }
     std::string line;
     if (detail == Detail::kHeights) {
       line = "heights    up to " + format_number(scale) + " in the unit of OLD" +
              (exact ? "" : ", for which white stands; 0 is grey") + "\n";
     }
-    return write_files(pages, files, made.outcome, line);
+    return finish(line);
   }
 
-  /// Of each corner, and where a triangle shows nothing some numbers.
-  std::vector<double> new_uvs() const {
-    std::vector<double> uvs = numbers_of(to_.uvs);
-    for (std::size_t t = 0; t < to_.uvs.size(); ++t) {
-      if (to_.pages[t] == kNoPage) std::fill_n(uvs.begin() + 6 * std::ptrdiff_t(t), 6, 0.0);
-    }
-    return uvs;
-  }
-
-  /// Of each triangle, among `pages`.
-  std::vector<std::uint64_t> new_pages(const std::vector<std::uint64_t>& pages) const {
-    std::vector<std::uint64_t> found;
-    for (const std::uint64_t page : to_.pages) {
-      const auto at = std::lower_bound(pages.begin(), pages.end(), page);
-      found.push_back(page == kNoPage ? kNoPage : static_cast<std::uint64_t>(at - pages.begin()));
-    }
-    return found;
+  /// The pages to write. Throws Failure where there are none.
+  void find_pages() {
+    pages_ = pages_in_use(to_);
+    if (pages_.empty()) throw Failure(arguments_.new_mesh + ": no face has UVs that are numbers");
   }
 
   /// A texture of which most was made up is no transfer, and nobody would look for it in one.
@@ -436,7 +482,12 @@ class Transfer {
   }
 
   const TransferArguments& arguments_;
+  const Context context_ = make_context();
   Textured from_, to_;
+  std::vector<SpacePoint> ray_normals_;  ///< of the corners of NEW, with a cage
+  std::vector<std::uint64_t> pages_;     ///< to write, ascending
+  std::deque<AtomicFile> outputs_;
+  BakeOutcome outcome_;
   bool elsewhere_ = false;        ///< NEW has other faces than OLD: nearest places are read
   std::vector<Pixels> textures_;  ///< of the pages of OLD; without pixels for those without faces
   bool repeats_ = false;          ///< UVs of OLD go beyond the one texture

@@ -3,10 +3,12 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -83,60 +85,65 @@ std::uint64_t filter_row(const std::uint8_t* row, const std::uint8_t* above, std
   return sum;
 }
 
-/// All rows, each by the filter that leaves the least, as the specification of PNG advises.
-std::string filtered_rows(std::size_t size, std::size_t rows, std::size_t step,
-                          const std::uint8_t* pixels) {
+/// What a PNG file is made of: rows from the top, numbers in the order of the machine.
+struct PngPixels {
+  int width = 0, height = 0, components = 0;
+  std::size_t bytes = 1;  ///< of a component
+  const std::uint8_t* pixels = nullptr;
+};
+
+/// Gives each row, by the filter that leaves the least, as the specification of PNG advises. The
+/// upper byte of 16 bits comes first there.
+void filter_rows(const PngPixels& image, const std::function<void(std::string_view)>& take) {
+  const std::size_t step = static_cast<std::size_t>(image.components) * image.bytes;
+  const std::size_t size = static_cast<std::size_t>(image.width) * step;
+  const bool swaps = image.bytes == 2 && std::endian::native == std::endian::little;
   std::vector<std::uint8_t> row(size + step, 0), above(size + step, 0);
-  std::array<std::string, 3> tried = {std::string(size, 0), std::string(size, 0),
-                                      std::string(size, 0)};
-  constexpr std::array<char, 3> kFilters = {1, 2, 4};
-  std::string bytes;
-  bytes.reserve((size + 1) * rows);
-  for (std::size_t y = 0; y < rows; ++y) {
-    std::copy_n(pixels + y * size, size, row.data() + step);
+  // The number of the filter comes before what it leaves.
+  std::array<std::string, 3> tried = {std::string(size + 1, 1), std::string(size + 1, 2),
+                                      std::string(size + 1, 4)};
+  const std::uint8_t* pixels = image.pixels;
+  for (int y = 0; y < image.height; ++y, pixels += size) {
+    if (swaps) {
+      for (std::size_t i = 0; i < size; ++i) row[step + i] = pixels[i ^ 1];
+    } else {
+      std::copy_n(pixels, size, row.data() + step);
+    }
     const std::array<std::uint64_t, 3> sums = {
-        filter_row<1>(row.data(), above.data(), size, step, tried[0].data()),
-        filter_row<2>(row.data(), above.data(), size, step, tried[1].data()),
-        filter_row<4>(row.data(), above.data(), size, step, tried[2].data())};
+        filter_row<1>(row.data(), above.data(), size, step, tried[0].data() + 1),
+        filter_row<2>(row.data(), above.data(), size, step, tried[1].data() + 1),
+        filter_row<4>(row.data(), above.data(), size, step, tried[2].data() + 1)};
     const auto best =
         static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
-    bytes += kFilters[best];
-    bytes += tried[best];
+    take(tried[best]);
     row.swap(above);
   }
-  return bytes;
 }
 
 void append_big(std::uint32_t number, std::string& bytes) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xFF);
 }
 
-void append_chunk(const char* type, const std::string& data, std::string& bytes) {
+void append_chunk(std::string_view type, std::string_view data, std::string& bytes) {
   append_big(static_cast<std::uint32_t>(data.size()), bytes);
-  const std::string checked = type + data;
-  bytes += checked;
-  append_big(crc32(checked), bytes);
+  bytes += type;
+  bytes += data;
+  append_big(crc32(data, crc32(type)), bytes);
 }
 
-}  // namespace
-
-namespace {
-
-/// `pixels` are as PNG has them: those of 16 bits begin with the upper ones.
-std::string png_file(int width, int height, int components, std::size_t bytes,
-                     const std::uint8_t* pixels) {
+std::string png_file(const PngPixels& image) {
   constexpr std::array<char, 5> kColourTypes = {0, 0, 4, 2, 6};
-  const std::size_t step = static_cast<std::size_t>(components) * bytes;
-  const std::size_t size = static_cast<std::size_t>(width) * step;
-  const std::string filtered = filtered_rows(size, static_cast<std::size_t>(height), step, pixels);
   std::string head;
-  append_big(static_cast<std::uint32_t>(width), head);
-  append_big(static_cast<std::uint32_t>(height), head);
-  head +=
-      {static_cast<char>(8 * bytes), kColourTypes[static_cast<std::size_t>(components)], 0, 0, 0};
+  append_big(static_cast<std::uint32_t>(image.width), head);
+  append_big(static_cast<std::uint32_t>(image.height), head);
+  head += {static_cast<char>(8 * image.bytes),
+           kColourTypes[static_cast<std::size_t>(image.components)], 0, 0, 0};
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk("IHDR", head, file);
-  append_chunk("IDAT", zlib_bytes(filtered), file);
+  Deflater deflater(Repetitions::kOfOneByte,
+                    [&](std::string_view part) { append_chunk("IDAT", part, file); });
+  filter_rows(image, [&](std::string_view row) { deflater.add(row); });
+  deflater.end();
   append_chunk("IEND", "", file);
   return file;
 }
@@ -144,16 +151,11 @@ std::string png_file(int width, int height, int components, std::size_t bytes,
 }  // namespace
 
 std::string png_bytes(int width, int height, int components, const std::uint8_t* pixels) {
-  return png_file(width, height, components, 1, pixels);
+  return png_file({width, height, components, 1, pixels});
 }
 
 std::string png_bytes(const Pixels& image) {
-  if (image.bytes == 1 || std::endian::native == std::endian::big) {
-    return png_file(image.width, image.height, image.components, image.bytes, image.values.data());
-  }
-  std::vector<std::uint8_t> swapped(image.values.size());
-  for (std::size_t i = 0; i < swapped.size(); ++i) swapped[i] = image.values[i ^ 1];
-  return png_file(image.width, image.height, image.components, image.bytes, swapped.data());
+  return png_file({image.width, image.height, image.components, image.bytes, image.values.data()});
 }
 
 namespace {

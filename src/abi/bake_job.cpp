@@ -16,6 +16,7 @@ namespace beltrami {
 namespace {
 
 constexpr std::uint64_t kMostFaces = 700'000'000;
+constexpr std::uint64_t kMostRays = 4096;
 constexpr std::uint64_t kMostTexelsOfImage = 65536, kMostTexelsOfPage = 32768, kMostPages = 1000;
 constexpr std::uint64_t kAllBits = std::numeric_limits<std::uint64_t>::max();
 
@@ -62,14 +63,19 @@ std::size_t row_bytes_of(std::uint64_t stride, std::uint64_t texels, std::uint64
   return static_cast<std::size_t>(stride);
 }
 
-ImageView view_of(const beltrami_image& image) {
+ImageView view_of(const beltrami_image& image, std::int32_t pixels) {
+  require_between(image.channels, 1, 4, "the number of channels of an image");
+  ImageView view;
+  view.type = type_of(image.type);
+  if (pixels == BELTRAMI_PIXELS_OCCLUSION) {
+    view.width = view.height = 1;
+    view.components = static_cast<int>(image.channels);
+    return view;
+  }
   if (image.pixels == nullptr) refuse("the pixels of an image are NULL");
   require_between(image.width, 1, kMostTexelsOfImage, "the width of an image");
   require_between(image.height, 1, kMostTexelsOfImage, "the height of an image");
-  require_between(image.channels, 1, 4, "the number of channels of an image");
-  ImageView view;
   view.pixels = static_cast<const unsigned char*>(image.pixels);
-  view.type = type_of(image.type);
   view.width = static_cast<int>(image.width);
   view.height = static_cast<int>(image.height);
   view.components = static_cast<int>(image.channels);
@@ -92,6 +98,8 @@ ImageKind kind_of(std::int32_t pixels) {
       return ImageKind::kTransparent;
     case BELTRAMI_PIXELS_NORMALS:
       return ImageKind::kDirections;
+    case BELTRAMI_PIXELS_OCCLUSION:
+      return ImageKind::kOcclusion;
     default:
       return ImageKind::kNumbers;
   }
@@ -156,6 +164,22 @@ std::vector<SourceTriangle> read_sources(const beltrami_bake_job& job, std::uint
   return sources;
 }
 
+/// What looks along rays.
+void require_rays(const beltrami_bake_job& job) {
+  if (job.pixels == BELTRAMI_PIXELS_OCCLUSION) {
+    require_between(job.rays, 1, kMostRays, "rays");
+    require_between(job.image_count, 1, 1, "image_count of OCCLUSION");
+  } else if (job.rays != 0) {
+    refuse("rays are for OCCLUSION: leave them at 0");
+  }
+  if (!(job.cage >= 0 && std::isfinite(job.cage))) {
+    refuse("the cage is " + std::to_string(job.cage) + ": give 0, or a length above it");
+  }
+  if (job.cage > 0 && job.source_positions.data == nullptr) {
+    refuse("a cage is for another surface: give source_positions, or leave it at 0");
+  }
+}
+
 }  // namespace
 
 beltrami_bake_job read_bake_header(const beltrami_bake_job* theirs) {
@@ -166,17 +190,19 @@ beltrami_bake_job read_bake_header(const beltrami_bake_job* theirs) {
   require_between(job.image_count, 1, kMostPages, "image_count");
   require_between(job.page_count, 1, kMostPages, "page_count");
   require_between(job.resolution, 1, kMostTexelsOfPage, "resolution");
-  require_choice(job.pixels, BELTRAMI_PIXELS_NORMALS, "pixels");
+  require_choice(job.pixels, BELTRAMI_PIXELS_OCCLUSION, "pixels");
   require_choice(job.filter, BELTRAMI_FILTER_NEAREST, "filter");
   require_choice(job.wrap_u, BELTRAMI_WRAP_MIRROR, "wrap_u");
   require_choice(job.wrap_v, BELTRAMI_WRAP_MIRROR, "wrap_v");
   if (job.images == nullptr) refuse("the images are NULL");
   for (std::uint64_t i = 0; i < job.image_count; ++i) {
-    const ImageView image = view_of(job.images[i]), first = view_of(job.images[0]);
+    const ImageView image = view_of(job.images[i], job.pixels),
+                    first = view_of(job.images[0], job.pixels);
     if (image.type != first.type || image.components != first.components) {
       refuse("image " + std::to_string(i) + " has another type or other channels than image 0");
     }
   }
+  require_rays(job);
   const bool normals = job.pixels == BELTRAMI_PIXELS_NORMALS;
   if (normals && job.images[0].channels < 3) refuse("an image of normals has 3 or 4 channels");
   if (job.source_positions.data != nullptr) {
@@ -190,7 +216,7 @@ beltrami_bake_job read_bake_header(const beltrami_bake_job* theirs) {
 BakeRoom room_of(const beltrami_bake_job& job, const beltrami_baked* out) {
   const beltrami_baked given = read_sized(out, "out");
   if (given.pixels == nullptr) refuse("the pixels to write to are NULL");
-  const ImageView image = view_of(job.images[0]);
+  const ImageView image = view_of(job.images[0], job.pixels);
   const auto components = static_cast<std::uint64_t>(image.components);
   PageRoom page;
   page.side = static_cast<int>(job.resolution);
@@ -216,7 +242,7 @@ BakeRoom room_of(const beltrami_bake_job& job, const beltrami_baked* out) {
 BakeProblem read_bake_problem(const beltrami_bake_job& job, const Work& work) {
   BakeProblem problem;
   for (std::uint64_t i = 0; i < job.image_count; ++i) {
-    problem.images.push_back(view_of(job.images[i]));
+    problem.images.push_back(view_of(job.images[i], job.pixels));
   }
   problem.kind = kind_of(job.pixels);
   problem.reading = {beyond_of(job.wrap_u), beyond_of(job.wrap_v),
@@ -231,9 +257,14 @@ BakeProblem read_bake_problem(const beltrami_bake_job& job, const Work& work) {
   problem.new_uvs = triangles_of(new_uvs);
   problem.new_pages = read_pages(job.new_pages, job.face_count, job.page_count, "new pages", work);
   const bool elsewhere = job.source_positions.data != nullptr;
-  problem.sources = read_sources(job, elsewhere ? job.source_face_count : job.face_count, work);
+  const bool occlusion = problem.kind == ImageKind::kOcclusion;
+  if (!occlusion) {
+    problem.sources = read_sources(job, elsewhere ? job.source_face_count : job.face_count, work);
+  }
+  problem.cage = job.cage;
+  problem.rays = static_cast<int>(job.rays);
   const bool normals = problem.kind == ImageKind::kDirections;
-  if (!normals && !elsewhere) return problem;
+  if (!normals && !elsewhere && !occlusion) return problem;
   problem.positions = read_numbers(job.positions, corners, 3, "positions", work);
   require_finite(problem.positions, 3, "the position");
   if (elsewhere) {
@@ -244,7 +275,7 @@ BakeProblem read_bake_problem(const beltrami_bake_job& job, const Work& work) {
       problem.source_places[i / 9][i % 9 / 3][i % 3] = places[i];
     }
   }
-  if (normals && job.normals.data != nullptr) {
+  if ((normals || job.cage > 0) && job.normals.data != nullptr) {
     problem.normals = read_numbers(job.normals, corners, 3, "normals", work);
   }
   if (normals && job.tangents.data != nullptr) {

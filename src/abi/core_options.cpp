@@ -73,6 +73,8 @@ Stack stack_of(std::int32_t value) {
       return Stack::kCopies;
     case BELTRAMI_STACK_MIRRORED:
       return Stack::kMirrored;
+    case BELTRAMI_STACK_HALVES:
+      return Stack::kHalves;
     default:
       return Stack::kNone;
   }

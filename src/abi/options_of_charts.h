@@ -11,7 +11,7 @@
 
 namespace beltrami {
 
-inline constexpr const char* kStacks[] = {"none", "copies", "mirrored"};
+inline constexpr const char* kStacks[] = {"none", "copies", "mirrored", "halves"};
 
 inline constexpr OptionEntry kStack = {
     .key = BELTRAMI_OPTION_STACK,
@@ -19,9 +19,10 @@ inline constexpr OptionEntry kStack = {
     .name = "stack",
     .summary =
         "Whether components of one shape share texels: none, copies (those that a "
-        "rigid motion carries onto one before them lie on its charts) or mirrored "
-        "(mirror images do, too). Not with pins, max-charts, seam-budget or "
-        "symmetric-seams.",
+        "rigid motion carries onto one before them lie on its charts), mirrored "
+        "(mirror images do, too) or halves (what is symmetric is cut along its plane, where "
+        "edges lie in that, and one half lies on the other). Not with pins, max-charts, "
+        "seam-budget or symmetric-seams.",
     .minimum = 0,
     .maximum = std::size(kStacks) - 1,
     .choices = kStacks,

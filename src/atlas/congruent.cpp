@@ -85,7 +85,9 @@ class Laying {
     if (!(std::abs(longer) <= kSameLength)) return false;  // a piece has about unit area
     if ((from_.surface.twin[h] == kNone) != (to_.surface.twin[g] == kNone)) return false;
     if ((h / 3 < from_.real_faces) != (g / 3 < to_.real_faces)) return false;
-    if (is_locked(from_, h) != is_locked(to_, g)) return false;
+    // Of the spokes of a fan over a hole any one may be open.
+    const bool is_real = h / 3 < from_.real_faces;
+    if (is_real && is_locked(from_, h) != is_locked(to_, g)) return false;
     return is_label_border(from_, h) == is_label_border(to_, g);
   }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "atlas/congruent.h"
+#include "atlas/halves.h"
 #include "atlas/map_piece.h"
 #include "atlas/open.h"
 #include "atlas/rescue.h"
@@ -129,8 +130,13 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   MappedSurface all;
   std::vector<SurfacePiece> pieces;
   run_stage("cut", work.part(0, kReady), stages, [&](StageStatistics&, const Work& inner) {
-    ReadySurface ready = make_ready(admitted, input.cuts, options.fill_limit,
-                                    options.admit.polygons, input.hints, inner);
+    GivenCuts cuts = input.cuts;
+    if (options.stack == Stack::kHalves) {
+      const auto between = edges_between_halves(input, admitted, options, inner.aside());
+      cuts.edges.insert(cuts.edges.end(), between.begin(), between.end());
+    }
+    ReadySurface ready =
+        make_ready(admitted, cuts, options.fill_limit, options.admit.polygons, input.hints, inner);
     all.filled_holes = ready.filled_holes;
     const bool is_one = is_asked_of_whole(input, options);
     if (is_one && (options.target || options.stack == Stack::kNone || !input.pins.empty())) {
@@ -146,10 +152,10 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   std::vector<Index> first(pieces.size()), searched, copies;
   std::iota(first.begin(), first.end(), 0);
   if (options.target || pieces.size() > 1) first = first_congruent(pieces);
+  const bool mirrors = options.stack == Stack::kMirrored || options.stack == Stack::kHalves;
   for (Index p = 0; p < size_of(pieces); ++p) {
-    const bool is_stacked =
-        first[p] != p && options.stack != Stack::kNone &&
-        stack(pieces[p], pieces[first[p]], options.stack == Stack::kMirrored, admitted, all);
+    const bool is_stacked = first[p] != p && options.stack != Stack::kNone &&
+                            stack(pieces[p], pieces[first[p]], mirrors, admitted, all);
     if (is_stacked) continue;
     (first[p] == p || !options.target ? searched : copies).push_back(p);
   }

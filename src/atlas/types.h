@@ -55,8 +55,9 @@ struct AtlasInput {
   std::vector<ChartRectangle> rectangles = {};
 };
 
-/// Which components of one shape lie on each other.
-enum class Stack { kNone, kCopies, kMirrored };
+/// Which components of one shape lie on each other; with kHalves those that are symmetric to the
+/// plane of the whole surface are cut along it, and their halves do.
+enum class Stack { kNone, kCopies, kMirrored, kHalves };
 
 struct AtlasOptions {
   AdmitOptions admit = {};

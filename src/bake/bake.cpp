@@ -11,17 +11,15 @@
 
 #include "bake/axes_turn.h"
 #include "bake/gutters.h"
+#include "bake/other_surface.h"
 #include "bake/texture.h"
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "base/vectors.h"
-#include "mesh/closest_point.h"
 
 namespace beltrami {
 namespace {
 
-/// Of the size of the other surface: how far what a texel shows may be from it.
-constexpr double kReach = 0.02;
 /// Of the work on a page: baking, before its gutters.
 constexpr double kBaking = 0.8;
 
@@ -46,7 +44,13 @@ class Bake {
       textures_.emplace_back(image, problem.kind, tables_, work);
     }
     if (problem.kind == ImageKind::kDirections) find_turns(work);
-    if (reads_surface()) find_surface();
+    if (sees_sky()) directions_ = sky_directions(static_cast<std::size_t>(problem.rays));
+    if (!problem.source_places.empty()) {
+      surface_.emplace(problem.source_places);
+    } else if (sees_sky()) {
+      const std::vector<std::array<Vec3, 3>> own = own_places();
+      surface_.emplace(own);
+    }
   }
 
   BakedTexels bake_one(std::uint32_t page, const PageRoom& room, std::span<Filled> filled,
@@ -55,9 +59,10 @@ class Bake {
     std::vector<std::uint8_t> seams;
     PageBake job;
     job.triangles = of.triangles;
-    if (reads_surface()) {
-      job.source_of = [&](std::size_t t, const std::array<double, 3>& weights, std::size_t& hint) {
-        return source(of.numbers[t], weights, hint);
+    if (shows_points()) {
+      job.show = [&](std::size_t t, const std::array<double, 3>& weights, int part,
+                     std::size_t& hint, TexelSums& sums) {
+        return show({of.numbers[t], weights}, part, hint, sums);
       };
     } else {
       job.sources = of.sources;
@@ -74,7 +79,7 @@ class Bake {
   }
 
   double old_texels() const {
-    if (reads_surface()) return 0;
+    if (shows_points()) return 0;
     double before = 0, after = 0;
     for (std::size_t t = 0; t < problem_.new_uvs.size(); ++t) {
       const SourceTriangle& source = problem_.sources[t];
@@ -87,21 +92,19 @@ class Bake {
   }
 
  private:
-  /// Whether texels are read by the nearest places of another surface.
-  bool reads_surface() const { return !problem_.source_places.empty(); }
+  bool sees_sky() const { return problem_.kind == ImageKind::kOcclusion; }
+  /// Whether texels are shown by places in space, and not through old UVs.
+  bool shows_points() const { return sees_sky() || !problem_.source_places.empty(); }
 
-  /// Its triangles that are finite: of others no place is the nearest.
-  void find_surface() {
-    for (std::size_t t = 0; t < problem_.source_places.size(); ++t) {
-      const std::array<Vec3, 3>& places = problem_.source_places[t];
-      const auto is_finite = [](const Vec3& place) { return place.allFinite(); };
-      if (!std::all_of(places.begin(), places.end(), is_finite)) continue;
-      const Index first = size_of(positions_);
-      positions_.insert(positions_.end(), places.begin(), places.end());
-      faces_.push_back({first, first + 1, first + 2});
-      numbers_.push_back(t);
-    }
-    if (!faces_.empty()) surface_.emplace(positions_, faces_);
+  std::vector<std::array<Vec3, 3>> own_places() const {
+    std::vector<std::array<Vec3, 3>> places(problem_.new_uvs.size());
+    for (std::size_t t = 0; t < places.size(); ++t) places[t] = corners_of(t);
+    return places;
+  }
+
+  std::array<Vec3, 3> corners_of(std::size_t triangle) const {
+    const double* at = &problem_.positions[9 * triangle];
+    return {Vec3(at), Vec3(at + 3), Vec3(at + 6)};
   }
 
   void find_turns(const Work& work) {
@@ -128,7 +131,7 @@ class Bake {
       for (auto& corner : triangle) {
         for (double& x : corner) x *= problem_.side;
       }
-      if (reads_surface()) {
+      if (shows_points()) {
         of.numbers.push_back(t);
       } else {
         of.sources.push_back(problem_.sources[t]);
@@ -138,40 +141,54 @@ class Bake {
     return of;
   }
 
-  /// Where the images have what a point of a triangle shows, by the nearest place of the other
-  /// surface.
-  std::optional<TexelSource> source(std::size_t triangle, const std::array<double, 3>& weights,
-                                    std::size_t& hint) const {
-    if (!surface_) return std::nullopt;
-    std::array<Vec3, 3> place;
-    Vec3 point(0, 0, 0);
-    for (std::size_t k = 0; k < 3; ++k) {
-      place[k] = Vec3(&problem_.positions[9 * triangle + 3 * k]);
-      point += weights[k] * place[k];
+  /// Adds what the place of the surface shows that a point of a triangle stands for.
+  bool show(const PointOfTriangle& point, int part, std::size_t& hint, TexelSums& sums) const {
+    const std::optional<PointOfTriangle> found =
+        problem_.source_places.empty() ? point : find(point, hint);
+    if (!found) return false;
+    if (sees_sky()) {
+      // The parts of a texel look into their share of the directions each.
+      const bool whole = part == kWholeTexel;
+      const double open = surface_->open_share(
+          *found, directions_, whole ? 0 : static_cast<std::size_t>(part) % directions_.size(),
+          whole ? 1 : kPartsOfTexel);
+      for (float& sum : sums) sum += 2 * textures_.front().zero() * static_cast<float>(open);
+      return true;
     }
-    const Vec3 normal = (place[1] - place[0]).cross(place[2] - place[0]);
-    const Index seed = hint < faces_.size() ? static_cast<Index>(hint) : kNone;
-    const SurfacePoint at = surface_->find_within(point, normal, kReach * surface_->size(), seed);
-    if (at.face == kNone) return std::nullopt;
-    hint = static_cast<std::size_t>(at.face);
-    const SourceTriangle& shown = problem_.sources[numbers_[hint]];
-    if (shown.page == kNoPage) return std::nullopt;
-    TexelSource source{shown.page, 0, 0};
+    const SourceTriangle& shown = problem_.sources[found->triangle];
+    if (shown.page == kNoPage) return false;
+    Place place;
     for (std::size_t k = 0; k < 3; ++k) {
-      source.u += at.barycentric[k] * shown.uvs[k][0];
-      source.v += at.barycentric[k] * shown.uvs[k][1];
+      place.u += found->weights[k] * shown.uvs[k][0];
+      place.v += found->weights[k] * shown.uvs[k][1];
     }
-    return source;
+    textures_[shown.page].add({&place, 1}, problem_.reading, 0, {&sums, 1});
+    return true;
+  }
+
+  std::optional<PointOfTriangle> find(const PointOfTriangle& of, std::size_t& hint) const {
+    const std::array<Vec3, 3> corners = corners_of(of.triangle);
+    LookFrom from;
+    from.point = Vec3(0, 0, 0);
+    for (std::size_t k = 0; k < 3; ++k) from.point += of.weights[k] * corners[k];
+    from.face_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    from.direction = Vec3(0, 0, 0);
+    for (std::size_t k = 0; k < 3 && !problem_.normals.empty(); ++k) {
+      const Vec3 normal(&problem_.normals[9 * of.triangle + 3 * k]);
+      from.direction += of.weights[k] * normal;
+    }
+    const double length = from.direction.norm();
+    const bool given = length > 0 && std::isfinite(length);
+    from.direction = given ? Vec3(from.direction / length) : from.face_normal.normalized();
+    return surface_->find(from, problem_.cage, hint);
   }
 
   const BakeProblem& problem_;
   const ColourTables tables_;
   std::vector<Texture> textures_;
   std::vector<AxesTurn> turns_;
-  std::vector<Vec3> positions_;  // of the other surface, three for each triangle
-  std::vector<Triangle> faces_;
-  std::vector<std::size_t> numbers_;  // of these triangles among all of it
-  std::optional<ClosestPoint> surface_;
+  std::vector<Vec3> directions_;         // to the sky
+  std::optional<OtherSurface> surface_;  // another one, or what hides the sky
 };
 
 }  // namespace

@@ -15,7 +15,9 @@ namespace beltrami {
 
 /// Triangles with two layouts of UVs, and the images of the old one.
 struct BakeProblem {
-  std::vector<ImageView> images;  ///< one for each old page; of one type, with as many components
+  /// One for each old page; of one type, with as many components. For kOcclusion one, of which that
+  /// alone is looked at.
+  std::vector<ImageView> images;
   ImageKind kind = ImageKind::kNumbers;
   ImageReading reading;
   int side = 0;                          ///< texels of a new page
@@ -25,11 +27,14 @@ struct BakeProblem {
   std::vector<SourceTriangle> sources;   ///< of the triangles, or of those of another surface
   /// Of the corners, x y z; for directions, and where there is another surface.
   std::vector<double> positions;
-  std::vector<double> normals;   ///< of the corners, for directions: x y z; or empty
+  /// Of the corners, for directions and with a cage: x y z, NaN for that of the triangle; or empty.
+  std::vector<double> normals;
   std::vector<double> tangents;  ///< of the corners in the old layout: x y z and side; or empty
-  /// Another surface of the same shape, by the nearest places of which the image is read; or empty.
-  /// Not for directions.
+  /// Another surface of the same shape, by the places of which the image is read that are found
+  /// along rays or nearest; or empty. Not for directions.
   std::vector<std::array<Vec3, 3>> source_places;
+  double cage = 0;  ///< how far rays look for the other surface, outwards and inwards
+  int rays = 0;     ///< from a point to the sky, for kOcclusion
 };
 
 struct BakeReport {

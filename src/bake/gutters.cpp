@@ -25,10 +25,12 @@ constexpr std::int64_t kRows = 16;
 /// In the next ring, or beside the one that fills.
 constexpr auto kNext = static_cast<Filled>(3);
 
+using Values = std::vector<std::array<float, 4>>;
+
 /// Means of blocks of texels, smaller and smaller.
 struct Means {
   int side = 0;
-  std::vector<std::array<float, 4>> values;
+  Values values;
   std::vector<float> weights;  ///< 0 where there is nothing yet
 };
 
@@ -71,10 +73,11 @@ class Gutters {
     const Means& blocks = levels.front();
     parallel_for(work, side_, kRows, [&](std::int64_t begin, std::int64_t end) {
       for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+        const Values line = line_between(blocks, (row + 0.5f) / kBlock);
         for (int column = 0; column < side_; ++column) {
           Filled& state = filled_[index(row, column)];
           if (state != Filled::kNothing) continue;
-          write(row, column, between(blocks, (row + 0.5f) / kBlock, (column + 0.5f) / kBlock));
+          write(row, column, between(line, (column + 0.5f) / kBlock));
           state = Filled::kGutter;
         }
       }
@@ -126,15 +129,22 @@ class Gutters {
 
   std::vector<Spot> first_ring() {
     std::vector<Spot> ring;
+    // Of each column of three rows, whether something is baked: without branches, for most of a
+    // page is far from every border.
+    std::vector<std::uint8_t> baked(static_cast<std::size_t>(side_) + 2, 0);
     for (int row = 0; row < side_; ++row) {
       poll_interrupt();
+      const Filled* above = &filled_[index(std::max(row - 1, 0), 0)];
+      const Filled* here = &filled_[index(row, 0)];
+      const Filled* below = &filled_[index(std::min(row + 1, side_ - 1), 0)];
+      for (std::size_t x = 0; x < static_cast<std::size_t>(side_); ++x) {
+        baked[x + 1] =
+            static_cast<std::uint8_t>((above[x] == Filled::kBaked) | (here[x] == Filled::kBaked) |
+                                      (below[x] == Filled::kBaked));
+      }
       for (int column = 0; column < side_; ++column) {
-        if (filled_[index(row, column)] == Filled::kBaked) continue;
-        bool beside = false;
-        visit_neighbours({row, column}, [&](int y, int x) {
-          beside = beside || filled_[index(y, x)] == Filled::kBaked;
-        });
-        if (!beside) continue;
+        const auto x = static_cast<std::size_t>(column);
+        if ((baked[x] | baked[x + 1] | baked[x + 2]) == 0 || here[x] == Filled::kBaked) continue;
         filled_[index(row, column)] = kNext;
         ring.push_back({row, column});
       }
@@ -221,31 +231,48 @@ class Gutters {
   static void fill_from(const Means& coarse, Means& fine) {
     for (int y = 0; y < fine.side; ++y) {
       poll_interrupt();
+      const Values line = line_between(coarse, (y + 0.5f) / 2);
       for (int x = 0; x < fine.side; ++x) {
         const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.side) +
                                static_cast<std::size_t>(x);
         if (fine.weights[at] > 0) continue;
-        fine.values[at] = between(coarse, (y + 0.5f) / 2, (x + 0.5f) / 2);
+        fine.values[at] = between(line, (x + 0.5f) / 2);
         fine.weights[at] = 1;
       }
     }
   }
 
-  /// Bilinearly between the middles of blocks.
-  static std::array<float, 4> between(const Means& means, float row, float column) {
-    const auto most = static_cast<float>(means.side - 1);
-    const float y = std::clamp(row - 0.5f, 0.0f, most), x = std::clamp(column - 0.5f, 0.0f, most);
-    const auto top = static_cast<std::size_t>(y), left = static_cast<std::size_t>(x);
+  /// Two items around a place of a row, and how much the second of them counts.
+  struct Pair {
+    std::size_t first, second;
+    float share;
+  };
+  static Pair pair_at(float place, std::size_t count) {
+    const float at = std::clamp(place - 0.5f, 0.0f, static_cast<float>(count - 1));
+    const auto first = static_cast<std::size_t>(static_cast<std::int32_t>(at));
+    return {first, std::min(first + 1, count - 1), at - static_cast<float>(first)};
+  }
+
+  /// Linearly between the middles of blocks of two rows.
+  static Values line_between(const Means& means, float row) {
     const auto side = static_cast<std::size_t>(means.side);
-    const std::size_t below = std::min(top + 1, side - 1), right = std::min(left + 1, side - 1);
-    const float t = y - static_cast<float>(top), s = x - static_cast<float>(left);
-    std::array<float, 4> value;
-    for (std::size_t k = 0; k < 4; ++k) {
-      value[k] = (1 - t) * ((1 - s) * means.values[top * side + left][k] +
-                            s * means.values[top * side + right][k]) +
-                 t * ((1 - s) * means.values[below * side + left][k] +
-                      s * means.values[below * side + right][k]);
+    const auto [top, below, share] = pair_at(row, side);
+    Values line(side);
+    for (std::size_t x = 0; x < side; ++x) {
+      line[x] = mixed(means.values[top * side + x], means.values[below * side + x], share);
     }
+    return line;
+  }
+
+  static std::array<float, 4> between(const Values& line, float column) {
+    const auto [left, right, share] = pair_at(column, line.size());
+    return mixed(line[left], line[right], share);
+  }
+
+  static std::array<float, 4> mixed(const std::array<float, 4>& a, const std::array<float, 4>& b,
+                                    float share) {
+    std::array<float, 4> value;
+    for (std::size_t k = 0; k < 4; ++k) value[k] = (1 - share) * a[k] + share * b[k];
     return value;
   }
 

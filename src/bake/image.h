@@ -37,7 +37,8 @@ enum class ImageKind {
   kNumbers,      ///< roughness, heights, linear light: as they are
   kColours,      ///< of sRGB: in linear light; an alpha is a number
   kTransparent,  ///< the same, and a colour counts as much as its alpha
-  kDirections    ///< two coordinates along the axes of the UVs, one half being 0, and numbers
+  kDirections,   ///< two coordinates along the axes of the UVs, one half being 0, and numbers
+  kOcclusion     ///< none are read: how much of a grey sky a point sees, from 0 to 1
 };
 
 using UvTriangle = std::array<std::array<double, 2>, 3>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,7 @@ using Weights = std::array<double, 3>;
 constexpr int kBandRows = 16;
 /// Places along a side of a texel, where it is parted.
 constexpr int kParts = 4;
+static_assert(kParts * kParts == kPartsOfTexel);
 constexpr std::uint16_t kAllParts = 0xFFFF;
 /// Texels of the old page from one place of a new texel to the next: bilinear reading spans as
 /// many, and every mean of more places would blur.
@@ -28,12 +30,17 @@ constexpr int kFewPlaces = 2;
 /// A hair outside counts as inside: rounding must not open a seam between neighbours.
 constexpr double kHair = -1e-9;
 
-/// What has been read of a texel.
+/// The outermost of the places of a texel that is parted, from its centre.
+constexpr double kOutermost = 0.5 - 0.5 / kParts;
+/// Texels side by side that are read at once.
+constexpr int kAtOnce = 64;
+
+/// What has been read of a texel that several triangles share.
 struct Gathered {
   TexelSums sums{};
   float count = 0;          ///< places that were read
   std::uint16_t taken = 0;  ///< places that a triangle is at
-  bool settled = false;     ///< the rest is not asked for
+  std::size_t texel = 0;    ///< of the page
 };
 
 /// The corners' weights as functions of a place on the page, rows from the top.
@@ -58,20 +65,35 @@ struct Density {
   bool few() const { return std::max(columns, rows) <= kFewPlaces; }
 };
 
-/// What the texels of some rows gather, and what was found last.
-struct Band {
-  std::vector<Gathered>& texels;
-  std::size_t& hint;
-};
-
 /// A triangle that is ready to be drawn.
 struct Placed {
   std::size_t number = 0;
   std::array<std::array<double, 2>, 3> corners{};  ///< rows from the top
   Slopes slopes;
+  Weights per_x{};  ///< of each weight: texels in a row for which it grows by 1
+  Weights inner{};  ///< weights from which on a texel belongs to the triangle alone
+  Weights outer{};  ///< those from which on a place of a texel may be within it
   Density density;
   /// The place on the old page as a function of that on the new one, like slopes.
   std::array<double, 3> u{}, v{};
+};
+
+/// Columns of a row: [from, to).
+struct Columns {
+  int from = 0, to = 0;
+};
+
+/// Texels of a row by what is known of them; from kShared on the number of one of `shared`.
+enum TexelState : std::uint32_t { kOpen = 0, kSettled = 1, kShared = 2 };
+
+/// Some rows that are baked at once.
+struct Band {
+  int begin = 0, end = 0;
+  std::vector<std::uint32_t> states;  ///< of each texel
+  std::vector<Gathered> shared;
+  std::vector<Placed> triangles;
+  std::size_t hint = 0;  ///< what was found last: neighbours are near one another
+  BakedTexels count;
 };
 
 /// The base 2 logarithm of `x` above 1, rounded up.
@@ -111,9 +133,9 @@ class Baker {
     for (std::int64_t first = 0; first < all; first += at_once) {
       parallel_for(work, std::min(at_once, all - first), 1,
                    [&](std::int64_t begin, std::int64_t end) {
-                     std::vector<Gathered> texels(static_cast<std::size_t>(side_) * kBandRows);
-                     for (std::int64_t band = first + begin; band < first + end; ++band) {
-                       bake_band(static_cast<std::size_t>(band), texels);
+                     Band band;
+                     for (std::int64_t i = first + begin; i < first + end; ++i) {
+                       bake_band(static_cast<std::size_t>(i), band);
                      }
                    });
       work.report(double(first) / double(all));
@@ -163,18 +185,26 @@ class Baker {
     counts_.resize(bands());
   }
 
-  void bake_band(std::size_t band, std::vector<Gathered>& texels) {
-    const int begin = static_cast<int>(band) * kBandRows, end = std::min(begin + kBandRows, side_);
-    std::fill(texels.begin(), texels.end(), Gathered{});
-    std::size_t hint = 0;  // neighbours are near one another
-    for (const bool parts : {false, true}) {
-      for (std::size_t i = first_[band]; i < first_[band + 1]; ++i) {
-        if (const std::optional<Placed> placed = place(in_bands_[i])) {
-          draw(*placed, begin, end, parts, {texels, hint});
-        }
-      }
+  void bake_band(std::size_t number, Band& band) {
+    band.begin = static_cast<int>(number) * kBandRows;
+    band.end = std::min(band.begin + kBandRows, side_);
+    band.states.assign(static_cast<std::size_t>(band.end - band.begin) * side(), kOpen);
+    band.shared.clear();
+    band.triangles.clear();
+    band.hint = 0;
+    band.count = {};
+    for (int row = band.begin; row < band.end; ++row) {
+      std::memset(pixel(row, 0), 0, side() * texel_bytes());
     }
-    write_band(band, begin, end, texels);
+    for (std::size_t i = first_[number]; i < first_[number + 1]; ++i) {
+      const std::optional<Placed> placed = place(in_bands_[i]);
+      if (!placed) continue;
+      band.triangles.push_back(*placed);
+      draw_within(*placed, band);
+    }
+    for (const Placed& placed : band.triangles) draw_shared(placed, band);
+    finish_shared(band);
+    counts_[number] = band.count;
   }
 
   /// Nothing for a triangle without area, in the plane or on the page.
@@ -194,7 +224,21 @@ class Baker {
       placed.slopes.of[k] = {(p[1] - q[1]) / twice_area, (q[0] - p[0]) / twice_area,
                              (p[0] * q[1] - p[1] * q[0]) / twice_area};
     }
-    if (job_.sources.empty()) return placed;
+    if (!job_.sources.empty()) place_source(placed);
+    const std::uint8_t seams = job_.seams.empty() ? 0 : job_.seams[number];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& slope = placed.slopes.of[k];
+      const double around = std::abs(slope[0]) + std::abs(slope[1]);
+      const bool joined = placed.density.few() && (seams >> k & 1) == 0;
+      placed.per_x[k] = 1 / slope[0];
+      placed.inner[k] = joined ? kHair : std::max(kHair, around / 2);
+      placed.outer[k] = kHair - kOutermost * around;
+    }
+    return placed;
+  }
+
+  void place_source(Placed& placed) const {
+    const std::size_t number = placed.number;
     placed.density = density(number, placed.slopes);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& [u, v] = job_.sources[number].uvs[k];
@@ -203,7 +247,6 @@ class Baker {
         placed.v[i] += placed.slopes.of[k][i] * v;
       }
     }
-    return placed;
   }
 
   Density density(std::size_t number, const Slopes& slopes) const {
@@ -229,120 +272,181 @@ class Baker {
     return {places(texels[0]), places(texels[1]), most <= kStep * kParts ? 0 : level, level};
   }
 
-  /// Columns of a row that a triangle may have a point in.
-  std::pair<int, int> columns(const Placed& placed, int row) const {
-    double low = side_, high = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& p = placed.corners[k];
-      const auto& q = placed.corners[(k + 1) % 3];
-      double from = 0, to = 1;
-      const double dy = q[1] - p[1];
-      if (std::abs(dy) > 0) {
-        const double at_top = (row - p[1]) / dy, at_bottom = (row + 1 - p[1]) / dy;
-        from = std::max(from, std::min(at_top, at_bottom));
-        to = std::min(to, std::max(at_top, at_bottom));
-      } else if (p[1] < row || p[1] > row + 1) {
-        continue;
-      }
-      if (from > to) continue;
-      for (const double t : {from, to}) {
-        const double x = p[0] + t * (q[0] - p[0]);
-        low = std::min(low, x);
-        high = std::max(high, x);
-      }
-    }
-    // A centre on an edge is in the triangle, whatever rounding makes of the edge.
-    constexpr double kNear = 1e-6;
-    return {static_cast<int>(std::max(std::floor(low - kNear), 0.0)),
-            static_cast<int>(std::min(std::floor(high + kNear) + 1, double(side_)))};
-  }
-
-  /// What is within a triangle, or else the `parts` of texels that are.
-  void draw(const Placed& placed, int begin, int end, bool parts, const Band& band) const {
+  /// Those rows of a band that a triangle has a point in.
+  std::pair<int, int> rows_of(const Placed& placed, const Band& band) const {
     const auto& [a, b, c] = placed.corners;
     const double top = std::min({a[1], b[1], c[1]}), bottom = std::max({a[1], b[1], c[1]});
-    const int first = std::max(begin, static_cast<int>(std::max(std::floor(top), -1.0)));
-    const int last = static_cast<int>(std::min<double>(end - 1, std::floor(bottom)));
-    for (int row = first; row <= last; ++row) {
-      poll_interrupt();
-      const auto [from, to] = columns(placed, row);
-      for (int column = from; column < to; ++column) {
-        Gathered& texel =
-            band.texels[static_cast<std::size_t>(row - begin) * static_cast<std::size_t>(side_) +
-                        static_cast<std::size_t>(column)];
-        if (texel.settled) continue;
-        if (parts) {
-          add_parts(placed, column, row, texel, band.hint);
-        } else {
-          settle(placed, column, row, texel, band.hint);
-        }
-      }
-    }
+    return {std::max(band.begin, static_cast<int>(std::max(std::floor(top), -1.0))),
+            static_cast<int>(std::min<double>(band.end - 1, std::floor(bottom))) + 1};
   }
 
-  void settle(const Placed& placed, int column, int row, Gathered& texel, std::size_t& hint) const {
-    const double x = column + 0.5, y = row + 0.5;
-    const Weights centre = placed.slopes.weights(x, y);
-    if (!is_inside(centre)) return;
-    const Density& density = placed.density;
-    const std::uint8_t seams = job_.seams.empty() ? 0 : job_.seams[placed.number];
+  /// Texels of a row whose centres have these weights at least, but for rounding.
+  Columns columns(const Placed& placed, int row, const Weights& least) const {
+    const auto& [a, b, c] = placed.corners;
+    double low = std::max(std::min({a[0], b[0], c[0]}) - 1, 0.5);
+    double high = std::min(std::max({a[0], b[0], c[0]}) + 1, side_ - 0.5);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (density.few() && (seams >> k & 1) == 0) continue;
       const auto& slope = placed.slopes.of[k];
-      if (centre[k] < (std::abs(slope[0]) + std::abs(slope[1])) / 2) return;
+      const double rest = slope[1] * (row + 0.5) + slope[2];
+      const double at = (least[k] - rest) * placed.per_x[k];
+      if (slope[0] > 0) low = std::max(low, at);
+      if (slope[0] < 0) high = std::min(high, at);
+      if (!(std::abs(slope[0]) > 0) && rest < least[k]) return {};
     }
-    if (density.columns * density.rows == 1) {
-      texel.settled = true;
-      return read(placed, x, y, 0, texel, hint);
-    }
-    texel.settled = true;
-    for (int j = 0; j < density.rows; ++j) {
-      for (int i = 0; i < density.columns; ++i) {
-        read(placed, column + (i + 0.5) / density.columns, row + (j + 0.5) / density.rows,
-             density.level, texel, hint);
+    if (!(low <= high + 1)) return {};
+    return {static_cast<int>(std::ceil(low - 0.5)), static_cast<int>(std::floor(high - 0.5)) + 1};
+  }
+
+  /// Exactly the texels of a row whose centres have these weights at least: one after another, for
+  /// a weight that is rounded rises or falls along a row still.
+  Columns exact_columns(const Placed& placed, int row, const Weights& least) const {
+    const auto is_in = [&](int column) {
+      const Weights at = placed.slopes.weights(column + 0.5, row + 0.5);
+      return at[0] >= least[0] && at[1] >= least[1] && at[2] >= least[2];
+    };
+    auto [from, to] = columns(placed, row, least);
+    from = std::max(from - 1, 0);
+    to = std::min(to + 1, side_);
+    while (from < to && !is_in(from)) ++from;
+    while (from < to && !is_in(to - 1)) --to;
+    return {from, to};
+  }
+
+  /// What belongs to a triangle alone.
+  void draw_within(const Placed& placed, Band& band) const {
+    const auto [begin, end] = rows_of(placed, band);
+    for (int row = begin; row < end; ++row) {
+      poll_interrupt();
+      const auto [from, to] = exact_columns(placed, row, placed.inner);
+      std::uint32_t* states = &band.states[static_cast<std::size_t>(row - band.begin) * side()];
+      for (int column = from; column < to;) {
+        if (states[column] != kOpen) {
+          ++column;
+          continue;
+        }
+        const int first = column, most = std::min(to, first + kAtOnce);
+        while (column < most && states[column] == kOpen) states[column++] = kSettled;
+        settle(placed, row, {first, column}, band);
       }
     }
   }
 
-  void add_parts(const Placed& placed, int column, int row, Gathered& texel,
+  /// Reads texels side by side, and writes them.
+  void settle(const Placed& placed, int row, const Columns& columns, Band& band) const {
+    const auto count = static_cast<std::size_t>(columns.to - columns.from);
+    band.count.covered += count;
+    std::array<TexelSums, kAtOnce> sums;
+    std::fill_n(sums.begin(), count, TexelSums{});
+    if (job_.show) return settle_each(placed, row, columns, band);
+    if (job_.sources[placed.number].page == kNoPage) {
+      band.count.without_source += count;
+      return;
+    }
+    const Density& density = placed.density;
+    std::array<Place, kAtOnce> places;
+    for (int j = 0; j < density.rows; ++j) {
+      const double y = density.rows == 1 ? row + 0.5 : row + (j + 0.5) / density.rows;
+      const double u_of_y = placed.u[1] * y, v_of_y = placed.v[1] * y;
+      for (int i = 0; i < density.columns; ++i) {
+        const double offset = (i + 0.5) / density.columns;
+        for (std::size_t k = 0; k < count; ++k) {
+          const double x = columns.from + static_cast<int>(k) + offset;
+          places[k] = {placed.u[0] * x + u_of_y + placed.u[2],
+                       placed.v[0] * x + v_of_y + placed.v[2]};
+        }
+        read(placed, {places.data(), count}, {columns.from + offset, y}, density.level,
+             {sums.data(), count});
+      }
+    }
+    job_.pages.front().finish({sums.data(), count},
+                              static_cast<float>(density.rows * density.columns),
+                              pixel(row, columns.from));
+    std::fill_n(&filled_[texel(row, columns.from)], count, Filled::kBaked);
+  }
+
+  /// The same where each texel has a source of its own.
+  void settle_each(const Placed& placed, int row, const Columns& columns, Band& band) const {
+    for (int column = columns.from; column < columns.to; ++column) {
+      TexelSums sums{};
+      const Weights weights = placed.slopes.weights(column + 0.5, row + 0.5);
+      if (!job_.show(placed.number, weights, kWholeTexel, band.hint, sums)) {
+        ++band.count.without_source;
+        continue;
+      }
+      job_.pages.front().finish({&sums, 1}, 1, pixel(row, column));
+      filled_[texel(row, column)] = Filled::kBaked;
+    }
+  }
+
+  /// Gathers places of texels that belong to no triangle alone.
+  void draw_shared(const Placed& placed, Band& band) const {
+    const auto [begin, end] = rows_of(placed, band);
+    for (int row = begin; row < end; ++row) {
+      poll_interrupt();
+      gather(placed, row, columns(placed, row, placed.outer), band);
+    }
+  }
+
+  void gather(const Placed& placed, int row, const Columns& columns, Band& band) const {
+    std::uint32_t* states = &band.states[static_cast<std::size_t>(row - band.begin) * side()];
+    for (int column = columns.from; column < columns.to; ++column) {
+      std::uint32_t& state = states[column];
+      if (state == kSettled) continue;
+      if (state != kOpen) {
+        add_parts(placed, column, row, band.shared[state - kShared], band.hint);
+        continue;
+      }
+      Gathered gathered;
+      add_parts(placed, column, row, gathered, band.hint);
+      if (gathered.taken == 0) continue;
+      gathered.texel = texel(row, column);
+      state = kShared + static_cast<std::uint32_t>(band.shared.size());
+      band.shared.push_back(gathered);
+    }
+  }
+
+  void add_parts(const Placed& placed, int column, int row, Gathered& gathered,
                  std::size_t& hint) const {
-    for (int part = 0; part < kParts * kParts && texel.taken != kAllParts; ++part) {
+    for (int part = 0; part < kParts * kParts && gathered.taken != kAllParts; ++part) {
       const auto bit = static_cast<std::uint16_t>(1u << part);
-      if ((texel.taken & bit) != 0) continue;
+      if ((gathered.taken & bit) != 0) continue;
       const double x = column + (part % kParts + 0.5) / kParts;
       const auto part_row = part / kParts;
       const double y = row + (static_cast<double>(part_row) + 0.5) / kParts;
-      const Weights weights = placed.slopes.weights(x, y);
-      if (!is_inside(weights)) continue;
-      texel.taken = static_cast<std::uint16_t>(texel.taken | bit);
-      read(placed, x, y, placed.density.level_of_parts, texel, hint);
+      if (!is_inside(placed.slopes.weights(x, y))) continue;
+      gathered.taken = static_cast<std::uint16_t>(gathered.taken | bit);
+      if (read_part(placed, {x, y}, part, gathered.sums, hint)) gathered.count += 1;
     }
   }
 
-  /// What is shown at a place of the page, within the triangle.
-  void read(const Placed& placed, double x, double y, int level, Gathered& texel,
-            std::size_t& hint) const {
-    TexelSource source;
-    if (job_.source_of) {
-      const std::optional<TexelSource> found =
-          job_.source_of(placed.number, placed.slopes.weights(x, y), hint);
-      if (!found) return;
-      source = *found;
-    } else {
-      source.page = job_.sources[placed.number].page;
-      if (source.page == kNoPage) return;
-      source.u = placed.u[0] * x + placed.u[1] * y + placed.u[2];
-      source.v = placed.v[0] * x + placed.v[1] * y + placed.v[2];
+  /// Adds what is shown at a place of the page, within the triangle, if that has a source.
+  bool read_part(const Placed& placed, const std::array<double, 2>& at, int part, TexelSums& sums,
+                 std::size_t& hint) const {
+    const auto [x, y] = at;
+    if (job_.show) {
+      return job_.show(placed.number, placed.slopes.weights(x, y), part, hint, sums);
     }
-    texel.count += 1;
-    const Texture& page = job_.pages[source.page];
-    if (job_.turns.empty()) {
-      return page.add(source.u, source.v, job_.reading, level, texel.sums);
+    if (job_.sources[placed.number].page == kNoPage) return false;
+    const Place place{placed.u[0] * x + placed.u[1] * y + placed.u[2],
+                      placed.v[0] * x + placed.v[1] * y + placed.v[2]};
+    read(placed, {&place, 1}, at, placed.density.level_of_parts, {&sums, 1});
+    return true;
+  }
+
+  /// Adds what the old page shows at places, one texel after another from `at` on.
+  void read(const Placed& placed, std::span<const Place> places, const std::array<double, 2>& at,
+            int level, std::span<TexelSums> sums) const {
+    const Texture& page = job_.pages[job_.sources[placed.number].page];
+    if (job_.turns.empty()) return page.add(places, job_.reading, level, sums);
+    std::array<TexelSums, kAtOnce> read;
+    std::fill_n(read.begin(), places.size(), TexelSums{});
+    page.add(places, job_.reading, level, {read.data(), places.size()});
+    const AxesTurn& how = job_.turns[placed.number];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Weights weights = placed.slopes.weights(at[0] + double(i), at[1]);
+      turn(how, weights, page.zero(), read[i]);
+      for (std::size_t k = 0; k < read[i].size(); ++k) sums[i][k] += read[i][k];
     }
-    TexelSums sums{};
-    page.add(source.u, source.v, job_.reading, level, sums);
-    turn(job_.turns[placed.number], placed.slopes.weights(x, y), page.zero(), sums);
-    for (std::size_t k = 0; k < sums.size(); ++k) texel.sums[k] += sums[k];
   }
 
   static void turn(const AxesTurn& turn, const Weights& weights, double zero, TexelSums& sums) {
@@ -358,25 +462,30 @@ class Baker {
     sums[1] = static_cast<float>(turn.new_side * (sine * x + cosine * y) / length + zero);
   }
 
-  void write_band(std::size_t band, int begin, int end, const std::vector<Gathered>& texels) {
-    const auto side = static_cast<std::size_t>(side_);
-    const std::size_t step = static_cast<std::size_t>(room_.components) * bytes_of(room_.type);
-    for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
-      unsigned char* out = room_.pixels + row * room_.row_bytes;
-      std::memset(out, 0, side * step);
-      const Gathered* in = &texels[(row - static_cast<std::size_t>(begin)) * side];
-      for (std::size_t i = 0; i < side; ++i) {
-        const Gathered& texel = in[i];
-        if (!texel.settled && texel.taken == 0) continue;
-        ++counts_[band].covered;
-        if (texel.count > 0) {
-          filled_[row * side + i] = Filled::kBaked;
-          job_.pages.front().finish(texel.sums, texel.count, out + step * i);
-        } else {
-          ++counts_[band].without_source;
-        }
+  void finish_shared(Band& band) const {
+    band.count.covered += band.shared.size();
+    for (const Gathered& gathered : band.shared) {
+      if (!(gathered.count > 0)) {
+        ++band.count.without_source;
+        continue;
       }
+      const auto row = static_cast<int>(gathered.texel / side());
+      const auto column = static_cast<int>(gathered.texel % side());
+      job_.pages.front().finish({&gathered.sums, 1}, gathered.count, pixel(row, column));
+      filled_[gathered.texel] = Filled::kBaked;
     }
+  }
+
+  std::size_t side() const { return static_cast<std::size_t>(side_); }
+  std::size_t texel(int row, int column) const {
+    return static_cast<std::size_t>(row) * side() + static_cast<std::size_t>(column);
+  }
+  std::size_t texel_bytes() const {
+    return static_cast<std::size_t>(room_.components) * bytes_of(room_.type);
+  }
+  unsigned char* pixel(int row, int column) const {
+    return room_.pixels + static_cast<std::size_t>(row) * room_.row_bytes +
+           static_cast<std::size_t>(column) * texel_bytes();
   }
 
   const PageBake& job_;

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,22 +27,19 @@ struct AxesTurn {
   double old_side = 1, new_side = 1;  ///< -1 where the UVs are mirrored
 };
 
-/// Where a texel is read.
-struct TexelSource {
-  std::uint32_t page = 0;
-  double u = 0, v = 0;
-};
-
-/// The source of a point of a triangle, by the weights of its corners; none where there is none.
-/// `hint` is the caller's, one for each thread: what was found last. Called from several threads.
-using SourceOf = std::function<std::optional<TexelSource>(
-    std::size_t triangle, const std::array<double, 3>& weights, std::size_t& hint)>;
+/// Adds what a point of a triangle shows, by the weights of its corners; false where there is
+/// nothing. `part` is the number of the point among the kPartsOfTexel of a texel that is parted, or
+/// kWholeTexel. `hint` is the caller's, one for each thread: what was found last. Called from
+/// several threads.
+using ShowPoint = std::function<bool(std::size_t triangle, const std::array<double, 3>& weights,
+                                     int part, std::size_t& hint, TexelSums& sums)>;
+inline constexpr int kPartsOfTexel = 16, kWholeTexel = -1;
 
 /// What a page of `side` texels is baked of. Where triangles overlap, the first is shown.
 struct PageBake {
   std::span<const UvTriangle> triangles;    ///< in texels of the page; rows from the bottom
-  std::span<const SourceTriangle> sources;  ///< of the triangles; or `source_of` is asked
-  SourceOf source_of;
+  std::span<const SourceTriangle> sources;  ///< of the triangles; or `show` is asked
+  ShowPoint show;
   std::span<const AxesTurn> turns;      ///< of the triangles, for textures of directions; or none
   std::span<const std::uint8_t> seams;  ///< see inner_seams(), of the triangles; or none
   std::span<Texture> pages;             ///< of one type, with as many components

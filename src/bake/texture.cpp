@@ -102,6 +102,73 @@ Number number_at(const unsigned char* bytes) {
   return number;
 }
 
+/// The four texels around a place, and how much of each is shown there.
+template <PixelType kType, int kComponents>
+struct FourTexels {
+  std::array<const unsigned char*, 4> at;
+  std::array<float, 4> weights;
+
+  template <class Level>
+  FourTexels(const Level& level, const Place& place, const ImageReading& reading) {
+    const double shift = reading.nearest ? 0.0 : 0.5;
+    const double x = place.u * level.width - shift, y = (1 - place.v) * level.height - shift;
+    const double left = floor_of(x), top = floor_of(y);
+    const float s = reading.nearest ? 0.0f : static_cast<float>(x - left);
+    const float t = reading.nearest ? 0.0f : static_cast<float>(y - top);
+    weights = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+    std::array<std::size_t, 2> columns, rows;
+    if (left >= 0 && left + 1 < level.width && top >= 0 && top + 1 < level.height) {
+      const auto column = static_cast<std::size_t>(static_cast<int>(left));
+      const auto row = static_cast<std::size_t>(static_cast<int>(top));
+      columns = {column, column + 1};
+      rows = {row, row + 1};
+    } else {
+      for (std::size_t k = 0; k < 2; ++k) {
+        columns[k] =
+            static_cast<std::size_t>(texel_at(left + double(k), level.width, reading.along_u));
+        rows[k] =
+            static_cast<std::size_t>(texel_at(top + double(k), level.height, reading.along_v));
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      at[i] = level.pixels + rows[i / 2] * level.row_bytes +
+              columns[i % 2] * (kComponents * sizeof(NumberOf<kType>));
+    }
+  }
+};
+
+/// Adds what texels show together; of colours with an alpha each counts by that, too.
+template <PixelType kType, int kComponents, int kColours, bool kWeighted>
+void add_mean(const FourTexels<kType, kComponents>& texels, const ColourTables& tables,
+              TexelSums& sums) {
+  using Number = NumberOf<kType>;
+  const auto value = [&](std::size_t i, std::size_t k) -> float {
+    const auto number = number_at<Number>(texels.at[i] + k * sizeof(Number));
+    if constexpr (kType == PixelType::kByte) {
+      return k < kColours ? tables.linear_of_byte[number]
+                          : static_cast<float>(kPerByte * static_cast<int>(number));
+    } else {
+      return static_cast<float>(number);
+    }
+  };
+  std::array<float, 4> weights = texels.weights;
+  if constexpr (kWeighted) {
+    const float least = least_alpha(kType);
+    for (std::size_t i = 0; i < 4; ++i) {
+      weights[i] *= std::max(value(i, kComponents - 1), least);
+      sums[kComponents - 1] += weights[i];
+    }
+  }
+  for (std::size_t k = 0; k < kComponents - (kWeighted ? 1 : 0); ++k) {
+    // A neighbour that has no part in it may be no number.
+    float sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (kType != PixelType::kFloat || weights[i] != 0) sum += weights[i] * value(i, k);
+    }
+    sums[k] += sum;
+  }
+}
+
 }  // namespace
 
 ColourTables::ColourTables() : byte_of_linear(65536) {
@@ -131,6 +198,9 @@ Texture::Texture(const ImageView& image, ImageKind kind, const ColourTables& tab
   }
   level.gather = gather_for(level.type, level.colours > 0);
   levels_.push_back(std::move(level));
+  finish_ = type_ == PixelType::kByte    ? finish_of<PixelType::kByte>(is_colour())
+            : type_ == PixelType::kShort ? finish_of<PixelType::kShort>(is_colour())
+                                         : finish_of<PixelType::kFloat>(is_colour());
 }
 
 void Texture::own_linear(const ImageView& image, Level& level, const Work& work) const {
@@ -195,6 +265,27 @@ Texture::Gather Texture::gather_for(PixelType type, bool colours) const {
   return gather_of<PixelType::kFloat, false>(components_, weighted());
 }
 
+template <PixelType kType, bool kColours>
+Texture::Finish Texture::finish_of(int components, bool weighted) {
+  constexpr int kOne = kColours ? 1 : 0, kThree = kColours ? 3 : 0;
+  switch (components) {
+    case 1:
+      return &finish_as<kType, 1, kOne, false>;
+    case 2:
+      return weighted ? &finish_as<kType, 2, kOne, true> : &finish_as<kType, 2, kOne, false>;
+    case 3:
+      return &finish_as<kType, 3, kThree, false>;
+    default:
+      return weighted ? &finish_as<kType, 4, kThree, true> : &finish_as<kType, 4, kThree, false>;
+  }
+}
+
+template <PixelType kType>
+Texture::Finish Texture::finish_of(bool colours) const {
+  return colours ? finish_of<kType, true>(components_, weighted())
+                 : finish_of<kType, false>(components_, weighted());
+}
+
 template <PixelType kType>
 void Texture::read_texel(const Level& level, int row, int column, TexelSums& texel) const {
   using Number = NumberOf<kType>;
@@ -236,6 +327,52 @@ Texture::Level Texture::half_of(const Level& level, const Work& work) const {
   return half;
 }
 
+/// A row of an image, from two rows of one that has twice its width, from row `row` on.
+template <PixelType kType, int kComponents>
+void Texture::halve_evenly(const Level& level, const ColourTables& tables, std::size_t row,
+                           int width, unsigned char* out) {
+  using Number = NumberOf<kType>;
+  constexpr std::size_t kTexel = kComponents * sizeof(Number);
+  const unsigned char* upper = level.pixels + row * level.row_bytes;
+  const unsigned char* lower = upper + level.row_bytes;
+  for (int i = 0; i < width; ++i, upper += 2 * kTexel, lower += 2 * kTexel) {
+    for (int k = 0; k < kComponents; ++k) {
+      const auto value = [&](const unsigned char* texel) -> float {
+        const auto number = number_at<Number>(texel + static_cast<std::size_t>(k) * sizeof(Number));
+        if constexpr (kType == PixelType::kByte) {
+          return (k < level.colours ? tables.linear_of_byte : tables.number_of_byte)[number];
+        } else {
+          return static_cast<float>(number);
+        }
+      };
+      const float mean = 0.25f * value(upper) + 0.25f * value(upper + kTexel) +
+                         0.25f * value(lower) + 0.25f * value(lower + kTexel);
+      if constexpr (kType == PixelType::kFloat) {
+        std::memcpy(out, &mean, sizeof mean);
+        out += sizeof mean;
+      } else {
+        const auto rounded = static_cast<std::uint16_t>(static_cast<std::int32_t>(mean + 0.5f));
+        std::memcpy(out, &rounded, sizeof rounded);
+        out += sizeof rounded;
+      }
+    }
+  }
+}
+
+template <PixelType kType>
+Texture::EvenHalving Texture::even_halving_of(int components) {
+  switch (components) {
+    case 1:
+      return &halve_evenly<kType, 1>;
+    case 2:
+      return &halve_evenly<kType, 2>;
+    case 3:
+      return &halve_evenly<kType, 3>;
+    default:
+      return &halve_evenly<kType, 4>;
+  }
+}
+
 template <PixelType kType>
 void Texture::halve_rows(const Level& level, Level& half, const Work& work) const {
   const auto components = static_cast<std::size_t>(components_);
@@ -271,9 +408,15 @@ void Texture::halve_rows(const Level& level, Level& half, const Work& work) cons
       }
     }
   };
+  const bool even = level.width == 2 * half.width && level.height == 2 * half.height;
+  const auto halve_evenly = even && !by_alpha ? even_halving_of<kType>(components_) : nullptr;
   parallel_for(work, half.height, kRows, [&](std::int64_t first, std::int64_t last) {
     for (auto y = static_cast<std::size_t>(first); y < static_cast<std::size_t>(last); ++y) {
       unsigned char* out = half.own.data() + y * half.row_bytes;
+      if (halve_evenly != nullptr) {
+        halve_evenly(level, *tables_, 2 * y, half.width, out);
+        continue;
+      }
       for (const Share& column : columns) {
         make_texel(rows[y], column, out);
         out += components * bytes_of(half.type);
@@ -290,84 +433,43 @@ void Texture::make_levels(int count, const Work& work) {
 }
 
 template <PixelType kType, int kComponents, int kColours, bool kWeighted>
-void Texture::gather(const Level& level, const ColourTables& tables, double u, double v,
-                     const ImageReading& reading, TexelSums& sums) {
-  using Number = NumberOf<kType>;
-  const double shift = reading.nearest ? 0.0 : 0.5;
-  const double x = u * level.width - shift, y = (1 - v) * level.height - shift;
-  const double left = floor_of(x), top = floor_of(y);
-  const float s = reading.nearest ? 0.0f : static_cast<float>(x - left);
-  const float t = reading.nearest ? 0.0f : static_cast<float>(y - top);
-  std::array<std::size_t, 2> columns, rows;
-  if (left >= 0 && left + 1 < level.width && top >= 0 && top + 1 < level.height) {
-    const auto column = static_cast<std::size_t>(static_cast<int>(left));
-    const auto row = static_cast<std::size_t>(static_cast<int>(top));
-    columns = {column, column + 1};
-    rows = {row, row + 1};
-  } else {
-    for (std::size_t k = 0; k < 2; ++k) {
-      columns[k] =
-          static_cast<std::size_t>(texel_at(left + double(k), level.width, reading.along_u));
-      rows[k] = static_cast<std::size_t>(texel_at(top + double(k), level.height, reading.along_v));
-    }
-  }
-  std::array<const unsigned char*, 4> texels;
-  for (std::size_t i = 0; i < 4; ++i) {
-    texels[i] = level.pixels + rows[i / 2] * level.row_bytes +
-                columns[i % 2] * (kComponents * sizeof(Number));
-  }
-  const auto value = [&](std::size_t i, std::size_t k) -> float {
-    const auto number = number_at<Number>(texels[i] + k * sizeof(Number));
-    if constexpr (kType == PixelType::kByte) {
-      return k < kColours ? tables.linear_of_byte[number]
-                          : static_cast<float>(kPerByte * static_cast<int>(number));
-    } else {
-      return static_cast<float>(number);
-    }
-  };
-  std::array<float, 4> weights = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
-  if constexpr (kWeighted) {
-    const float least = least_alpha(kType);
-    for (std::size_t i = 0; i < 4; ++i) {
-      weights[i] *= std::max(value(i, kComponents - 1), least);
-      sums[kComponents - 1] += weights[i];
-    }
-  }
-  for (std::size_t k = 0; k < kComponents - (kWeighted ? 1 : 0); ++k) {
-    // A neighbour that has no part in it may be no number.
-    float sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (kType != PixelType::kFloat || weights[i] != 0) sum += weights[i] * value(i, k);
-    }
-    sums[k] += sum;
+void Texture::gather(const Level& level, const ColourTables& tables, std::span<const Place> places,
+                     const ImageReading& reading, std::span<TexelSums> sums) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const FourTexels<kType, kComponents> texels(level, places[i], reading);
+    add_mean<kType, kComponents, kColours, kWeighted>(texels, tables, sums[i]);
   }
 }
 
-void Texture::finish(const TexelSums& sums, float count, unsigned char* texel) const {
-  const auto components = static_cast<std::size_t>(components_);
-  const auto of_colours = static_cast<std::size_t>(colours());
-  const bool by_alpha = weighted();
-  const float alpha = by_alpha ? sums[components - 1] : count;
-  for (std::size_t k = 0; k < components; ++k) {
-    const bool is_alpha = by_alpha && k + 1 == components;
-    float mean = sums[k] / (by_alpha && !is_alpha ? alpha : count);
-    const bool colour = k < of_colours;
-    if (type_ == PixelType::kFloat) {
-      if (is_alpha && mean <= 2 * least_alpha(type_)) mean = 0;
-      if (colour) mean = static_cast<float>(srgb_of(double(mean)));
-      std::memcpy(texel + 4 * k, &mean, sizeof mean);
-      continue;
-    }
-    const float within = std::clamp(mean, 0.0f, kMost);
-    if (type_ == PixelType::kShort) {
-      const double value =
-          colour ? double(kMost) * srgb_of(double(within) / double(kMost)) : double(within);
-      const auto rounded = static_cast<std::uint16_t>(value + 0.5);
-      std::memcpy(texel + 2 * k, &rounded, sizeof rounded);
-    } else {
-      const auto value = static_cast<std::size_t>(within + 0.5f);
-      texel[k] = colour ? tables_->byte_of_linear[value]
-                        : static_cast<std::uint8_t>((value + kPerByte / 2) / kPerByte);
+template <PixelType kType, int kComponents, int kColours, bool kWeighted>
+void Texture::finish_as(const ColourTables& tables, std::span<const TexelSums> all, float count,
+                        unsigned char* texels) {
+  constexpr std::size_t kBytes = sizeof(NumberOf<kType>);
+  for (const TexelSums& sums : all) {
+    for (int k = 0; k < kComponents; ++k, texels += kBytes) {
+      const bool is_alpha = kWeighted && k + 1 == kComponents;
+      const float of = kWeighted && !is_alpha ? sums[kComponents - 1] : count;
+      const float sum = sums[static_cast<std::size_t>(k)];
+      // Most texels are read once, and a division takes as long as half the rest.
+      float mean = of == 1 ? sum : sum / of;
+      if constexpr (kType == PixelType::kFloat) {
+        if (is_alpha && mean <= 2 * least_alpha(kType)) mean = 0;
+        if (k < kColours) mean = static_cast<float>(srgb_of(double(mean)));
+        std::memcpy(texels, &mean, sizeof mean);
+      } else {
+        const float within = std::clamp(mean, 0.0f, kMost);
+        if constexpr (kType == PixelType::kShort) {
+          const double value = k < kColours
+                                   ? double(kMost) * srgb_of(double(within) / double(kMost))
+                                   : double(within);
+          const auto rounded = static_cast<std::uint16_t>(value + 0.5);
+          std::memcpy(texels, &rounded, sizeof rounded);
+        } else {
+          const auto value = static_cast<std::uint32_t>(static_cast<std::int32_t>(within + 0.5f));
+          *texels = k < kColours ? tables.byte_of_linear[value]
+                                 : static_cast<std::uint8_t>((value + kPerByte / 2) / kPerByte);
+        }
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bake/image.h"
@@ -13,6 +14,11 @@ namespace beltrami {
 
 /// What was read so far: components times what they count, and of colours with an alpha that alone.
 using TexelSums = std::array<float, 4>;
+
+/// A place of an image, which is [0, 1]^2.
+struct Place {
+  double u = 0, v = 0;
+};
 
 /// IEC 61966-2-1 as tables: powers would take longer than all else.
 struct ColourTables {
@@ -38,25 +44,30 @@ class Texture {
   /// Makes the image smaller, up to `count` times.
   void make_levels(int count, const Work& work);
 
-  /// Adds what is shown at a place of level `level`, or the last one that there is. The image is
-  /// [0, 1]^2, its V axis points up. Precondition: u and v are finite.
-  void add(double u, double v, const ImageReading& reading, int level, TexelSums& sums) const {
+  /// Adds what is shown at each place of level `level`, or the last one that there is, to the sums
+  /// of the same number. The V axis of the image points up. Precondition: u and v are finite.
+  void add(std::span<const Place> places, const ImageReading& reading, int level,
+           std::span<TexelSums> sums) const {
     const std::size_t last = levels_.size() - 1;
     const Level& of =
         levels_[static_cast<std::size_t>(level) < last ? static_cast<std::size_t>(level) : last];
-    of.gather(of, *tables_, u, v, reading, sums);
+    of.gather(of, *tables_, places, reading, sums);
   }
-  /// Writes the texel that `count` times add() make, of as many components as the image and of its
-  /// type.
-  void finish(const TexelSums& sums, float count, unsigned char* texel) const;
+  /// Writes texels that stand side by side, each of which `count` places were added to, of as many
+  /// components as the image and of its type.
+  void finish(std::span<const TexelSums> sums, float count, unsigned char* texels) const {
+    finish_(*tables_, sums, count, texels);
+  }
 
   /// What stands for 0 in a component that goes from -1 to 1, once it is added.
   float zero() const { return type_ == PixelType::kFloat ? 0.5f : 32767.5f; }
 
  private:
   struct Level;
-  using Gather = void (*)(const Level&, const ColourTables&, double u, double v,
-                          const ImageReading&, TexelSums&);
+  using Gather = void (*)(const Level&, const ColourTables&, std::span<const Place>,
+                          const ImageReading&, std::span<TexelSums>);
+  using Finish = void (*)(const ColourTables&, std::span<const TexelSums>, float count,
+                          unsigned char* texels);
   struct Level {
     int width = 0, height = 0;
     PixelType type = PixelType::kByte;
@@ -67,8 +78,15 @@ class Texture {
     Gather gather = nullptr;
   };
   template <PixelType kType, int kComponents, int kColours, bool kWeighted>
-  static void gather(const Level& level, const ColourTables& tables, double u, double v,
-                     const ImageReading& reading, TexelSums& sums);
+  static void gather(const Level& level, const ColourTables& tables, std::span<const Place> places,
+                     const ImageReading& reading, std::span<TexelSums> sums);
+  template <PixelType kType, int kComponents, int kColours, bool kWeighted>
+  static void finish_as(const ColourTables& tables, std::span<const TexelSums> sums, float count,
+                        unsigned char* texels);
+  template <PixelType kType, bool kColours>
+  static Finish finish_of(int components, bool weighted);
+  template <PixelType kType>
+  Finish finish_of(bool colours) const;
   template <PixelType kType, bool kColours>
   static Gather gather_of(int components, bool weighted);
   Gather gather_for(PixelType type, bool colours) const;
@@ -76,6 +94,13 @@ class Texture {
   Level half_of(const Level& level, const Work& work) const;
   template <PixelType kType>
   void read_texel(const Level& level, int row, int column, TexelSums& texel) const;
+  using EvenHalving = void (*)(const Level&, const ColourTables&, std::size_t row, int width,
+                               unsigned char* out);
+  template <PixelType kType, int kComponents>
+  static void halve_evenly(const Level& level, const ColourTables& tables, std::size_t row,
+                           int width, unsigned char* out);
+  template <PixelType kType>
+  static EvenHalving even_halving_of(int components);
   template <PixelType kType>
   void halve_rows(const Level& level, Level& half, const Work& work) const;
   bool weighted() const { return kind_ == ImageKind::kTransparent && components_ % 2 == 0; }
@@ -89,6 +114,7 @@ class Texture {
   }
 
   std::vector<Level> levels_;
+  Finish finish_ = nullptr;
   const ColourTables* tables_;
   int components_ = 0;
   ImageKind kind_ = ImageKind::kNumbers;

@@ -1,17 +1,12 @@
 #include "mesh/closest_point.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <limits>
-#include <numeric>
-
-#include "base/interrupt.h"
 
 namespace beltrami {
 namespace {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr Index kLeafFaces = 4;
 
 /// a / (a + b) for non-negative a and b, of which one at least should not be zero.
 double share(double a, double b) {
@@ -52,46 +47,12 @@ std::array<double, 3> closest_on_triangle(const Vec3& p, const Vec3& a, const Ve
 }
 
 ClosestPoint::ClosestPoint(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces)
-    : positions_(positions), faces_(faces), normals_(faces.size()), order_(faces.size()) {
-  std::vector<Vec3> centroids(faces.size());
+    : positions_(positions), faces_(faces), normals_(faces.size()), tree_(positions, faces) {
   for (Index f = 0; f < size_of(faces); ++f) {
     const Vec3 &a = positions[faces[f][0]], &b = positions[faces[f][1]],
                &c = positions[faces[f][2]];
-    centroids[f] = (a + b + c) / 3;
     normals_[f] = (b - a).cross(c - a);
   }
-  std::iota(order_.begin(), order_.end(), 0);
-  nodes_.reserve(2 * faces.size());
-  nodes_.emplace_back();
-  build(0, 0, size_of(faces), centroids);
-}
-
-void ClosestPoint::build(Index node, Index begin, Index end, std::vector<Vec3>& centroids) {
-  Eigen::AlignedBox3d box, centres;
-  for (Index i = begin; i < end; ++i) {
-    for (const Index v : faces_[order_[i]]) box.extend(positions_[v]);
-    centres.extend(centroids[order_[i]]);
-  }
-  nodes_[node].box = box;
-  if (end - begin <= kLeafFaces) {
-    nodes_[node].first = begin;
-    nodes_[node].count = end - begin;
-    return;
-  }
-  poll_interrupt();
-  Eigen::Index axis;
-  centres.sizes().maxCoeff(&axis);
-  const Index middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](Index f, Index g) {
-                     const double a = centroids[f][axis], b = centroids[g][axis];
-                     return a < b || (a == b && f < g);
-                   });
-  const Index left = size_of(nodes_);
-  nodes_[node].first = left;
-  nodes_.resize(nodes_.size() + 2);
-  build(left, begin, middle, centroids);
-  build(left + 1, middle, end, centroids);
 }
 
 void ClosestPoint::consider(const Vec3& point, const Vec3* normal, Index face,
@@ -115,22 +76,23 @@ SurfacePoint ClosestPoint::search(const Vec3& point, const Vec3* normal, double 
     Index node;
     double distance_sq;
   };
-  std::array<Entry, 64> stack;  // the tree halves its faces: depth 32 at most, two entries a level
+  const std::vector<FaceTree::Node>& nodes = tree_.nodes;
+  std::array<Entry, FaceTree::kMostEntries> stack;
   int top = 0;
-  stack[top++] = {0, nodes_[0].box.squaredExteriorDistance(point)};
+  stack[top++] = {0, nodes[0].box.squaredExteriorDistance(point)};
   while (top > 0) {
     const Entry entry = stack[--top];
     // Equal distances are visited too: the smaller face wins whatever the seed was.
     if (entry.distance_sq > best.distance_sq) continue;
-    const Node& node = nodes_[entry.node];
+    const FaceTree::Node& node = nodes[entry.node];
     if (node.count > 0) {
       for (Index i = node.first; i < node.first + node.count; ++i) {
-        consider(point, normal, order_[i], best);
+        consider(point, normal, tree_.order[i], best);
       }
       continue;
     }
-    const Entry left{node.first, nodes_[node.first].box.squaredExteriorDistance(point)};
-    const Entry right{node.first + 1, nodes_[node.first + 1].box.squaredExteriorDistance(point)};
+    const Entry left{node.first, nodes[node.first].box.squaredExteriorDistance(point)};
+    const Entry right{node.first + 1, nodes[node.first + 1].box.squaredExteriorDistance(point)};
     const bool left_first = left.distance_sq <= right.distance_sq;
     stack[top++] = left_first ? right : left;
     stack[top++] = left_first ? left : right;

@@ -1,11 +1,12 @@
-// Closest points on a triangle mesh: a bounding volume hierarchy in flat arrays.
+// Closest points on a triangle mesh.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "base/types.h"
 #include "base/vectors.h"
+#include "mesh/face_tree.h"
 
 namespace beltrami {
 
@@ -32,24 +33,18 @@ class ClosestPoint {
   SurfacePoint find_within(const Vec3& point, const Vec3& normal, double reach, Index seed) const;
 
   /// The diagonal of the box around the faces.
-  double size() const { return nodes_[0].box.diagonal().norm(); }
+  double size() const { return tree_.nodes[0].box.diagonal().norm(); }
+
+  const FaceTree& tree() const { return tree_; }
 
  private:
-  struct Node {
-    Eigen::AlignedBox3d box;
-    Index first = 0;  ///< first face in order_ of a leaf; left child of an inner node
-    Index count = 0;  ///< faces of a leaf; 0 for an inner node, whose right child is first + 1
-  };
-
-  void build(Index node, Index begin, Index end, std::vector<Vec3>& centroids);
   SurfacePoint search(const Vec3& point, const Vec3* normal, double reach_sq, Index seed) const;
   void consider(const Vec3& point, const Vec3* normal, Index face, SurfacePoint& best) const;
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& faces_;
   std::vector<Vec3> normals_;  // not normalised: only signs are asked for
-  std::vector<Index> order_;
-  std::vector<Node> nodes_;
+  FaceTree tree_;
 };
 
 /// The point of triangle (a, b, c) that is closest to p (Ericson, Real-Time Collision Detection,

@@ -183,6 +183,83 @@ TEST(Stack, CopiesLieOnTheFirstOfTheirKindToTheLastBit) {
   }
 }
 
+/// Of a relief that is symmetric to x = 0, and to nothing else.
+Vec3 on_relief(double x, double y) {
+  const double off = std::abs(x), height = 0.2 * std::sin(3 * off + 1) * std::cos(4 * y);
+  return {x, y * (1 + 0.3 * off), height + 0.1 * off * y};
+}
+
+/// A grid on it, of `columns` from x = `first` to 1.
+TriangleList relief(double first, int columns) {
+  constexpr int kRows = 9;
+  TriangleList mesh;
+  for (int j = 0; j <= kRows; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      mesh.positions.push_back(
+          on_relief(first + (1 - first) * double(i) / columns, double(j) / kRows));
+    }
+  }
+  for (Index j = 0; j < kRows; ++j) {
+    for (Index i = 0; i < columns; ++i) {
+      const Index a = j * (columns + 1) + i, b = a + columns + 1;
+      mesh.faces.push_back({a, a + 1, b + 1});
+      mesh.faces.push_back({a, b + 1, b});
+    }
+  }
+  return mesh;
+}
+
+/// One side of it, and its mirror image, which have their vertices at x = 0 in common.
+TriangleList butterfly() {
+  TriangleList mesh = relief(0, 9);
+  const TriangleList image = reflected(mesh);
+  std::vector<Index> number(image.positions.size());
+  for (Index v = 0; v < size_of(number); ++v) {
+    const bool in_common = image.positions[v].x() == 0;
+    number[v] = in_common ? v : size_of(mesh.positions);
+    if (!in_common) mesh.positions.push_back(image.positions[v]);
+  }
+  for (const Triangle& face : image.faces) {
+    mesh.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
+  }
+  return mesh;
+}
+
+TEST(Stack, TheHalvesOfWhatIsSymmetricLieOnEachOther) {
+  const TriangleList mesh = butterfly();
+  const Index n = size_of(mesh.faces) / 2;
+  for (const bool is_searched : {true, false}) {
+    AtlasOptions options;
+    if (is_searched) options.target = SeamTarget{};
+    options.pack = PackOptions{};
+    options.stack = Stack::kMirrored;
+    const Atlas whole = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(whole.stacked_parts, 0) << "it is one component";
+    options.stack = Stack::kHalves;
+    const Atlas halves = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(halves.outcome, Outcome::kOk);
+    EXPECT_EQ(halves.stacked_parts, 1);
+    EXPECT_EQ(uv_triangles(halves, 0, n), uv_triangles(halves, n, 2 * n));
+    EXPECT_GT(halves.pages->texels_per_unit, whole.pages->texels_per_unit);
+    expect_own_vertices(mesh, halves);
+  }
+}
+
+TEST(Stack, WhatHasNoHalvesStaysInOnePiece) {
+  // The middle column lies across the plane.
+  for (const TriangleList& mesh : {relief(-1, 9), blob()}) {
+    AtlasOptions options;
+    options.target = SeamTarget{};
+    options.stack = Stack::kHalves;
+    const Atlas atlas = atlases::unwrapped(mesh, options);
+    options.stack = Stack::kMirrored;
+    const Atlas mirrored = atlases::unwrapped(mesh, options);
+    EXPECT_EQ(atlas.outcome, Outcome::kOk);
+    EXPECT_EQ(atlas.stacked_parts, mirrored.stacked_parts);
+    EXPECT_EQ(atlas.charts.size(), mirrored.charts.size());
+  }
+}
+
 TEST(Stack, AFaceLiesOnTheOneThatItIsACopyOf) {
   const TriangleList mesh = meshes::together({blob(), copied(reflected(blob()), 7)});
   AtlasOptions options;

@@ -68,7 +68,7 @@ TEST(CppOptions, EveryChoiceHasItsValues) {
   expect_last(option::kPack, Pack::kNone);
   expect_last(option::kPackTurns, PackTurns::kNone);
   expect_last(option::kEffort, Effort::kHigh);
-  expect_last(option::kStack, Stack::kMirrored);
+  expect_last(option::kStack, Stack::kHalves);
 }
 
 TEST(CppOptions, AreSetByKeyAndByName) {

@@ -1,6 +1,7 @@
 // beltrami transfer of what a fine mesh has itself, end to end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -113,6 +114,64 @@ TEST_F(Detail, APngOfHeightsHasItsScaleInTheSummary) {
   ASSERT_TRUE(image);
   EXPECT_EQ(image->components, 1);
   EXPECT_EQ(image->bytes, 2u);
+}
+
+TEST_F(Detail, OcclusionIsGreyOfOneByte) {
+  const std::string fine = directory.file("fine.obj", fine_mesh());
+  // A wall along x = 0 above the coarse square.
+  const std::string walled =
+      fine_mesh() + "v 0 -50 0\nv 0 50 0\nv 0 50 0.5\nv 0 -50 0.5\n" + "f -4 -3 -2 -1\n";
+  const Outcome outcome =
+      run({"transfer", directory.file("walled.obj", walled), directory.file("coarse.obj", kCoarse),
+           "occlusion", directory.path("o.png"), "--resolution", "64", "--rays", "512", "--cage",
+           "0.05"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("cage"), std::string::npos) << outcome.out;
+  const std::optional<Pixels> image = read_image(directory.read("o.png"));
+  ASSERT_TRUE(image);
+  ASSERT_EQ(image->components, 1);
+  ASSERT_EQ(image->bytes, 1u);
+  for (std::size_t row = 8; row < 60; row += 3) {
+    const double x = place(row, 30)[0];
+    const double open = (1 + x / std::sqrt(x * x + 0.25)) / 2;
+    // The waves of the floor hide some more of it.
+    EXPECT_NEAR(image->values[64 * row + 30] / 255.0, open, 0.06) << row;
+  }
+  const Outcome rays = run({"transfer", fine, directory.path("coarse.obj"), "normals",
+                            directory.path("n.png"), "--rays", "4"});
+  EXPECT_EQ(rays.exit_code, kExitUnusable);
+  EXPECT_NE(rays.err.find("--rays"), std::string::npos) << rays.err;
+}
+
+TEST_F(Detail, PagesOfUdimHaveOneScaleOfHeights) {
+  // The square in two halves, the second of which is on the next tile.
+  const std::string coarse =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 0 0\nv .5 1 0\n"
+      "vt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nvt 1.5 0\nvt 2 0\nvt 2 1\nvt 1.5 1\n"
+      "f 1/1 5/2 6/3 4/4\nf 5/5 2/6 3/7 6/8\n";
+  const Outcome outcome =
+      run({"transfer", directory.file("fine.obj", fine_mesh()), directory.file("two.obj", coarse),
+           "heights", directory.path("h.png"), "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("pages      2"), std::string::npos) << outcome.out;
+  double most = 0;
+  for (const char* name : {"h.1001.png", "h.1002.png"}) {
+    const std::optional<Pixels> image = read_image(directory.read(name));
+    ASSERT_TRUE(image) << name;
+    const bool second = name[5] == '2';
+    for (std::size_t row = 4; row < 60; row += 5) {
+      for (std::size_t column = 4; column < 28; column += 5) {
+        const std::size_t at = column + (second ? 32 : 0);
+        std::uint16_t value = 0;
+        std::memcpy(&value, &image->values[2 * (64 * row + at)], 2);
+        const double x = (double(at) + 0.5) / 64, y = 1 - (double(row) + 0.5) / 64;
+        // White stands for the greatest height of both pages, which is nearly 0.01.
+        EXPECT_NEAR(2 * value / 65535.0 - 1, height(x, y) / 0.01, 0.06) << name;
+        most = std::max(most, std::abs(2 * value / 65535.0 - 1));
+      }
+    }
+  }
+  EXPECT_GT(most, 0.8);
 }
 
 TEST_F(Detail, WhatIsFarAwayIsRefused) {

@@ -203,3 +203,53 @@ def test_what_is_wrong_is_said(changed: dict[str, Any], error: Any, words: str) 
     }
     with pytest.raises(error, match=words):
         beltrami.bake(**{**given, **changed})
+
+
+def floor_and_wall() -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit square, and the same with a wall of height 0.5 along x = 0."""
+    wall = np.array([[0, -500, 0], [0, 500, 0], [0, 500, 0.5], [0, -500, 0.5]], float)
+    return PLACES, np.concatenate([PLACES, wall[[[0, 1, 2], [0, 2, 3]]]])
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+def test_a_wall_hides_half_of_the_sky_by_its_sine(dtype: Any) -> None:
+    floor, walled = floor_and_wall()
+    baked = beltrami.bake(
+        np.zeros((1, 1), dtype),
+        None,
+        SQUARE,
+        pixels="occlusion",
+        vertices=floor,
+        source_vertices=walled,
+        rays=1024,
+        resolution=32,
+    )
+    x = (np.arange(32) + 0.5) / 32
+    most = 1 if dtype is np.float32 else np.iinfo(dtype).max
+    wanted = (1 + x / np.sqrt(x * x + 0.25)) / 2
+    assert baked.images.dtype == dtype
+    np.testing.assert_allclose(baked.images[0] / most, np.tile(wanted, (32, 1)), atol=0.015)
+
+
+def test_a_cage_sees_what_is_too_far_for_the_nearest_place() -> None:
+    image = noise(np.uint8, 3)
+    above = PLACES + np.array([0, 0, 0.3])
+    given: Any = {"vertices": PLACES, "source_vertices": above, "resolution": 32}
+    with pytest.raises(beltrami.InvalidArgumentError, match="no source"):
+        beltrami.bake(image, SQUARE, SQUARE, **given)
+    baked = beltrami.bake(image, SQUARE, SQUARE, cage=0.5, **given)
+    np.testing.assert_array_equal(baked.images[0], image)
+
+
+def test_what_rays_are_refused() -> None:
+    image = np.zeros((1, 1), np.uint8)
+    with pytest.raises(TypeError, match="old_uvs"):
+        beltrami.bake(image, None, SQUARE)
+    with pytest.raises(beltrami.InvalidArgumentError, match="rays"):
+        beltrami.bake(image, None, SQUARE, pixels="occlusion", vertices=PLACES, rays=9999)
+    with pytest.raises(ValueError, match="rays"):
+        beltrami.bake(image, None, SQUARE, pixels="occlusion", vertices=PLACES, rays=-1)
+    with pytest.raises(beltrami.InvalidArgumentError, match="rays"):
+        beltrami.bake(image, SQUARE, SQUARE, rays=4)
+    with pytest.raises(beltrami.InvalidArgumentError, match="cage"):
+        beltrami.bake(image, SQUARE, SQUARE, cage=1)

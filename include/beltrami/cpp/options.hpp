@@ -73,7 +73,8 @@ enum class Effort : std::int32_t {
 enum class Stack : std::int32_t {
   kNone = BELTRAMI_STACK_NONE,
   kCopies = BELTRAMI_STACK_COPIES,
-  kMirrored = BELTRAMI_STACK_MIRRORED
+  kMirrored = BELTRAMI_STACK_MIRRORED,
+  kHalves = BELTRAMI_STACK_HALVES
 };
 enum class Rectify : std::int32_t {
   kNone = BELTRAMI_RECTIFY_NONE,

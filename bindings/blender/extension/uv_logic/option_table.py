@@ -297,9 +297,9 @@ OPTIONS = (
         True, False, True,
     ),
     Option(
-        "stack", "choice", "none", 0.0, 2.0,
-        ("none", "copies", "mirrored"),
-        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams.",
+        "stack", "choice", "none", 0.0, 3.0,
+        ("none", "copies", "mirrored", "halves"),
+        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams.",
         True, False, False,
     ),
     Option(

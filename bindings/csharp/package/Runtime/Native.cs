@@ -146,6 +146,7 @@ namespace Beltrami
         None = 0,
         Copies = 1,
         Mirrored = 2,
+        Halves = 3,
     }
 
     /// <summary>Which charts become rectangles, beside those that a surface names.</summary>
@@ -802,6 +803,7 @@ namespace Beltrami
         Srgb = 1,
         SrgbAlpha = 2,
         Normals = 3,
+        Occlusion = 4,
     }
 
     /// <summary>An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in
@@ -831,7 +833,8 @@ namespace Beltrami
         public uint StructSize;
         /// <summary>0.</summary>
         public uint Flags;
-        /// <summary>One for each old page, of one type and as many channels.</summary>
+        /// <summary>One for each old page, of one type and as many channels. For OCCLUSION one,
+        /// whose type and channels alone are looked at.</summary>
         public IntPtr Images;
         public ulong ImageCount;
         /// <summary>BELTRAMI_PIXELS_.</summary>
@@ -858,8 +861,8 @@ namespace Beltrami
         /// <summary>An item of 3 per corner, F32 or F64; optional but for NORMALS and with
         /// source_positions.</summary>
         public NativeBuffer Positions;
-        /// <summary>Optional, for NORMALS: an item of 3 per corner, F32 or F64; NaN or left out:
-        /// that of the face.</summary>
+        /// <summary>Optional, for NORMALS and with a cage: an item of 3 per corner, F32 or F64; NaN
+        /// or left out: that of the face.</summary>
         public NativeBuffer Normals;
         /// <summary>Optional, for NORMALS: an item of 4 per corner, F32 or F64: the axis of the old
         /// u, and -1 where UVs are mirrored, else 1. Left out: as MikkTSpace has them.</summary>
@@ -880,6 +883,14 @@ namespace Beltrami
         public ulong PageCount;
         /// <summary>As in beltrami_mesh.</summary>
         public IntPtr Cancel;
+        /// <summary>With source_positions, in their unit: 0, or how far rays along the normals look
+        /// for the source. One comes from as far outside and goes as far inside; the first face
+        /// that it comes to from outside is shown. Where it meets none, the nearest place is. Gaps
+        /// stay closed where corners in one place have one normal.</summary>
+        public double Cage;
+        /// <summary>For OCCLUSION, 1 to 4096: from each texel to the sky. The faces hide it, or
+        /// with source_positions those of the source.</summary>
+        public ulong Rays;
     }
 
     /// <summary>Room for what is baked, and what is told of it.</summary>

@@ -380,9 +380,10 @@ namespace Beltrami
         }
 
         /// <summary>Whether components of one shape share texels: none, copies (those that a rigid
-        /// motion carries onto one before them lie on its charts) or mirrored (mirror images do,
-        /// too). Not with pins, max-charts, seam-budget or symmetric-seams. Default:
-        /// Stack.None.</summary>
+        /// motion carries onto one before them lie on its charts), mirrored (mirror images do, too)
+        /// or halves (what is symmetric is cut along its plane, where edges lie in that, and one
+        /// half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams.
+        /// Default: Stack.None.</summary>
         public Stack Stack
         {
             get { return (Stack)(int)Get(Option.Stack); }

@@ -17,7 +17,7 @@ from ._progress import Progress, hook_for
 
 # call: bake
 
-PixelsChoice = Literal["linear", "srgb", "srgb-alpha", "normals"]
+PixelsChoice = Literal["linear", "srgb", "srgb-alpha", "normals", "occlusion"]
 WrapChoice = Literal["repeat", "clamp", "mirror"]
 FilterChoice = Literal["linear", "nearest"]
 
@@ -55,7 +55,7 @@ class Baked:
 
 def bake(
     images: npt.ArrayLike | Sequence[npt.ArrayLike],
-    old_uvs: npt.ArrayLike,
+    old_uvs: npt.ArrayLike | None,
     new_uvs: npt.ArrayLike,
     *,
     pixels: PixelsChoice = "linear",
@@ -69,6 +69,8 @@ def bake(
     normals: npt.ArrayLike | None = None,
     tangents: npt.ArrayLike | None = None,
     source_vertices: npt.ArrayLike | None = None,
+    cage: float = 0,
+    rays: int | None = None,
     # options: parameters
     threads: int = 1,
     # end of options
@@ -86,16 +88,19 @@ def bake(
     ----------
     images : array_like, or sequence of them
         (h, w) or (h, w, c) with 1 to 4 channels, of uint8, uint16 or float32, rows from the top
-        (v = 1). Several are the old pages, of one type and as many channels.
-    old_uvs : (m, 3, 2) array_like of floats
+        (v = 1). Several are the old pages, of one type and as many channels. For occlusion one, of
+        any size: its type and channels are those of the result.
+    old_uvs : (m, 3, 2) array_like of floats, or None
         The UVs of the corners of each triangle, in units of its image. A triangle with one that is
-        not finite has no source. With `source_vertices` of those triangles.
+        not finite has no source. With `source_vertices` of those triangles. None for occlusion.
     new_uvs : (m, 3, 2) array_like of floats
         The new UVs, in the unit square of the page of the triangle.
-    pixels : {"linear", "srgb", "srgb-alpha", "normals"}, default "linear"
+    pixels : {"linear", "srgb", "srgb-alpha", "normals", "occlusion"}, default "linear"
         What channels are, which says how means are taken: numbers as they are; colours of sRGB,
         meant in linear light, with a second or fourth channel that is linear; the same, where a
         colour counts by that channel; normals in tangent space, which are turned to the new axes.
+        With "occlusion" no image is read: the share of a grey sky that a place sees, from 0 to 1
+        (255 or 65,535 of whole numbers), past the triangles themselves or `source_vertices`.
     resolution : int, default 1024
         Texels to the side of a page, 1 to 32,768.
     gutter : int, optional
@@ -108,9 +113,9 @@ def bake(
         The image that each triangle is read from, and the page that it lies on, counted from 0; -1
         for none. Left out, all are 0.
     vertices : (m, 3, 3) array_like of floats, optional
-        Positions of the corners, for normals and with `source_vertices`.
+        Positions of the corners, for normals, for occlusion and with `source_vertices`.
     normals : (m, 3, 3) array_like of floats, optional
-        Normals of the corners, for normals; NaN or left out: that of the triangle.
+        Normals of the corners, for normals and with a cage; NaN or left out: that of the triangle.
     tangents : (m, 3, 4) array_like of floats, optional
         For normals: the axis of the old u at each corner, and -1 where UVs are mirrored, else 1.
         Left out: as MikkTSpace has them.
@@ -118,6 +123,12 @@ def bake(
         Positions of the corners of other triangles of the same shape, in the same place: `old_uvs`
         and `old_pages` are then of these, and each texel shows the nearest place of them. Not for
         normals.
+    cage : float, default 0
+        With `source_vertices`, in their unit: how far rays along `normals` look for them. A ray
+        comes from as far outside and goes as far inside, and the first triangle that it comes to
+        from outside is shown. Where it meets none, the nearest place is. 0: no rays.
+    rays : int, optional
+        For occlusion, 1 to 4,096: rays from each texel to the sky; 128 where left out.
     masks : bool, default False
         True adds which texels are covered, and which are gutters.
     progress : bool or callable, optional
@@ -174,7 +185,10 @@ def bake(
     if source_vertices is not None:
         buffers["source_positions"] = _corners("source_vertices", source_vertices, 3)
     sources = len(buffers["source_positions"]) // 3 if elsewhere else faces
-    buffers["old_uvs"] = _corners("old_uvs", old_uvs, 2, sources)
+    if old_uvs is not None:
+        buffers["old_uvs"] = _corners("old_uvs", old_uvs, 2, sources)
+    elif pixels != "occlusion":
+        raise TypeError("old_uvs are missing: only occlusion does without")
     if old_pages is not None:
         buffers["old_pages"] = _pages("old_pages", old_pages, sources)
     if new_pages is not None:
@@ -188,7 +202,7 @@ def bake(
     pages = int(buffers["new_pages"].max(initial=0)) + 1 if "new_pages" in buffers else 1
     if not 1 <= resolution <= 32768:
         raise ValueError(f"resolution is {resolution}: give 1 to 32768")
-    numbers = {
+    numbers: dict[str, float] = {
         "pixels": _choice("pixels", pixels, PIXELS),
         "filter": _choice("texel_filter", texel_filter, FILTERS),
         "wrap_u": _choice("wrap", along_u, WRAPS),
@@ -198,7 +212,11 @@ def bake(
         "resolution": resolution,
         "gutter": whole_page() if gutter is None else gutter,
         "page_count": pages,
+        "cage": cage,
+        "rays": (128 if pixels == "occlusion" else 0) if rays is None else rays,
     }
+    if numbers["rays"] < 0:
+        raise ValueError(f"rays is {rays}: give 1 to 4096")
     if numbers["gutter"] < 0:
         raise ValueError(f"gutter is {gutter}: give 0 or more")
     context = BakeContext(cancel)

@@ -16,6 +16,7 @@ PIXELS = {
     "srgb": lib.BELTRAMI_PIXELS_SRGB,
     "srgb-alpha": lib.BELTRAMI_PIXELS_SRGB_ALPHA,
     "normals": lib.BELTRAMI_PIXELS_NORMALS,
+    "occlusion": lib.BELTRAMI_PIXELS_OCCLUSION,
 }
 FILTERS = {"linear": lib.BELTRAMI_FILTER_LINEAR, "nearest": lib.BELTRAMI_FILTER_NEAREST}
 WRAPS = {
@@ -32,7 +33,7 @@ class BakeArrays:
 
     images: Sequence[Array]
     buffers: dict[str, Array]  # by the names of the fields
-    numbers: dict[str, int]  # likewise
+    numbers: dict[str, float]  # likewise
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ PresetChoice = Literal["none", "lightmap", "texturing", "one-chart", "hard-surfa
 PackChoice = Literal["pages", "none"]
 PackTurnsChoice = Literal["any", "quarter", "none"]
 EffortChoice = Literal["quick", "normal", "high"]
-StackChoice = Literal["none", "copies", "mirrored"]
+StackChoice = Literal["none", "copies", "mirrored", "halves"]
 RectifyChoice = Literal["none", "grids"]
 
 #: Options that None leaves to the option `preset`.

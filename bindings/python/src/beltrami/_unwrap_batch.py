@@ -271,10 +271,11 @@ def unwrap_batch(
         How many times as long the seams of a part may be if it then unfolds without distortion, as
         boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
         or target-p99 sets this to 0: set it after them. A number from 0 to 100.
-    stack : {"none", "copies", "mirrored"}, default "none"
+    stack : {"none", "copies", "mirrored", "halves"}, default "none"
         Whether components of one shape share texels: none, copies (those that a rigid motion
-        carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
-        with pins, max-charts, seam-budget or symmetric-seams.
+        carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
+        (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+        other). Not with pins, max-charts, seam-budget or symmetric-seams.
     rectify : {"none", "grids"}, default "none"
         Which charts become rectangles along the axes: none, or grids (those that are rows and
         columns of quads, as roads, tubes and cloths are: each column gets one width and each row

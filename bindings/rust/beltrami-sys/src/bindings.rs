@@ -280,6 +280,9 @@ pub const BELTRAMI_STACK_NONE: _bindgen_ty_9 = 0;
 pub const BELTRAMI_STACK_COPIES: _bindgen_ty_9 = 1;
 /// Mirror images, too.
 pub const BELTRAMI_STACK_MIRRORED: _bindgen_ty_9 = 2;
+/** And the halves of what is symmetric to the plane of the whole surface: it is cut along the
+ edges in that, if no face lies across it.*/
+pub const BELTRAMI_STACK_HALVES: _bindgen_ty_9 = 3;
 /** Whether components of one shape share texels: each corner of such a component has the UV of the
  corner that it lies on. Its UV vertices are its own, its faces are not judged.*/
 pub type _bindgen_ty_9 = ::core::ffi::c_int;
@@ -2443,6 +2446,9 @@ pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_23 = 2;
  0 at the middle of the type's range (F32: 0.5), are turned from
  the axes of the old UVs to those of the new ones*/
 pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_23 = 3;
+/** none are read: the share of a grey sky that a face sees, from
+ 0 to 1, is written to all channels*/
+pub const BELTRAMI_PIXELS_OCCLUSION: _bindgen_ty_23 = 4;
 /// What the channels of an image are, which says how a mean of them is taken.
 pub type _bindgen_ty_23 = ::core::ffi::c_int;
 /** An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
@@ -2502,7 +2508,8 @@ pub struct beltrami_bake_job {
     pub struct_size: u32,
     /// 0
     pub flags: u32,
-    /// one for each old page, of one type and as many channels
+    /** one for each old page, of one type and as many channels. For
+ OCCLUSION one, whose type and channels alone are looked at*/
     pub images: *const beltrami_image,
     pub image_count: u64,
     /// BELTRAMI_PIXELS_
@@ -2528,8 +2535,8 @@ pub struct beltrami_bake_job {
     /** an item of 3 per corner, F32 or F64; optional but for NORMALS
  and with source_positions*/
     pub positions: beltrami_buffer,
-    /** optional, for NORMALS: an item of 3 per corner, F32 or F64; NaN
- or left out: that of the face*/
+    /** optional, for NORMALS and with a cage: an item of 3 per corner, F32
+ or F64; NaN or left out: that of the face*/
     pub normals: beltrami_buffer,
     /** optional, for NORMALS: an item of 4 per corner, F32 or F64: the
  axis of the old u, and -1 where UVs are mirrored, else 1. Left
@@ -2552,13 +2559,22 @@ pub struct beltrami_bake_job {
     pub page_count: u64,
     /// as in beltrami_mesh
     pub cancel: *const i32,
+    /** with source_positions, in their unit: 0, or how far rays along the
+ normals look for the source. One comes from as far outside and goes as
+ far inside; the first face that it comes to from outside is shown.
+ Where it meets none, the nearest place is. Gaps stay closed where
+ corners in one place have one normal*/
+    pub cage: f64,
+    /** for OCCLUSION, 1 to 4096: from each texel to the sky. The faces hide it,
+ or with source_positions those of the source*/
+    pub rays: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
     [
         "Size of beltrami_bake_job",
-    ][::core::mem::size_of::<beltrami_bake_job>() - 280usize];
+    ][::core::mem::size_of::<beltrami_bake_job>() - 296usize];
     [
         "Alignment of beltrami_bake_job",
     ][::core::mem::align_of::<beltrami_bake_job>() - 8usize];
@@ -2628,6 +2644,12 @@ const _: () = {
     [
         "Offset of field: beltrami_bake_job::cancel",
     ][::core::mem::offset_of!(beltrami_bake_job, cancel) - 272usize];
+    [
+        "Offset of field: beltrami_bake_job::cage",
+    ][::core::mem::offset_of!(beltrami_bake_job, cage) - 280usize];
+    [
+        "Offset of field: beltrami_bake_job::rays",
+    ][::core::mem::offset_of!(beltrami_bake_job, rays) - 288usize];
 };
 impl Default for beltrami_bake_job {
     fn default() -> Self {

@@ -95,6 +95,10 @@ pub enum PixelKind {
     SrgbAlpha,
     /// Normals in tangent space, which are turned to the axes of the new UVs. Wants positions.
     Normals,
+    /// None are read: the share of a grey sky that a place sees, from 0 to 1, past the triangles
+    /// themselves or the source. Wants positions, [`rays`](Bake::rays) and one image, whose type
+    /// and channels alone count.
+    Occlusion,
 }
 
 /// What an image shows beyond the unit square.
@@ -163,6 +167,8 @@ pub struct Bake<'a, T> {
     positions: Option<Positions<'a>>,
     normals: Option<Positions<'a>>,
     source_positions: Option<Positions<'a>>,
+    cage: f64,
+    rays: u64,
     resolution: u64,
     gutter: u64,
     page_count: u64,
@@ -190,6 +196,8 @@ impl<'a, T: Pixel> Bake<'a, T> {
             positions: None,
             normals: None,
             source_positions: None,
+            cage: 0.0,
+            rays: 0,
             resolution: 1024,
             gutter: u64::MAX,
             page_count: 1,
@@ -236,7 +244,8 @@ impl<'a, T: Pixel> Bake<'a, T> {
         self
     }
 
-    /// The normal of each corner, for images of normals; left out: that of the triangle.
+    /// The normal of each corner, for images of normals and with a [`cage`](Self::cage); left out:
+    /// that of the triangle.
     pub fn normals(mut self, normals: impl Into<Positions<'a>>) -> Self {
         self.normals = Some(normals.into());
         self
@@ -246,6 +255,20 @@ impl<'a, T: Pixel> Bake<'a, T> {
     /// UVs and pages are then of these, and each texel shows the nearest place of them.
     pub fn source_positions(mut self, positions: impl Into<Positions<'a>>) -> Self {
         self.source_positions = Some(positions.into());
+        self
+    }
+
+    /// How far rays along the normals look for the source, in its unit; 0 by default. One comes
+    /// from as far outside and goes as far inside, and the first triangle that it comes to from
+    /// outside is shown. Where it meets none, the nearest place is.
+    pub fn cage(mut self, length: f64) -> Self {
+        self.cage = length;
+        self
+    }
+
+    /// Rays from each texel to the sky, 1 to 4,096, for [`PixelKind::Occlusion`].
+    pub fn rays(mut self, count: usize) -> Self {
+        self.rays = count as u64;
         self
     }
 
@@ -346,9 +369,10 @@ impl<'a, T: Pixel> Bake<'a, T> {
         let corners = self.new_uvs.len();
         let faces = corners / 3;
         let source_corners = self.source_positions.map_or(corners, |positions| positions.len());
+        let reads = self.pixels != PixelKind::Occlusion;
         let lengths = [
             (Some(self.new_uvs.len()), 3 * faces),
-            (Some(self.old_uvs.len()), 3 * (source_corners / 3)),
+            (reads.then_some(self.old_uvs.len()), 3 * (source_corners / 3)),
             (self.positions.map(|positions| positions.len()), corners),
             (self.normals.map(|normals| normals.len()), corners),
             (self.source_positions.map(|positions| positions.len()), 3 * (source_corners / 3)),
@@ -375,6 +399,7 @@ impl<'a, T: Pixel> Bake<'a, T> {
                 PixelKind::Srgb => sys::BELTRAMI_PIXELS_SRGB,
                 PixelKind::SrgbAlpha => sys::BELTRAMI_PIXELS_SRGB_ALPHA,
                 PixelKind::Normals => sys::BELTRAMI_PIXELS_NORMALS,
+                PixelKind::Occlusion => sys::BELTRAMI_PIXELS_OCCLUSION,
             },
             filter: match self.filter {
                 Filter::Linear => sys::BELTRAMI_FILTER_LINEAR,
@@ -395,6 +420,8 @@ impl<'a, T: Pixel> Bake<'a, T> {
             gutter: self.gutter,
             page_count: self.page_count,
             cancel: token.number(),
+            cage: self.cage,
+            rays: self.rays,
             ..Default::default()
         })
     }

@@ -79,3 +79,36 @@ fn what_is_wrong_is_said() {
     assert_eq!(kind(Bake::new(&images, &SQUARE, &nowhere)), ErrorKind::NonFinite);
     assert_eq!(kind(Bake::new(&images, &nowhere, &SQUARE)), ErrorKind::InvalidArgument);
 }
+
+/// The unit square at a height.
+fn floor(height: f64) -> [[f64; 3]; 6] {
+    SQUARE.map(|[u, v]| [u, v, height])
+}
+
+#[test]
+fn a_cage_sees_what_is_too_far_for_the_nearest_place() {
+    let pixels = noise(32 * 32);
+    let images = [Image::new(&pixels, 32, 32, 1).unwrap()];
+    let (below, above) = (floor(0.0), floor(0.3));
+    let bake = Bake::new(&images, &SQUARE, &SQUARE)
+        .positions(&below)
+        .source_positions(&above)
+        .resolution(32);
+    assert_eq!(bake.bake().unwrap_err().kind, ErrorKind::InvalidArgument);
+    assert_eq!(bake.cage(0.5).bake().unwrap().pixels, pixels);
+}
+
+#[test]
+fn a_floor_sees_the_sky_and_what_hangs_above_it_hides_it() {
+    let images = [Image::new(&[0.0_f32], 1, 1, 1).unwrap()];
+    let (below, above) = (floor(0.0), floor(0.3));
+    let bake = Bake::new(&images, &SQUARE, &SQUARE)
+        .pixels(PixelKind::Occlusion)
+        .positions(&below)
+        .rays(64)
+        .resolution(16);
+    assert!(bake.bake().unwrap().pixels.iter().all(|&open| open == 1.0));
+    let hidden = bake.source_positions(&above).cage(0.0);
+    assert!(hidden.bake().is_err(), "nothing of the source is near");
+    assert!(bake.rays(0).bake().is_err());
+}

@@ -188,8 +188,10 @@ choice! {
 
 choice! {
     /// Whether components of one shape share texels: none, copies (those that a rigid motion
-    /// carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
-    /// with pins, max-charts, seam-budget or symmetric-seams. See [`UnwrapOptions::stack`].
+    /// carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
+    /// (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+    /// other). Not with pins, max-charts, seam-budget or symmetric-seams. See
+    /// [`UnwrapOptions::stack`].
     Stack {
         /// None.
         None = "none",
@@ -197,6 +199,9 @@ choice! {
         Copies = "copies",
         /// Mirror images, too.
         Mirrored = "mirrored",
+        /// And the halves of what is symmetric to the plane of the whole surface: it is cut along
+        /// the edges in that, if no face lies across it.
+        Halves = "halves",
     }
 }
 
@@ -613,13 +618,14 @@ options! {
         Float(&[]), 0..=100, default 1.5, calls 2;
 
     /// Whether components of one shape share texels: none, copies (those that a rigid motion
-    /// carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not
-    /// with pins, max-charts, seam-budget or symmetric-seams.
+    /// carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
+    /// (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+    /// other). Not with pins, max-charts, seam-budget or symmetric-seams.
     ///
     /// Default: [`None`](Stack::None).
     stack(Stack) of [UnwrapOptions] = 42 "stack"
-        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts) or mirrored (mirror images do, too). Not with pins, max-charts, seam-budget or symmetric-seams."
-        Choice(Stack::NAMES), 0..=2, default 0, calls 2;
+        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams."
+        Choice(Stack::NAMES), 0..=3, default 0, calls 2;
 
     /// Which charts become rectangles along the axes: none, or grids (those that are rows and
     /// columns of quads, as roads, tubes and cloths are: each column gets one width and each row
