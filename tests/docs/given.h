@@ -1,4 +1,5 @@
-/* What the snippets of C and C++ in the pages take for given: the numbers of the reader's program. */
+/* What the snippets of C and C++ in the pages take for given: the numbers of the reader's program.
+ */
 #include <beltrami/beltrami.h>
 #include <stddef.h>
 
