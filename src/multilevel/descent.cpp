@@ -1,4 +1,5 @@
 #include "multilevel/descent.h"
+#include "multilevel/policy.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 #include "base/types.h"
 #include "exact/certificate.h"
 #include "flatten/carried_target.h"
+#include "flatten/dirichlet.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
 #include "multilevel/anchors.h"

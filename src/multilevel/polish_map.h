@@ -11,6 +11,7 @@
 #include "multilevel/chart_map.h"
 #include "multilevel/map_problem.h"
 #include "multilevel/options.h"
+#include "multilevel/policy.h"
 
 namespace beltrami {
 

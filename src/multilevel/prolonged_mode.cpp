@@ -10,6 +10,7 @@
 #include "multilevel/map_problem.h"
 #include "multilevel/modes.h"
 #include "multilevel/options.h"
+#include "multilevel/policy.h"
 
 namespace beltrami {
 namespace {
