@@ -101,8 +101,13 @@ void Updater::cut() {
   }
   Recut cut = recut(ground, faces, next_.seams, next_.opened, standing(faces),
                     work_.part(0, kCut).named("cut"));
+  // Edges to charts that are not cut anew stay as they are, on both sides.
+  const std::vector<Index>& twin = ground.admitted.surface.twin;
   for (const Index f : faces) {
-    for (int k = 0; k < 3; ++k) next_.opened[3 * f + k] = false;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const bool is_inside = twin[h] == kNone || is_affected[next_.chart_of_face[twin[h] / 3]];
+      if (is_inside) next_.opened[h] = false;
+    }
   }
   for (const Index h : cut.opened) mark_edge(ground.admitted.surface, h, next_.opened);
   for (std::size_t c = 0; c < is_affected.size(); ++c) {

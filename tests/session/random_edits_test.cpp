@@ -236,8 +236,16 @@ class Player {
     }
   }
 
-  /// What is said to be injective is so, and what is not said to be is not.
+  /// What is said to be injective is so, and what is not said to be is not; edges are cut on both
+  /// sides.
   void expect_true_verdicts() const {
+    const SessionState& state = session_.state();
+    const std::vector<Index>& twin = session_.ground().admitted.surface.twin;
+    for (std::size_t h = 0; h < twin.size(); ++h) {
+      if (twin[h] == kNone) continue;
+      EXPECT_EQ(state.opened[h], state.opened[twin[h]]) << h;
+      EXPECT_EQ(state.seams[h], state.seams[twin[h]]) << h;
+    }
     for (const SessionChart& chart : session_.state().charts) {
       const auto& all = chart.mesh().faces;
       const std::vector<Triangle> faces(all.begin(), all.begin() + chart.faces());
