@@ -150,7 +150,7 @@ def edges_reached(program: Path, out: Path) -> dict[tuple[str, str], tuple[int, 
 
 
 def coverage(programs: list[Path], out: Path) -> str:
-    """Return what the fuzzers reach of each room as Markdown: of a function the most that one does."""
+    """Return what the fuzzers reach of each room, of a function the most of one, as Markdown."""
     best: dict[tuple[str, str], tuple[int, int]] = {}
     for program in programs:
         print(f"dev: soak: what {program.name} reaches", flush=True)

@@ -280,7 +280,8 @@ class ToGltf {
   }
 
   bool add_texture(const Map& map, std::uint64_t material) {
-    const auto& [use, bytes] = map;
+    const TextureUse* const use = map.use;
+    const std::string& bytes = map.bytes;
     // Found anew at each use: what is added to the document moves its parts.
     const auto own = [&]() -> Json& { return document_.json["materials"][material]; };
     const auto pbr = [&]() -> Json& { return own()["pbrMetallicRoughness"]; };
