@@ -209,7 +209,7 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->add_option("--cage", arguments.cage,
                    "How far rays along the smooth normals of NEW look for OLD, outwards and\n"
                    "inwards, in the unit of the meshes; 0 takes the nearest places [default 0]")
-      ->check(CLI::Range(0.0, 1e30))
+      ->check(CLI::Range(0.0, 1e9))
       ->type_name("D");
   command
       ->add_option("--rays", arguments.rays,
