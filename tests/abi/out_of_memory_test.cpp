@@ -292,30 +292,30 @@ TEST(OutOfMemory, ASessionAnswersWhereverMemoryEnds) {
   const Context context = for_small_pages();
   beltrami_context* const c = context.get();
   const auto begin = [&] { return beltrami_session_begin(c, &surface, nullptr, nullptr); };
-  const auto uvs = [&] {
+  const auto session_uvs = [&] {
     std::vector<std::array<double, 2>> uvs(3 * mesh.faces.size());
     EXPECT_EQ(beltrami_get_session_uvs(c, uvs.data(), BELTRAMI_F64, 0), BELTRAMI_OK);
     return uvs;
   };
-  expect_status_wherever_memory_ends(begin, 60, uvs);
+  expect_status_wherever_memory_ends(begin, 60, session_uvs);
   ASSERT_EQ(beltrami_session_update(c, 0, 0, nullptr, nullptr), BELTRAMI_OK);
   ASSERT_EQ(beltrami_session_pack(c, nullptr, 0, nullptr, nullptr), BELTRAMI_OK);
   std::uint64_t mark = 0;
   ASSERT_EQ(beltrami_session_save(c, &mark), BELTRAMI_OK);
-  const auto saved = uvs();
+  const auto saved = session_uvs();
   // All of a call is done, or nothing: from where the session was saved.
   const auto all_or_nothing = [&](const auto& call) {
     ASSERT_EQ(call(), BELTRAMI_OK);
-    const auto made = uvs();
+    const auto made = session_uvs();
     ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
     const long all = allocations_of(call), stride = std::max(1L, all / 60);
-    EXPECT_TRUE(same_bits(uvs(), made));
+    EXPECT_TRUE(same_bits(session_uvs(), made));
     ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
     long before = -1;  // of the first round alone what is kept from then on
     for (long after = 0; after < all; after += stride) {
       const beltrami_status status = call_with(Fails::kOne, after, call);
       EXPECT_TRUE(status == BELTRAMI_E_OUT_OF_MEMORY || status == BELTRAMI_OK) << after;
-      EXPECT_TRUE(same_bits(uvs(), status == BELTRAMI_OK ? made : saved)) << after;
+      EXPECT_TRUE(same_bits(session_uvs(), status == BELTRAMI_OK ? made : saved)) << after;
       ASSERT_EQ(beltrami_session_restore(c, mark), BELTRAMI_OK);
       const long left = living;
       if (before >= 0 && status != BELTRAMI_OK) {
