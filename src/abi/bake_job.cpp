@@ -173,7 +173,7 @@ void require_rays(const beltrami_bake_job& job) {
     refuse("rays are for OCCLUSION: leave them at 0");
   }
   if (!(job.cage >= 0 && std::isfinite(job.cage))) {
-    refuse("the cage is " + std::to_string(job.cage) + ": give 0, or a length above it");
+    refuse("the cage is negative or not finite: give 0, or a length above it");
   }
   if (job.cage > 0 && job.source_positions.data == nullptr) {
     refuse("a cage is for another surface: give source_positions, or leave it at 0");

@@ -26,7 +26,8 @@ size_t mesh_count, const beltrami_surface* const* surfaces, size_t surface_count
 void* user, void* my_job_system""",
     "cpp": """\
 const std::vector<std::array<float, 3>>& positions, const std::vector<std::uint32_t>& triangles,
-const TArray<FVector3f>& Vertices, const TArray<uint32>& Triangles, beltrami::Context* Context""",
+const std::vector<std::array<std::uint32_t, 2>>& edges, const TArray<FVector3f>& Vertices,
+const TArray<uint32>& Triangles, beltrami::Context* Context""",
 }
 FLAGS = ["-fsyntax-only", "-Wall", "-Wno-unused", "-Werror"]
 LANGUAGES = {"c": ["-std=c99", "-x", "c"], "cpp": ["-std=c++17", "-x", "c++", "-fno-exceptions"]}
