@@ -18,6 +18,7 @@
 #include "base/parallel.h"
 #include "base/resources.h"
 #include "base/types.h"
+#include "cut/given.h"
 #include "cut/seam_target.h"
 #include "mesh/surface.h"
 

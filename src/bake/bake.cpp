@@ -14,7 +14,6 @@
 #include "bake/other_surface.h"
 #include "bake/texture.h"
 #include "base/interrupt.h"
-#include "base/types.h"
 #include "base/vectors.h"
 
 namespace beltrami {

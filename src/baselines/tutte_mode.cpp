@@ -9,7 +9,6 @@
 #include "multilevel/chart_map.h"
 #include "multilevel/extras.h"
 #include "multilevel/memory.h"
-#include "multilevel/mode_bytes.h"
 #include "multilevel/options.h"
 #include "repair/repair.h"
 

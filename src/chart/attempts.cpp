@@ -1,5 +1,4 @@
 #include "chart/attempts.h"
-#include "multilevel/composite_majorization.h"
 
 #include <optional>
 #include <utility>

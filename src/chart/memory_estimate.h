@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "multilevel/options.h"
 

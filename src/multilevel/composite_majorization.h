@@ -3,10 +3,8 @@
 
 #include <vector>
 
-#include "base/vectors.h"
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
-#include "multilevel/chart_map.h"
 #include "multilevel/descent.h"
 #include "multilevel/options.h"
 

@@ -24,7 +24,6 @@
 #include "multilevel/options.h"
 #include "multilevel/policy.h"
 #include "multilevel/polish_level.h"
-#include "repair/touching.h"
 
 namespace beltrami {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "descend/contact.h"

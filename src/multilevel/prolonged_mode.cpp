@@ -5,7 +5,6 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "multilevel/chart_map.h"
-#include "multilevel/descent.h"
 #include "multilevel/inherited.h"
 #include "multilevel/map_problem.h"
 #include "multilevel/modes.h"

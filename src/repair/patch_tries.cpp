@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "repair/hub_turns.h"
+#include "mesh/hub.h"
 
 namespace beltrami {
 namespace {

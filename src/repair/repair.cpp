@@ -14,6 +14,7 @@
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
+#include "mesh/hub.h"
 #include "repair/global_fix.h"
 #include "repair/hub_turns.h"
 #include "repair/kernel.h"

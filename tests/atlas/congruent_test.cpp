@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "atlas/atlas.h"
 #include "atlas/open.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "chart/flattening.h"
-#include "cut/search.h"
+#include "cut/seam_target.h"
 #include "mesh/surface.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/solids.h"
