@@ -36,6 +36,7 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "descend/line_search.h"
 #include "descend/newton.h"
 #include "descend/polish.h"
