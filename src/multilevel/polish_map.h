@@ -15,8 +15,8 @@
 namespace beltrami {
 
 /// Descends from `start`, whose faces are all positive, on the schedule at the top of
-/// polish_map.cpp. With `contact`, which is copied, the boundary stays simple; null: it may
-/// cross itself. `inverse` is that of the solve, and is fitted anew on the way. Converged: ended
+/// polish_map.cpp. With `contact`, which is copied, the boundary stays simple; null: it may cross
+/// itself. `inverse` is that of the solve, and is fitted anew on the way. Converged: ended
 /// stationary. Throws Error SOLVER.
 ChartMap polish_map(const MapProblem& fine, const BoundaryContact* contact, PolishLength length,
                     const ChartOptions& options, const Work& work, StiffnessInverse& inverse,

@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 BLOCK = re.compile(r"^```(c|cpp)\n(.*?)^```", re.M | re.S)
-# A definition: to the brace that closes it, at the begin of a line or on that of the definition.
+# A definition: to the brace that closes it, at the beginning of a line or on that of the definition.
 DEFINITION = re.compile(r"^(?:template\b[^\n]*\};|static\b.*?^\})$", re.M | re.S)
 GENERATED = "reference.md"  # declarations of the header
 
