@@ -79,6 +79,19 @@ impl Context {
         Ok(())
     }
 
+    /// Sets `new` options in place of `old` ones, which stay where one of the new is refused.
+    pub(crate) fn replace(
+        &self,
+        old: impl Iterator<Item = (i32, Value)>,
+        new: impl Iterator<Item = (i32, Value)>,
+    ) -> Result<(), Error> {
+        let result = self.apply(new);
+        if result.is_err() {
+            self.apply(old)?; // they were taken before, so they are again
+        }
+        result
+    }
+
     /// Turns a negative status of the last call into its failure. Goes on with the panic of a loop.
     pub(crate) fn check(&self, status: sys::beltrami_status) -> Result<(), Error> {
         if let Some(payload) = self.host.as_ref().and_then(|host| host.take_panic()) {

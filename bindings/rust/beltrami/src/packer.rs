@@ -141,13 +141,9 @@ impl Packer {
     ///
     /// [`InvalidArgument`](ErrorKind::InvalidArgument) for a value that is out of range.
     pub fn set_options(&mut self, options: &PackOptions) -> Result<(), Error> {
-        let result = self.context.apply(options.values());
-        match result {
-            Ok(()) => self.options = options.clone(),
-            // They were taken before, so they are again.
-            Err(_) => self.context.apply(self.options.values())?,
-        }
-        result
+        self.context.replace(self.options.values(), options.values())?;
+        self.options = options.clone();
+        Ok(())
     }
 
     /// Packs meshes onto common pages. On failure what was packed last stays.

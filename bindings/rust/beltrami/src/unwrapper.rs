@@ -97,13 +97,9 @@ impl Unwrapper {
     ///
     /// [`InvalidArgument`](ErrorKind::InvalidArgument) for a value that is out of range.
     pub fn set_options(&mut self, options: &UnwrapOptions) -> Result<(), Error> {
-        let result = self.context.apply(options.values());
-        match result {
-            Ok(()) => self.options = options.clone(),
-            // They were taken before, so they are again.
-            Err(_) => self.context.apply(self.options.values())?,
-        }
-        result
+        self.context.replace(self.options.values(), options.values())?;
+        self.options = options.clone();
+        Ok(())
     }
 
     /// Runs loops on the caller's threads in place of the library's own: `closure` is given a count,
