@@ -26,16 +26,6 @@ std::vector<std::uint64_t> by_vertex(const std::vector<std::uint32_t>& vertex_of
   return order;
 }
 
-/// A number of those that count from 0.
-std::uint64_t index(TextCursor& cursor, const char* what, std::uint64_t count) {
-  const std::int64_t number = cursor.integer(what);
-  if (number >= 0 && static_cast<std::uint64_t>(number) < count) {
-    return static_cast<std::uint64_t>(number);
-  }
-  cursor.fail("there is no " + std::string(what) + " " + std::to_string(number) + ": there are " +
-              std::to_string(count) + ", counted from 0");
-}
-
 struct Place {
   std::uint32_t kind = BELTRAMI_PIN_POINT;
   double u = 0, v = 0;
@@ -86,9 +76,9 @@ Pins read_pins(const std::string& path, const MeshFile& file) {
     }
     std::vector<std::uint64_t> corners;
     if (kind == "c") {
-      corners.push_back(index(cursor, "corner", vertex_of.size()));
+      corners.push_back(cursor.index("corner", vertex_of.size()));
     } else {
-      const std::uint64_t vertex = index(cursor, "vertex", file.vertex_count());
+      const std::uint64_t vertex = cursor.index("vertex", file.vertex_count());
       auto at = std::lower_bound(
           order.begin(), order.end(), vertex,
           [&](std::uint64_t corner, std::uint64_t v) { return vertex_of[corner] < v; });

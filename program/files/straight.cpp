@@ -8,23 +8,13 @@
 namespace beltrami::cli {
 namespace {
 
-/// A number of those that count from 0.
-std::uint64_t index(TextCursor& cursor, const char* what, std::uint64_t count) {
-  const std::int64_t number = cursor.integer(what);
-  if (number >= 0 && static_cast<std::uint64_t>(number) < count) {
-    return static_cast<std::uint64_t>(number);
-  }
-  cursor.fail("there is no " + std::string(what) + " " + std::to_string(number) + ": there are " +
-              std::to_string(count) + ", counted from 0");
-}
-
 void read_rectangle(TextCursor& cursor, const MeshFile& file, Straight& straight) {
-  straight.rectangles.push_back(index(cursor, "face", file.polygons.size()));
+  straight.rectangles.push_back(cursor.index("face", file.polygons.size()));
   straight.rectangle_lines.push_back(cursor.line());
   cursor.skip_blanks();
   const bool named = !cursor.at_line_end();
   for (int k = 0; k < 4; ++k) {
-    straight.rectangle_corners.push_back(named ? index(cursor, "vertex", file.vertex_count())
+    straight.rectangle_corners.push_back(named ? cursor.index("vertex", file.vertex_count())
                                                : BELTRAMI_NO_ELEMENT);
   }
 }
@@ -41,7 +31,7 @@ Straight read_straight(const std::string& path, const MeshFile& file) {
       read_rectangle(cursor, file, straight);
     } else if (kind == "u" || kind == "v" || kind == "l") {
       for (int k = 0; k < 2; ++k) {
-        straight.edges.push_back(index(cursor, "vertex", file.vertex_count()));
+        straight.edges.push_back(cursor.index("vertex", file.vertex_count()));
       }
       straight.kinds.push_back(kind == "u"   ? BELTRAMI_PIN_U
                                : kind == "v" ? BELTRAMI_PIN_V

@@ -113,6 +113,15 @@ std::optional<std::int64_t> TextCursor::integer_if_any() {
   return value;
 }
 
+std::uint64_t TextCursor::index(const char* what, std::uint64_t count) {
+  const std::int64_t number = integer(what);
+  if (number >= 0 && static_cast<std::uint64_t>(number) < count) {
+    return static_cast<std::uint64_t>(number);
+  }
+  fail("there is no " + std::string(what) + " " + std::to_string(number) + ": there are " +
+       std::to_string(count) + ", counted from 0");
+}
+
 std::int64_t TextCursor::integer(const char* what) {
   const std::optional<std::int64_t> value = integer_if_any();
   if (!value) fail_word(what);

@@ -68,6 +68,8 @@ class TextCursor {
   std::int64_t integer(const char* what);
   /// The same; where none stands here, nothing, and the cursor is before what does.
   std::optional<std::int64_t> integer_if_any();
+  /// The number here of one of `count` items, which count from 0.
+  std::uint64_t index(const char* what, std::uint64_t count);
 
   /// "path: line n: ", the start of messages.
   std::string place() const;

@@ -136,7 +136,7 @@ Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const Inherit
   std::vector<Way> ways = {{method(asked_for)}};
   if (options.method == Method::kGif) return try_in_turn(mesh, frame, ways, options, work);
   const bool in_levels =
-      options.method == Method::kBeltrami && is_nested(mesh.face_count(), asked_for, options);
+      options.method == Method::kBeltrami && has_levels(mesh.face_count(), asked_for, options);
   if (in_levels && !affords(mesh, options, Extra::kWholeFactor, work)) {
     return try_in_turn(mesh, frame, ways, options, work);  // all others take one
   }

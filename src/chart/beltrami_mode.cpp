@@ -34,7 +34,7 @@ ChartMap flatten_fine(const MapProblem& problem, const ChartOptions& options, co
 ChartMap beltrami_mode(const DiskMesh& mesh, Index coarse_faces, const Inherited& inherited,
                        const ChartOptions& options, const Work& work) {
   std::vector<StageStatistics> lost;
-  if (inherited.start.empty() && is_nested(mesh.face_count(), coarse_faces, options)) {
+  if (inherited.start.empty() && has_levels(mesh.face_count(), coarse_faces, options)) {
     ChartMap map = climb_mode(mesh, inherited, options, work);
     if (!map.uvs.empty()) return map;
     require_whole_factor(mesh, options, work);

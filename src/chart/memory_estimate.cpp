@@ -41,7 +41,7 @@ double beltrami_bytes(const MeshCounts& n, const ChartOptions& options, int thre
   const auto faces = static_cast<Index>(n.faces);
   const Index coarse = coarse_faces(faces, options.coarse_faces);
   if (coarse >= faces) return cm_bytes(n, true, threads);
-  if (is_nested(faces, coarse, options)) return nested_bytes(n, threads);
+  if (has_levels(faces, coarse, options)) return climb_bytes(n, threads);
   return std::max(coarse_bytes(n, options.coarse_faces, threads),
                   flatten_bytes(n, options.flatten, threads));
 }

@@ -31,14 +31,14 @@ MeshCounts part_of(const MeshCounts& n, double faces) {
 
 }  // namespace
 
-double nested_hessian_bytes(const MeshCounts& n, int threads) {
+double climb_hessian_bytes(const MeshCounts& n, int threads) {
   const MeshCounts level = part_of(n, std::min<double>(kMostFactored, kCoarseEnough * n.faces));
   const System system = system_bytes(level, 2, Precision::kSingle, threads);
-  return std::max(nested_bytes(n, threads) + system.preconditioner,
-                  nested_bytes(level, threads) + system.peak);
+  return std::max(climb_bytes(n, threads) + system.preconditioner,
+                  climb_bytes(level, threads) + system.peak);
 }
 
-double nested_bytes(const MeshCounts& n, int threads) {
+double climb_bytes(const MeshCounts& n, int threads) {
   const double row = sizeof(Footpoint) + 3 * sizeof(Index) + sizeof(float) +
                      kNeighbours * (sizeof(Index) + sizeof(float));
   const double single = 2 * sizeof(Eigen::Vector2f);

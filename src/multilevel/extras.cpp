@@ -18,7 +18,7 @@ constexpr double kAllocator = 1.08, kConstant = 8 << 20, kLeast = 40 << 20;
 double extra_bytes(const MeshCounts& n, Extra extra, int threads) {
   switch (extra) {
     case Extra::kLevelHessian:
-      return nested_hessian_bytes(n, threads);
+      return climb_hessian_bytes(n, threads);
     case Extra::kWholeFactor:
       return metric_bytes(n, threads);
     case Extra::kNewtonSteps:

@@ -18,9 +18,9 @@ double metric_factor_bytes(const MeshCounts& n, int threads);
 /// The harmonic map beside another.
 double harmonic_bytes(const MeshCounts& n, int threads);
 /// In levels, where the finest needs no factor.
-double nested_bytes(const MeshCounts& n, int threads);
+double climb_bytes(const MeshCounts& n, int threads);
 /// The same with a Hessian of the level below the finest.
-double nested_hessian_bytes(const MeshCounts& n, int threads);
+double climb_hessian_bytes(const MeshCounts& n, int threads);
 double dirichlet_bytes(const MeshCounts& n, int threads);
 
 /// Bytes of what is known from the prolongation on, the map with it.

@@ -46,7 +46,7 @@ Index coarsest_faces(Index faces) {
   return std::clamp(faces / kQuarter, kLeastCoarsest, most);
 }
 
-bool is_nested(Index faces, Index coarse, const ChartOptions& options) {
+bool has_levels(Index faces, Index coarse, const ChartOptions& options) {
   if (options.flatten != Flatten::kMetric || options.delaunay) return false;
   if (coarse != coarse_faces(faces, options.coarse_faces)) return false;
   if (options.coarse_faces == 0) return faces >= kLeastFaces;

@@ -51,7 +51,7 @@ Index coarsest_faces(Index faces);
 /// Whether a disk of so many faces is flattened in levels (climb.cpp): a large one, in the metric
 /// way, with the `coarse` faces that the options ask for. What is tried where a map broke its
 /// promise is not.
-bool is_nested(Index faces, Index coarse, const ChartOptions& options);
+bool has_levels(Index faces, Index coarse, const ChartOptions& options);
 
 // ---- Levels
 // --------------------------------------------------------------------------------------

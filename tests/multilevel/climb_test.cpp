@@ -47,18 +47,18 @@ double energy(const Flattening& result) {
 }
 
 TEST(Nested, IsForDisksOfSomeFacesThatAreFlattenedTheMetricWay) {
-  EXPECT_TRUE(is_nested(1000000, 10000, {}));
-  EXPECT_TRUE(is_nested(5000, 5000, {}));
-  EXPECT_FALSE(is_nested(3000, 3000, {}));
-  EXPECT_FALSE(is_nested(1000000, 1000, {})) << "another try than what was asked for";
+  EXPECT_TRUE(has_levels(1000000, 10000, {}));
+  EXPECT_TRUE(has_levels(5000, 5000, {}));
+  EXPECT_FALSE(has_levels(3000, 3000, {}));
+  EXPECT_FALSE(has_levels(1000000, 1000, {})) << "another try than what was asked for";
   ChartOptions options;
   options.coarse_faces = 5000;
-  EXPECT_FALSE(is_nested(50000, 5000, options)) << "a step serves";
+  EXPECT_FALSE(has_levels(50000, 5000, options)) << "a step serves";
   options.coarse_faces = 300000;
-  EXPECT_FALSE(is_nested(1000000, 300000, options));
+  EXPECT_FALSE(has_levels(1000000, 300000, options));
   options = {};
   options.flatten = Flatten::kDirichlet;
-  EXPECT_FALSE(is_nested(1000000, 10000, options));
+  EXPECT_FALSE(has_levels(1000000, 10000, options));
 }
 
 TEST(Nested, ComesCloseToTheMapOfOneStep) {
