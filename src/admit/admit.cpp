@@ -319,7 +319,7 @@ Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
     glue_folded_polygons(faces, options.polygons, admitted, layers.of_face, gluing.twin);
   }
   counts.crowded_edges = gluing.crowded_edges;
-  Orientation orientation = orient(kept, gluing.twin, polygons, work);
+  Orientation orientation = orient(kept, gluing.twin, polygons, work, &positions);
   counts.one_sided_edges = orientation.one_sided_edges;
   admitted.reversed = std::move(orientation.reversed);
   if (gluing.joined_in_crowds) part_double_edges(kept, gluing.twin);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "admit/continue_sheets.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/edges.h"
 
 namespace beltrami {
@@ -19,13 +21,49 @@ namespace {
 
 constexpr std::int64_t kGrain = 16384;
 
-/// Turns the faces [begin, end) of `order` over if that leaves more of them as they are.
-void keep_majority(const std::vector<Index>& order, std::size_t begin,
-                   std::vector<bool>& reversed) {
+/// Faces that run against the rest of their component are parted from it up to this length of their
+/// border, in roots of its area: less than half of the seam of a sphere (1.8), and than the edge
+/// between two right triangles (1). So a few keep their winding for little, and a soup of random
+/// windings stays whole.
+constexpr double kShortBorder = 0.75;
+
+/// The faces of a component, and which of them are to be turned.
+struct Turns {
+  std::span<const Index> component;
+  std::vector<bool>& reversed;
+};
+
+/// Turns all faces over if that leaves more of them as they are.
+void keep_majority(Turns turns) {
   std::size_t count = 0;
-  for (std::size_t i = begin; i < order.size(); ++i) count += reversed[order[i]] ? 1 : 0;
-  if (2 * count <= order.size() - begin) return;
-  for (std::size_t i = begin; i < order.size(); ++i) reversed[order[i]] = !reversed[order[i]];
+  for (const Index f : turns.component) count += turns.reversed[f] ? 1 : 0;
+  if (2 * count <= turns.component.size()) return;
+  for (const Index f : turns.component) turns.reversed[f] = !turns.reversed[f];
+}
+
+/// Parts the faces to be turned from the others where their border is short: none are to be then.
+void part_if_short(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
+                   Turns turns, std::vector<Index>& twin) {
+  double greatest = 0, area = 0, length = 0;
+  for (const Index f : turns.component) {
+    for (const Index v : faces[f]) greatest = std::max(greatest, positions[v].cwiseAbs().maxCoeff());
+  }
+  std::vector<Index> border;
+  for (const Index f : turns.component) {
+    std::array<Vec3, 3> corner;  // of about unit size
+    for (int k = 0; k < 3; ++k) corner[k] = positions[faces[f][k]] / greatest;
+    area += triangle_area(corner[0], corner[1], corner[2]);
+    if (!turns.reversed[f]) continue;
+    for (int k = 0; k < 3; ++k) {
+      const Index other = twin[3 * f + k];
+      if (other == kNone || turns.reversed[other / 3]) continue;
+      border.push_back(3 * f + k);
+      length += (corner[next_corner(k)] - corner[k]).norm();
+    }
+  }
+  if (!(length <= kShortBorder * std::sqrt(area))) return;
+  for (const Index h : border) twin[h] = twin[twin[h]] = kNone;
+  for (const Index f : turns.component) turns.reversed[f] = false;
 }
 
 /// The half-edges of one edge, by their layers and polygons.
@@ -108,7 +146,8 @@ Gluing glue(const std::vector<Vec2>& uvs, const std::vector<Triangle>& faces,
 }
 
 Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
-                   std::span<const Index> polygons, const Work& work) {
+                   std::span<const Index> polygons, const Work& work,
+                   const std::vector<Vec3>* positions) {
   Orientation result;
   result.reversed.assign(faces.size(), false);
   std::vector<bool>& reversed = result.reversed;
@@ -140,6 +179,7 @@ Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
   for (Index seed = 0; seed < size_of(faces); ++seed) {
     if (seen[seed]) continue;
     const std::size_t begin = order.size();
+    const Index one_sided_before = result.one_sided_edges;
     add(seed, false);
     for (std::size_t i = begin; i < order.size(); ++i) {
       poll();
@@ -154,7 +194,11 @@ Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
         }
       }
     }
-    keep_majority(order, begin, reversed);
+    const Turns turns{std::span(order).subspan(begin), reversed};
+    keep_majority(turns);
+    // A one-sided surface has no front that windings could agree on.
+    const bool has_front = result.one_sided_edges == one_sided_before;
+    if (positions != nullptr && has_front) part_if_short(*positions, faces, turns, twin);
   }
 
   parallel_for(work, size_of(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -34,8 +34,10 @@ struct Orientation {
 /// Turns faces, breadth first from the least one of each component, so that twins run against each
 /// other, and most faces of a component stay as they are (the least one where it is half of them).
 /// Where that is impossible, the edge parts. Turns a face (a, b, c) into (a, c, b), its half-edges
-/// and those in `twin` with it. Polygons (one number per face, or none) stay in one piece.
+/// and those in `twin` with it. Polygons (one number per face, or none) stay in one piece. With
+/// positions, a few faces that run against the rest of a component part from it instead.
 Orientation orient(std::vector<Triangle>& faces, std::vector<Index>& twin,
-                   std::span<const Index> polygons, const Work& work);
+                   std::span<const Index> polygons, const Work& work,
+                   const std::vector<Vec3>* positions = nullptr);
 
 }  // namespace beltrami

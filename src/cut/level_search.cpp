@@ -457,6 +457,7 @@ void LevelSearch::join_charts(Attempt& best) {
     const double energy = aim(best.excess);
     bool gained = false;
     for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, energy)) {
+      if (joint.cost < best.cost * kWorthMapping) continue;  // of such there may be thousands
       if (std::find(tried.begin(), tried.end(), joint.middle()) != tried.end()) continue;
       tried.push_back(joint.middle());
       search_.take(best.seams.seams, best.seams.anchors);

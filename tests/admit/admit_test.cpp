@@ -137,6 +137,29 @@ TEST(Admit, TurnsTheFewerFacesOver) {
   EXPECT_TRUE(result.topology.components[0].is_disk());
 }
 
+// What the file calls the front of a few faces is the front in the map, at the cost of a short seam.
+TEST(Admit, PartsFewFacesThatRunAgainstTheirNeighbours) {
+  TriangleList mesh = meshes::grid(12, 12);
+  const auto turn = [&](Index f) { std::swap(mesh.faces[f][1], mesh.faces[f][2]); };
+  for (const Index f : {100, 101}) turn(f);
+  const Admitted result = admitted(mesh);
+  expect_every_corner(mesh, result);
+  EXPECT_EQ(result.counts.reversed_faces, 0);
+  ASSERT_EQ(result.counts.components, 2);
+  EXPECT_EQ(result.topology.components[0].loops, 2);
+  EXPECT_TRUE(result.topology.components[1].is_disk());
+}
+
+// Whatever its unit is: lengths are measured by the component's own area.
+TEST(Admit, PartsTheSameFacesAtAnyScale) {
+  for (const double scale : {1e-200, 1.0, 1e200}) {
+    TriangleList mesh = meshes::grid(12, 12);
+    std::swap(mesh.faces[100][1], mesh.faces[100][2]);
+    for (Vec3& p : mesh.positions) p *= scale;
+    EXPECT_EQ(admitted(mesh).counts.components, 2) << scale;
+  }
+}
+
 TEST(Admit, OpensAMoebiusStripOnce) {
   const TriangleList mesh = meshes::moebius(9);
   const Admitted result = admitted(mesh);

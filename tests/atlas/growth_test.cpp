@@ -97,18 +97,48 @@ TriangleList coincident(Index n) {
   return mesh;
 }
 
+/// A slab with n windows in a row: closed, of genus n.
+TriangleList windows(Index n) {
+  TriangleList mesh;
+  const Index length = 2 * n + 1;
+  const auto at = [&](Index i, Index j, Index k) { return 2 * (4 * i + j) + k; };
+  for (Index i = 0; i <= length; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      for (Index k = 0; k < 2; ++k) mesh.positions.emplace_back(i, j, k);
+    }
+  }
+  const auto is_full = [&](Index i, Index j) {
+    return i >= 0 && i < length && j >= 0 && j < 3 && (j != 1 || i % 2 == 0);
+  };
+  for (Index i = 0; i < length; ++i) {
+    for (Index j = 0; j < 3; ++j) {
+      if (!is_full(i, j)) continue;
+      const Index a = at(i, j, 0), b = at(i + 1, j, 0), c = at(i + 1, j + 1, 0), d = at(i, j + 1, 0);
+      add_quad(mesh, d, c, b, a);
+      add_quad(mesh, a + 1, b + 1, c + 1, d + 1);
+      if (!is_full(i, j - 1)) add_quad(mesh, a, b, b + 1, a + 1);
+      if (!is_full(i + 1, j)) add_quad(mesh, b, c, c + 1, b + 1);
+      if (!is_full(i, j + 1)) add_quad(mesh, c, d, d + 1, c + 1);
+      if (!is_full(i - 1, j)) add_quad(mesh, d, a, a + 1, d + 1);
+    }
+  }
+  return mesh;
+}
+
 struct Family {
   const char* name;
   TriangleList (*make)(Index n);
   Index size;  ///< of the smaller surface: one whose work is not all beginnings
+  bool is_searched = false;  ///< for the shortest seams, not cut minimally
 
   friend void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
 };
 
 class Growth : public testing::TestWithParam<Family> {
  protected:
-  static std::int64_t work_of(const TriangleList& mesh) {
+  static std::int64_t work_of(const TriangleList& mesh, bool is_searched) {
     AtlasOptions options;
+    if (is_searched) options.target.emplace();
     options.pack = PackOptions{};
     options.pack->resolution = 256;
     return count_polls([&] {
@@ -122,8 +152,9 @@ TEST_P(Growth, IsThatOfTheSizeTimesItsLogarithm) {
   constexpr Index kTimes = 4;
   // What one more logarithm, and steps that are taken in whole rounds, make of it.
   constexpr double kSlack = 1.5;
-  const auto& [name, make, size] = GetParam();
-  const std::int64_t few = work_of(make(size)), many = work_of(make(kTimes * size));
+  const auto& [name, make, size, is_searched] = GetParam();
+  const std::int64_t few = work_of(make(size), is_searched),
+                     many = work_of(make(kTimes * size), is_searched);
   EXPECT_LE(static_cast<double>(many), kSlack * kTimes * static_cast<double>(few))
       << few << " looks, and " << many << " at " << kTimes << " times the size";
 }
@@ -132,7 +163,8 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Growth,
                          testing::Values(Family{"crumbs", crumbs, 500}, Family{"hub", hub, 2000},
                                          Family{"book", book, 500}, Family{"plate", plate, 900},
                                          Family{"strip", strip, 2000},
-                                         Family{"coincident", coincident, 500}),
+                                         Family{"coincident", coincident, 500},
+                                         Family{"windows", windows, 40, true}),
                          [](const auto& family) { return std::string(family.param.name); });
 
 }  // namespace
