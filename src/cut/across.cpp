@@ -1,6 +1,5 @@
 #include "cut/across.h"
 
-#include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
@@ -10,104 +9,94 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-class Annulus {
- public:
-  Annulus(const Surface& surface, const EdgeMarks& seams, Index halfedge)
-      : surface_(surface), seams_(seams), loop_(surface.twin.size(), kNone) {
-    flood(halfedge / 3);
-    for (Index h = 0; h < size_of(loop_); ++h) {
-      if (in_piece_[h / 3] && is_side(h) && loop_[h] == kNone) trace(h);
-    }
+}  // namespace
+
+PathsAcross::PathsAcross(const Surface& surface, const EdgeMarks& seams,
+                         std::function<bool(Index)> is_on, const std::vector<double>& cost)
+    : surface_(surface),
+      seams_(seams),
+      is_on_(std::move(is_on)),
+      cost_(cost),
+      leaves_(surface.twin.size(), false),
+      costs_(surface.positions.size(), kFar),
+      from_(surface.positions.size(), kNone) {}
+
+/// The next side around the origin of a half-edge, or none.
+Index PathsAcross::side_beside(Index spoke) const {
+  Index h = spoke;
+  while (!is_side(h)) {
+    h = Surface::next(surface_.twin[h]);
+    if (h == spoke) return kNone;
   }
+  return h;
+}
 
-  Index loops() const { return loops_; }
-  std::vector<Index> cheapest_path(const std::vector<bool>& is_on, const std::vector<double>& cost,
-                                   double bound) const;
+/// To the next side.
+void PathsAcross::advance(Trace& trace) const {
+  Index h = Surface::next(trace.at);
+  for (; !is_side(h); h = Surface::next(surface_.twin[h])) trace.spokes.push_back(h);
+  trace.at = h;
+  trace.is_closed = h == trace.start;
+}
 
- private:
-  bool is_side(Index h) const { return seams_[h] || surface_.twin[h] == kNone; }
-  void flood(Index face);
-  void trace(Index side);
+std::vector<Index> PathsAcross::from_loop(Index side, double bound) {
+  Trace trace{side, side};
+  while (!trace.is_closed) advance(trace);
+  return from_spokes(trace.spokes, bound);
+}
 
-  const Surface& surface_;
-  const EdgeMarks& seams_;
-  std::vector<bool> in_piece_;
-  /// Per half-edge, the loop that it is on, or that it leaves into the piece; kNone elsewhere.
-  std::vector<Index> loop_;
-  Index loops_ = 0;
-};
-
-void Annulus::flood(Index face) {
-  in_piece_.assign(surface_.faces.size(), false);
-  in_piece_[face] = true;
-  std::vector<Index> open = {face};
-  while (!open.empty()) {
-    const Index f = open.back();
-    open.pop_back();
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      if (is_side(h) || in_piece_[surface_.twin[h] / 3]) continue;
-      in_piece_[surface_.twin[h] / 3] = true;
-      open.push_back(surface_.twin[h] / 3);
-    }
+std::vector<Index> PathsAcross::between_ends(Index first, Index last, double bound) {
+  const Index one_side = side_beside(first), other_side = side_beside(last);
+  if (one_side == kNone || other_side == kNone || one_side == other_side) return {};
+  Trace one{one_side, one_side}, other{other_side, other_side};
+  while (true) {
+    advance(one);
+    if (one.at == other.start) return {};
+    if (one.is_closed) return from_spokes(one.spokes, bound);
+    advance(other);
+    if (other.at == one.start) return {};
+    if (other.is_closed) return from_spokes(other.spokes, bound);
   }
 }
 
-void Annulus::trace(Index side) {
-  for (Index h = side; loop_[h] == kNone;) {
-    loop_[h] = loops_;
-    h = Surface::next(h);
-    for (; !is_side(h); h = Surface::next(surface_.twin[h])) loop_[h] = loops_;
-  }
-  ++loops_;
-}
-
-std::vector<Index> Annulus::cheapest_path(const std::vector<bool>& is_on,
-                                          const std::vector<double>& cost, double bound) const {
-  std::vector<double> costs(surface_.positions.size(), kFar);
-  std::vector<Index> from(costs.size(), kNone);  // the half-edge of the way that ends there
+/// Dijkstra's algorithm.
+std::vector<Index> PathsAcross::from_spokes(const std::vector<Index>& spokes, double bound) {
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  std::vector<Index> reached;
   double best = bound;
   Index last = kNone;
   const auto go = [&](double so_far, Index h) {
-    const double now = so_far + cost[h];
+    const double now = so_far + cost_[h];
     const Index v = surface_.target(h);
     if (now >= best) return;
-    if (is_on[v]) {
-      if (loop_[surface_.twin[h]] != 1) return;
+    if (is_on_(v)) {
+      if (leaves_[surface_.twin[h]]) return;
       best = now;
       last = h;
-    } else if (now < costs[v]) {
-      costs[v] = now;
-      from[v] = h;
+    } else if (now < costs_[v]) {
+      if (costs_[v] == kFar) reached.push_back(v);
+      costs_[v] = now;
+      from_[v] = h;
       queue.emplace(now, v);
     }
   };
-  for (Index h = 0; h < size_of(loop_); ++h) {
-    if (loop_[h] == 0 && !is_side(h)) go(0, h);
-  }
+  for (const Index h : spokes) leaves_[h] = true;
+  for (const Index h : spokes) go(0, h);
   while (!queue.empty() && queue.top().first < best) {
     const auto [so_far, v] = queue.top();
     queue.pop();
-    if (so_far > costs[v]) continue;
+    if (so_far > costs_[v]) continue;
     surface_.for_each_outgoing(v, [&, so_far = so_far](Index h) { go(so_far, h); });
   }
   std::vector<Index> path;
-  for (Index h = last; h != kNone;
-       h = is_on[surface_.origin(h)] ? kNone : from[surface_.origin(h)]) {
+  for (Index h = last; h != kNone;) {
     path.push_back(h);
+    h = is_on_(surface_.origin(h)) ? kNone : from_[surface_.origin(h)];
   }
+  for (const Index v : reached) costs_[v] = kFar;
+  for (const Index h : spokes) leaves_[h] = false;
   return {path.rbegin(), path.rend()};
-}
-
-}  // namespace
-
-std::vector<Index> path_across(const Surface& surface, const EdgeMarks& seams,
-                               const std::vector<bool>& is_on, Index halfedge,
-                               const std::vector<double>& cost, double bound) {
-  const Annulus annulus(surface, seams, halfedge);
-  if (annulus.loops() != 2) return {};
-  return annulus.cheapest_path(is_on, cost, bound);
 }
 
 }  // namespace beltrami

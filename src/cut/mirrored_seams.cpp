@@ -276,8 +276,13 @@ void open_rings(const Surface& surface, const Mirror& mirror, const std::vector<
     for (Index h = 0; h < size_of(marks); ++h) {
       if (marks[h]) is_on[surface.origin(h)] = is_on[surface.target(h)] = true;
     }
+    Index side = 3 * piece.faces[0];
+    for (std::size_t i = 1; !marks[side] && surface.twin[side] != kNone; ++i) {
+      side = 3 * piece.faces[i / 3] + static_cast<Index>(i % 3);
+    }
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    for (const Index h : path_across(surface, marks, is_on, 3 * piece.faces[0], near, kAny)) {
+    PathsAcross across(surface, marks, [&](Index v) { return is_on[v]; }, near);
+    for (const Index h : across.from_loop(side, kAny)) {
       mark_edge(surface, h, marks);
     }
   }

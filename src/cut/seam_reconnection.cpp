@@ -1,5 +1,8 @@
 // Arcs of the seams that go where the same is joined, or opened, at less cost.
 #include <algorithm>
+#include <optional>
+#include <queue>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -73,16 +76,47 @@ std::vector<bool> SeamSearch::joined_to(Index vertex) const {
   return joined;
 }
 
+/// Whether seams and borders lead from one vertex to another, looked for from both: where only few
+/// lead from one of them, that is soon known.
+bool SeamSearch::are_joined(Index one, Index other) const {
+  struct Reach {
+    std::queue<Index> open;
+    std::unordered_set<Index> seen;
+  };
+  Reach from_one{std::queue<Index>({one}), {one}}, from_other{std::queue<Index>({other}), {other}};
+  bool met = one == other;
+  const auto grow = [&](Reach& own, const Reach& others) {
+    const Index v = own.open.front();
+    own.open.pop();
+    const auto reach = [&](Index w) {
+      if (!own.seen.insert(w).second) return;
+      own.open.push(w);
+      met = met || others.seen.contains(w);
+    };
+    surface_.for_each_outgoing(v, [&](Index h) {
+      if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
+      const Index in = Surface::previous(h);
+      if (surface_.twin[in] == kNone) reach(surface_.origin(in));
+    });
+  };
+  while (!met && !from_one.open.empty() && !from_other.open.empty()) {
+    grow(from_one, from_other);
+    if (!met) grow(from_other, from_one);
+  }
+  return met;
+}
+
 /// Whether an edge that is no seam joins none and no border: it would part nothing.
 bool SeamSearch::is_alone(Index halfedge) const {
   const auto is_free = [&](Index v) { return degree_[v] == 0 && !surface_.on_boundary[v]; };
   return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
 }
 
-/// Whether the two parts were joined at less cost, or a handle opened. Where the seams stay joined
+/// Whether the two parts were joined at less cost, or a handle opened, if there are paths `across`
+/// annuli. Where the seams stay joined
 /// without it, as they do unless it `may_part` them, the arc goes around a handle, or between
 /// charts and stays.
-bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles, bool may_part) {
+bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part) {
   double cost = 0;
   for (const Index h : arc) {
     // What was moved before may end here now.
@@ -92,10 +126,9 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles, b
   }
   for (const Index h : arc) mark(h, false);
   const Index end = surface_.target(arc.back());
-  std::vector<bool> joined;
-  if (may_part) joined = joined_to(surface_.origin(arc.front()));
   std::vector<Index> path = arc;
-  if (may_part && !joined[end]) {
+  if (may_part && !are_joined(surface_.origin(arc.front()), end)) {
+    const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
     const SeamPaths paths(surface_, joined, cost_, cost);
     const std::vector<bool> others = joined_to(end);
     Index nearest = end;
@@ -104,14 +137,10 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles, b
     }
     if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
     if (path.size() == 1 && is_alone(path.front())) path = arc;
-  } else if (around_handles) {
-    std::vector<bool> is_on(degree_.size());
-    for (Index v = 0; v < surface_.vertex_count(); ++v) {
-      is_on[v] = degree_[v] > 0 || surface_.on_boundary[v];
-    }
-    std::vector<Index> across =
-        path_across(surface_, seams_, is_on, arc.front(), cost_, cost * (1 - kLeastGain));
-    if (!across.empty()) path.swap(across);
+  } else if (across != nullptr) {
+    std::vector<Index> other = across->between_ends(arc.front(), surface_.twin[arc.back()],
+                                                    cost * (1 - kLeastGain));
+    if (!other.empty()) path.swap(other);
   }
   const bool is_new = path != arc;
   for (const Index h : path) mark(h, true);
@@ -120,6 +149,11 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, bool around_handles, b
 
 bool SeamSearch::reconnect_all(bool around_handles) {
   bool gained = false;
+  std::optional<PathsAcross> across;
+  if (around_handles) {
+    const auto is_on = [this](Index v) { return degree_[v] > 0 || surface_.on_boundary[v]; };
+    across.emplace(surface_, seams_, is_on, cost_);
+  }
   // There may be hundreds of arcs around charts. One that is on a cycle stays so while others are
   // joined elsewhere, but not while they go around handles elsewhere.
   const std::vector<bool> parts =
@@ -127,7 +161,7 @@ bool SeamSearch::reconnect_all(bool around_handles) {
   for (const std::vector<Index>& arc : arcs(true)) {
     poll_interrupt();
     if (work_.out_of_time()) return false;
-    gained = reconnect(arc, around_handles, parts[arc.front()]) || gained;
+    gained = reconnect(arc, across ? &*across : nullptr, parts[arc.front()]) || gained;
   }
   return gained;
 }

@@ -6,6 +6,7 @@
 
 #include "base/types.h"
 #include "base/work.h"
+#include "cut/across.h"
 #include "cut/edge_marks.h"
 #include "cut/elastic_model.h"
 #include "cut/mirror.h"
@@ -109,8 +110,9 @@ class SeamSearch {
   bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs(bool ends_at_anchors) const;
   std::vector<bool> joined_to(Index vertex) const;
+  bool are_joined(Index one, Index other) const;
   bool is_alone(Index halfedge) const;
-  bool reconnect(const std::vector<Index>& arc, bool around_handles, bool may_part);
+  bool reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part);
   bool reconnect_all(bool around_handles);
   const SeamPaths& paths();
   void mark(Index halfedge, bool is);

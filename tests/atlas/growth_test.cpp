@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Growth,
                                          Family{"book", book, 500}, Family{"plate", plate, 900},
                                          Family{"strip", strip, 2000},
                                          Family{"coincident", coincident, 500},
-                                         Family{"windows", windows, 40, true}),
+                                         Family{"windows", windows, 80, true}),
                          [](const auto& family) { return std::string(family.param.name); });
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
@@ -33,6 +34,11 @@ std::vector<bool> on_seams(const Surface& surface, const EdgeMarks& seams) {
     if (seams[h]) is_on[surface.origin(h)] = is_on[surface.target(h)] = true;
   }
   return is_on;
+}
+
+PathsAcross across(const Surface& surface, const EdgeMarks& seams,
+                   const std::vector<double>& cost) {
+  return {surface, seams, [is_on = on_seams(surface, seams)](Index v) { return is_on[v]; }, cost};
 }
 
 bool is_disk(const Surface& surface, const EdgeMarks& seams) {
@@ -84,7 +90,8 @@ TEST(PathAcross, OpensAHandleAgainAndAtNoMoreCost) {
       double before = 0, after = 0;
       for (const Index h : arc) before += cost[h];
       const std::vector<Index> path =
-          path_across(surface, left, on_seams(surface, left), arc.front(), cost, kAny);
+          across(surface, left, cost)
+              .between_ends(arc.front(), surface.twin[arc.back()], kAny);
       ASSERT_FALSE(path.empty());
       for (const Index h : path) {
         after += cost[h];
@@ -93,25 +100,44 @@ TEST(PathAcross, OpensAHandleAgainAndAtNoMoreCost) {
       EXPECT_TRUE(is_disk(surface, left));
       EXPECT_LE(after, before * (1 + 1e-12));
       ++opened;
-      std::vector<Index> again;
-      EXPECT_TRUE(path_across(surface, seams, on_seams(surface, seams), arc.front(), cost, kAny)
-                      .empty());  // a disk has one loop
     }
     EXPECT_EQ(opened, 6);
   }
+}
+
+TEST(PathAcross, ThereIsNoneWhereAnArcPartedTwoCharts) {
+  // A sphere in two halves: without the edge that parts them there it is one disk.
+  const Surface surface = built(meshes::sphere(3));
+  EdgeMarks seams(surface.twin.size(), false);
+  for (Index h = 0; h < size_of(seams); ++h) {
+    const auto upper = [&](Index face) {
+      double z = 0;
+      for (const Index v : surface.faces[face]) z += surface.positions[v].z();
+      return z > 0.01;
+    };
+    seams[h] = upper(h / 3) != upper(surface.twin[h] / 3);
+  }
+  const Index arc = static_cast<Index>(std::find(seams.begin(), seams.end(), true) - seams.begin());
+  ASSERT_LT(arc, size_of(seams));
+  seams[arc] = seams[surface.twin[arc]] = false;
+  const std::vector<double> cost = edge_lengths(surface, Work(1));
+  EXPECT_TRUE(
+      across(surface, seams, cost).between_ends(arc, surface.twin[arc], kAny).empty());
 }
 
 TEST(PathAcross, FindsTheWidthOfARing) {
   // Two borders: the shortest way is straight.
   const Surface surface = built(disks::refined(meshes::annulus(12), 2));
   const EdgeMarks none(surface.twin.size(), false);
+  const Index side = static_cast<Index>(
+      std::find(surface.twin.begin(), surface.twin.end(), kNone) - surface.twin.begin());
   const std::vector<double> cost = edge_lengths(surface, Work(1));
   const std::vector<Index> path =
-      path_across(surface, none, on_seams(surface, none), 0, cost, kAny);
+      across(surface, none, cost).from_loop(side, kAny);
   EXPECT_EQ(path.size(), 4U);
   double length = 0;
   for (const Index h : path) length += cost[h];
-  EXPECT_TRUE(path_across(surface, none, on_seams(surface, none), 0, cost, length).empty());
+  EXPECT_TRUE(across(surface, none, cost).from_loop(side, length).empty());
 }
 
 }  // namespace
