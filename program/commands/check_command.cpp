@@ -4,6 +4,7 @@
 #include <deque>
 #include <new>
 #include <optional>
+#include <span>
 
 #include "commands/command.h"
 #include "commands/page_layout.h"
@@ -63,6 +64,26 @@ void round_to_float32(std::vector<double>& uvs) {
 
 /// Texels: what doubles take of a distance that was made as wide as it is asked for.
 constexpr double kRounding = 1e-6;
+
+/// Times it the UVs have the area of the surface; 1 where one of them has none.
+double scale_of_equal_areas(const TriangleView& triangles) {
+  double area = 0, uv_area = 0;
+  for (std::size_t f = 0; f < triangles.face_count(); ++f) {
+    const auto side = [&](std::size_t k, std::span<const double> points, std::size_t width) {
+      const std::size_t from = width * triangles.faces[3 * f],
+                        to = width * triangles.faces[3 * f + k];
+      Vector3 along{};
+      for (std::size_t axis = 0; axis < width; ++axis) {
+        along[axis] = points[to + axis] - points[from + axis];
+      }
+      return along;
+    };
+    area += norm(cross(side(1, triangles.positions, 3), side(2, triangles.positions, 3)));
+    uv_area += norm(cross(side(1, triangles.uvs, 2), side(2, triangles.uvs, 2)));
+  }
+  const double scale = std::sqrt(area / uv_area);
+  return std::isfinite(scale) && scale > 0 ? scale : 1;
+}
 
 class Check {
  public:
@@ -186,19 +207,40 @@ class Check {
     return true;
   }
 
+  /// Of the UVs, all times `scale`.
+  beltrami_energy measured(const TriangleView& triangles, double scale) {
+    std::vector<double> scaled(triangles.uvs.begin(), triangles.uvs.end());
+    for (double& coordinate : scaled) coordinate *= scale;
+    const TriangleView view{triangles.positions, triangles.faces, scaled};
+    const beltrami_mesh mesh = view_of(view);
+    const beltrami_buffer uvs = uv_view(view);
+    beltrami_energy energy{};
+    energy.struct_size = sizeof energy;
+    const beltrami_status status = beltrami_measure(
+        &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
+    require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+    return energy;
+  }
+
+  /// The one scale of all UVs at which their mean energy is least. It is P scale² + Q / scale², and
+  /// two scales about equal areas tell P and Q.
+  double best_scale(const TriangleView& triangles) {
+    constexpr double kOther = 2;  // times the square of the one
+    const double equal = scale_of_equal_areas(triangles);
+    const double one = measured(triangles, equal).symmetric_dirichlet;
+    const double other = measured(triangles, equal * std::sqrt(kOther)).symmetric_dirichlet;
+    const double p = (other - one / kOther) / (kOther - 1 / kOther), q = one - p;
+    const double best = equal * std::pow(q / p, 0.25);
+    return std::isfinite(best) && best > 0 ? best : equal;
+  }
+
   void measure() {
     throw_if_interrupted();
     bar_.show(0.6, "measure");
     StageClock clock(report_, "measure");
     const TriangleView triangles = this->triangles();
-    const beltrami_mesh mesh = view_of(triangles);
-    const beltrami_buffer uvs = uv_view(triangles);
-    beltrami_energy energy{};
-    energy.struct_size = sizeof energy;
     if (!arguments_.picture.empty()) face_energies_.resize(triangles.face_count());
-    const beltrami_status status = beltrami_measure(
-        &mesh, &uvs, &energy, face_energies_.empty() ? nullptr : face_energies_.data());
-    require_ok(status, arguments_.input, "", BELTRAMI_ELEMENT_NONE, BELTRAMI_NO_ELEMENT);
+    beltrami_energy energy = measured(triangles, best_scale(triangles));
     energy.worst_face = face_of(energy.worst_face);
     report_.energy = energy;
     clock.finish();

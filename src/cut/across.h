@@ -24,9 +24,9 @@ class PathsAcross {
   /// half-edges of the cheapest path, empty if none costs less than `bound`.
   std::vector<Index> from_loop(Index side, double bound);
 
-  /// Where an arc of seams was taken away, `first` and `last` are its ends' half-edges, both of them
-  /// away from its ends: the same between the loops that it joined. Empty if it joined one with
-  /// itself, or no other seam is at an end. Precondition: before, the pieces were disks.
+  /// Where an arc of seams was taken away, `first` and `last` are its ends' half-edges, both of
+  /// them away from its ends: the same between the loops that it joined. Empty if it joined one
+  /// with itself, or no other seam is at an end. Precondition: before, the pieces were disks.
   std::vector<Index> between_ends(Index first, Index last, double bound);
 
  private:
@@ -48,7 +48,8 @@ class PathsAcross {
   const std::vector<double>& cost_;
   std::vector<bool> leaves_;   ///< per half-edge, whether it is one of the spokes
   std::vector<double> costs_;  ///< per vertex, infinite between calls
-  std::vector<Index> from_;    ///< per vertex that has a cost, the half-edge of the way that ends there
+  std::vector<Index>
+      from_;  ///< per vertex that has a cost, the half-edge of the way that ends there
 };
 
 }  // namespace beltrami

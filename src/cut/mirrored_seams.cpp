@@ -281,7 +281,8 @@ void open_rings(const Surface& surface, const Mirror& mirror, const std::vector<
       side = 3 * piece.faces[i / 3] + static_cast<Index>(i % 3);
     }
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    PathsAcross across(surface, marks, [&](Index v) { return is_on[v]; }, near);
+    PathsAcross across(
+        surface, marks, [&](Index v) { return is_on[v]; }, near);
     for (const Index h : across.from_loop(side, kAny)) {
       mark_edge(surface, h, marks);
     }

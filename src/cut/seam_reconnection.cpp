@@ -138,8 +138,8 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, b
     if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
     if (path.size() == 1 && is_alone(path.front())) path = arc;
   } else if (across != nullptr) {
-    std::vector<Index> other = across->between_ends(arc.front(), surface_.twin[arc.back()],
-                                                    cost * (1 - kLeastGain));
+    std::vector<Index> other =
+        across->between_ends(arc.front(), surface_.twin[arc.back()], cost * (1 - kLeastGain));
     if (!other.empty()) path.swap(other);
   }
   const bool is_new = path != arc;

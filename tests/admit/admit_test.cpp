@@ -137,7 +137,8 @@ TEST(Admit, TurnsTheFewerFacesOver) {
   EXPECT_TRUE(result.topology.components[0].is_disk());
 }
 
-// What the file calls the front of a few faces is the front in the map, at the cost of a short seam.
+// What the file calls the front of a few faces is the front in the map, at the cost of a short
+// seam.
 TEST(Admit, PartsFewFacesThatRunAgainstTheirNeighbours) {
   TriangleList mesh = meshes::grid(12, 12);
   const auto turn = [&](Index f) { std::swap(mesh.faces[f][1], mesh.faces[f][2]); };

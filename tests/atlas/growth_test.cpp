@@ -113,7 +113,8 @@ TriangleList windows(Index n) {
   for (Index i = 0; i < length; ++i) {
     for (Index j = 0; j < 3; ++j) {
       if (!is_full(i, j)) continue;
-      const Index a = at(i, j, 0), b = at(i + 1, j, 0), c = at(i + 1, j + 1, 0), d = at(i, j + 1, 0);
+      const Index a = at(i, j, 0), b = at(i + 1, j, 0), c = at(i + 1, j + 1, 0),
+                  d = at(i, j + 1, 0);
       add_quad(mesh, d, c, b, a);
       add_quad(mesh, a + 1, b + 1, c + 1, d + 1);
       if (!is_full(i, j - 1)) add_quad(mesh, a, b, b + 1, a + 1);
@@ -128,7 +129,7 @@ TriangleList windows(Index n) {
 struct Family {
   const char* name;
   TriangleList (*make)(Index n);
-  Index size;  ///< of the smaller surface: one whose work is not all beginnings
+  Index size;                ///< of the smaller surface: one whose work is not all beginnings
   bool is_searched = false;  ///< for the shortest seams, not cut minimally
 
   friend void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }

@@ -90,8 +90,7 @@ TEST(PathAcross, OpensAHandleAgainAndAtNoMoreCost) {
       double before = 0, after = 0;
       for (const Index h : arc) before += cost[h];
       const std::vector<Index> path =
-          across(surface, left, cost)
-              .between_ends(arc.front(), surface.twin[arc.back()], kAny);
+          across(surface, left, cost).between_ends(arc.front(), surface.twin[arc.back()], kAny);
       ASSERT_FALSE(path.empty());
       for (const Index h : path) {
         after += cost[h];
@@ -121,19 +120,17 @@ TEST(PathAcross, ThereIsNoneWhereAnArcPartedTwoCharts) {
   ASSERT_LT(arc, size_of(seams));
   seams[arc] = seams[surface.twin[arc]] = false;
   const std::vector<double> cost = edge_lengths(surface, Work(1));
-  EXPECT_TRUE(
-      across(surface, seams, cost).between_ends(arc, surface.twin[arc], kAny).empty());
+  EXPECT_TRUE(across(surface, seams, cost).between_ends(arc, surface.twin[arc], kAny).empty());
 }
 
 TEST(PathAcross, FindsTheWidthOfARing) {
   // Two borders: the shortest way is straight.
   const Surface surface = built(disks::refined(meshes::annulus(12), 2));
   const EdgeMarks none(surface.twin.size(), false);
-  const Index side = static_cast<Index>(
-      std::find(surface.twin.begin(), surface.twin.end(), kNone) - surface.twin.begin());
+  const Index side = static_cast<Index>(std::find(surface.twin.begin(), surface.twin.end(), kNone) -
+                                        surface.twin.begin());
   const std::vector<double> cost = edge_lengths(surface, Work(1));
-  const std::vector<Index> path =
-      across(surface, none, cost).from_loop(side, kAny);
+  const std::vector<Index> path = across(surface, none, cost).from_loop(side, kAny);
   EXPECT_EQ(path.size(), 4U);
   double length = 0;
   for (const Index h : path) length += cost[h];

@@ -84,6 +84,23 @@ TEST(Check, JudgesSinglePrecisionOnRequest) {
   EXPECT_EQ(run({"check", in, "--float32"}).exit_code, 3);
 }
 
+// At the one scale that is best: a page has its own unit. Of two equal triangles, one with UVs
+// twice as long as the other's, the best mean is 2.5.
+TEST(Check, MeasuresEnergiesAtTheBestScale) {
+  const TemporaryDirectory directory;
+  const std::string two =
+      "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nv 5000 0 0\nv 6000 0 0\nv 5000 1000 0\n"
+      "vt 0 0\nvt .1 0\nvt 0 .1\nvt .5 0\nvt .7 0\nvt .5 .2\nf 1/1 2/2 3/3\nf 4/4 5/5 6/6\n";
+  const std::string one =
+      "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nvt 0 0\nvt 1e-9 0\nvt 0 1e-9\nf 1/1 2/2 3/3\n";
+  for (const auto& [text, mean] : {std::pair(two, 2.5), std::pair(one, 2.0)}) {
+    const std::string in = directory.file("in.obj", text);
+    EXPECT_EQ(run({"check", in, "--report", directory.path("r.json")}).exit_code, 0);
+    const Json json = Json::parse(directory.read("r.json"));
+    EXPECT_NEAR(json["energy"]["symmetric_dirichlet"].get<double>(), mean, 1e-12);
+  }
+}
+
 TEST(Check, ReadsTheNamesThatPlyWritersUse) {
   for (const std::string names : {"s t", "u v", "texture_u texture_v"}) {
     const TemporaryDirectory directory;
