@@ -46,8 +46,9 @@ void part_if_short(const std::vector<Vec3>& positions, const std::vector<Triangl
                    Turns turns, std::vector<Index>& twin) {
   double greatest = 0, area = 0, length = 0;
   for (const Index f : turns.component) {
-    for (const Index v : faces[f])
+    for (const Index v : faces[f]) {
       greatest = std::max(greatest, positions[v].cwiseAbs().maxCoeff());
+    }
   }
   std::vector<Index> border;
   for (const Index f : turns.component) {

@@ -48,8 +48,7 @@ class PathsAcross {
   const std::vector<double>& cost_;
   std::vector<bool> leaves_;   ///< per half-edge, whether it is one of the spokes
   std::vector<double> costs_;  ///< per vertex, infinite between calls
-  std::vector<Index>
-      from_;  ///< per vertex that has a cost, the half-edge of the way that ends there
+  std::vector<Index> from_;    ///< per vertex that has a cost, the half-edge by which it is reached
 };
 
 }  // namespace beltrami
