@@ -377,7 +377,7 @@ export interface AtlasReport {
   readonly oneSidedEdges: number;
   /** Vertices where fans of faces met in one point only. */
   readonly splitVertices: number;
-  /** Triangles turned over to agree with most of their component. */
+  /** Triangles turned over to agree with most of their component; those with a short border part from it instead. */
   readonly reversedFaces: number;
   /** Connected pieces of the surface. */
   readonly components: number;

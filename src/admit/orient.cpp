@@ -44,6 +44,8 @@ void keep_majority(Turns turns) {
 /// Parts the faces to be turned from the others where their border is short: none are to be then.
 void part_if_short(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                    Turns turns, std::vector<Index>& twin) {
+  const auto is_turned = [&](Index f) -> bool { return turns.reversed[f]; };
+  if (std::none_of(turns.component.begin(), turns.component.end(), is_turned)) return;
   double greatest = 0, area = 0, length = 0;
   for (const Index f : turns.component) {
     for (const Index v : faces[f]) {

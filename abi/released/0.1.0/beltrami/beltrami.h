@@ -791,7 +791,8 @@ typedef struct beltrami_atlas {
                                 * each other */
   uint64_t one_sided_edges;    /* where the sides of a one-sided surface part */
   uint64_t split_vertices;     /* where fans of faces met in one point only */
-  uint64_t reversed_faces;     /* triangles turned over to agree with most of their component */
+  uint64_t reversed_faces;     /* triangles turned over to agree with most of their component; those
+                                * with a short border part from it instead */
   uint64_t components;
   uint64_t closed_components; /* without a boundary */
   uint64_t holes;             /* boundaries but for the first of each component */

@@ -540,7 +540,8 @@ namespace Beltrami
         public ulong OneSidedEdges;
         /// <summary>Where fans of faces met in one point only.</summary>
         public ulong SplitVertices;
-        /// <summary>Triangles turned over to agree with most of their component.</summary>
+        /// <summary>Triangles turned over to agree with most of their component; those with a short
+        /// border part from it instead.</summary>
         public ulong ReversedFaces;
         public ulong Components;
         /// <summary>Without a boundary.</summary>

@@ -297,7 +297,8 @@ class AtlasReport:
     split_vertices : int
         Vertices where fans of faces met in one point only.
     reversed_faces : int
-        Triangles turned over to agree with most of their component.
+        Triangles turned over to agree with most of their component; those with a short border part
+        from it instead.
     components : int
         Connected pieces of the surface.
     closed_components : int

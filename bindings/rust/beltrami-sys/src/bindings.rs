@@ -1345,7 +1345,8 @@ pub struct beltrami_atlas {
     pub one_sided_edges: u64,
     /// where fans of faces met in one point only
     pub split_vertices: u64,
-    /// triangles turned over to agree with most of their component
+    /** triangles turned over to agree with most of their component; those
+ with a short border part from it instead*/
     pub reversed_faces: u64,
     pub components: u64,
     /// without a boundary
