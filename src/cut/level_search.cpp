@@ -457,7 +457,8 @@ void LevelSearch::join_charts(Attempt& best) {
     const double energy = aim(best.excess);
     bool gained = false;
     for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, energy)) {
-      if (joint.cost < best.cost * kWorthMapping) continue;  // of such there may be thousands
+      // What it takes away is not worth a map, and there may be thousands of such joints.
+      if (joint.cost < best.cost * kWorthMapping) continue;
       if (std::find(tried.begin(), tried.end(), joint.middle()) != tried.end()) continue;
       tried.push_back(joint.middle());
       search_.take(best.seams.seams, best.seams.anchors);

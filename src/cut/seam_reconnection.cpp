@@ -112,10 +112,9 @@ bool SeamSearch::is_alone(Index halfedge) const {
   return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
 }
 
-/// Whether the two parts were joined at less cost, or a handle opened, if there are paths `across`
-/// annuli. Where the seams stay joined
-/// without it, as they do unless it `may_part` them, the arc goes around a handle, or between
-/// charts and stays.
+/// Whether the two parts were joined at less cost, or, with paths `across` annuli, a handle opened.
+/// Where the seams stay joined without it, as they do unless it `may_part` them, the arc goes
+/// around a handle, or between charts and stays.
 bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part) {
   double cost = 0;
   for (const Index h : arc) {
