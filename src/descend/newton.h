@@ -37,6 +37,7 @@ struct NewtonResult {
   /// of its sum with the barrier.
   std::vector<double> energies;
   bool converged = false;
+  bool is_cut_short = false;   ///< ended by the limit of steps or of time
   bool in_contact = false;     ///< boundary parts press on each other at the end
   bool refused = false;        ///< the map at the end is not admissible; then
   std::vector<Vec2> admitted;  ///< the last one that was, empty if none

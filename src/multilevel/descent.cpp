@@ -77,7 +77,7 @@ Led descend_with_lead(const DiskMesh& mesh, const std::vector<RestTriangle>& res
 
 Descent ended(const Led& led, int iterations_before, std::vector<Vec2> uvs) {
   return {std::move(uvs), led.newton.energies.back(), iterations_before + led.iterations,
-          led.newton.converged, false};
+          !led.newton.is_cut_short, false};
 }
 
 /// The minimum on a coarser mesh, as the start of that on a finer one.

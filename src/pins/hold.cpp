@@ -107,7 +107,7 @@ class WayToPins {
   bool go(std::vector<Vec2>& uvs) const;
 
   /// Minimises the energy with the pins held, without overlaps where there are none. Returns
-  /// whether it converged.
+  /// whether it was not cut short.
   bool relax(const Work& work, std::vector<Vec2>& uvs) const;
 
   /// The same from a map near the minimum, whose boundary presses on itself nowhere or hardly.
@@ -201,16 +201,16 @@ class WayToPins {
 bool WayToPins::minimise(NewtonOptions newton, bool simple, const Work& work,
                          std::vector<Vec2>& uvs) const {
   const auto run = [&] { return minimise_energy(mesh_.faces, rest_, fixed_, uvs, newton, work); };
-  if (!simple) return run().converged;
+  if (!simple) return !run().is_cut_short;
   if (!contact_.is_pressed(uvs)) {
     newton.admissible = [&](const std::vector<Vec2>& map) { return contact_.is_simple(map); };
     NewtonResult free = run();
-    if (!free.refused) return free.converged;
+    if (!free.refused) return !free.is_cut_short;
     uvs = std::move(free.admitted);
     newton.admissible = nullptr;
   }
   newton.contact = &contact_;
-  return run().converged;
+  return !run().is_cut_short;
 }
 
 /// From a map whose boundary touches itself, to the last one before it overlaps.
@@ -219,7 +219,7 @@ bool WayToPins::minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const
   newton.admissible = [&](const std::vector<Vec2>& map) { return is_sound(map); };
   NewtonResult result = minimise_energy(mesh_.faces, rest_, fixed_, uvs, newton, work);
   if (result.refused) uvs = std::move(result.admitted);
-  return result.converged && !result.refused;
+  return !result.is_cut_short && !result.refused;
 }
 
 bool WayToPins::relax(const Work& work, std::vector<Vec2>& uvs) const {

@@ -23,14 +23,24 @@ Shape flat_ring(Random& random) {
   const double width = random.chance(0.2) ? random.spread(1e-4, 0.5) : random.between(0.05, 0.9);
   const double crooked = random.chance(0.4) ? 0 : random.between(0, 0.4);
   const double squeeze = random.chance(0.5) ? 1 : random.between(0.2, 1);
-  Shape shape;
-  shape.flat = true;
-  for (const double radius : {1 - width, 1.0}) {
+  std::vector<double> outer, inner;
+  for (auto* angles : {&inner, &outer}) {
     for (int i = 0; i < n; ++i) {
-      const double angle = kTurn * (i + crooked * random.between(-1, 1)) / n;
-      shape.add({radius * portable::cos(angle), squeeze * radius * portable::sin(angle), 0});
+      angles->push_back(kTurn * (i + crooked * random.between(-1, 1)) / n);
     }
   }
+  // The corners of a narrow hole would stand out between those of the rim.
+  const bool is_narrow = 1 - width >= portable::cos(0.5 * kTurn * (1 + 2 * crooked) / n);
+  if (is_narrow) inner = outer;
+  Shape shape;
+  shape.flat = true;
+  const auto add = [&](double radius, const std::vector<double>& angles) {
+    for (const double angle : angles) {
+      shape.add({radius * portable::cos(angle), squeeze * radius * portable::sin(angle), 0});
+    }
+  };
+  add(1 - width, inner);
+  add(1, outer);
   const auto size = static_cast<Vertex>(n);
   const double way = random.unit();  // of cutting it into faces
   if (way < 0.1) {

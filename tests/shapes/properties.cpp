@@ -157,23 +157,27 @@ std::vector<std::size_t> uv_vertices(const Shape& shape, const ShapeAtlas& atlas
 std::vector<Border> borders(const Shape& shape, const ShapeAtlas& atlas,
                             const std::vector<std::size_t>& faces) {
   const std::vector<std::size_t> names = uv_vertices(shape, atlas);
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<std::size_t, std::size_t>>>
-      sides;
-  for (const std::size_t t : faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t a = names[atlas.triangles[t][k]];
-      const std::size_t b = names[atlas.triangles[t][(k + 1) % 3]];
-      sides[std::minmax(a, b)].push_back({t, k});
-    }
-  }
+  using Side = std::pair<std::size_t, std::size_t>;
+  const auto edge_of = [&](const Side& side) -> Side {
+    const auto& [t, k] = side;
+    return std::minmax(names[atlas.triangles[t][k]], names[atlas.triangles[t][(k + 1) % 3]]);
+  };
   std::vector<std::size_t> parent(atlas.triangles.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root = [&](std::size_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (const auto& [edge, of] : sides) {
-    for (const auto& [t, k] : of) parent[root(t)] = root(of[0].first);
+  // Faces without area join those beside them to a chart as well.
+  std::map<Side, std::size_t> first_at;
+  for (std::size_t t = 0; t < atlas.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      parent[root(t)] = root(first_at.try_emplace(edge_of({t, k}), t).first->second);
+    }
+  }
+  std::map<Side, std::vector<Side>> sides;
+  for (const std::size_t t : faces) {
+    for (std::size_t k = 0; k < 3; ++k) sides[edge_of({t, k})].push_back({t, k});
   }
   std::vector<Border> out;
   for (const auto& [edge, of] : sides) {

@@ -40,7 +40,7 @@ TEST(Shapes, AreTheSameOnEveryPlatform) {
     for (const Vertex v : shape.corners) hash.add(v);
     for (const std::uint32_t size : shape.sizes) hash.add(size);
   }
-  EXPECT_EQ(hash.value(), 0x168191cb800af9b4u);
+  EXPECT_EQ(hash.value(), 0x170b472b2dfa7628u);
 }
 
 TEST(Shapes, EveryKindHasItsTurn) {
