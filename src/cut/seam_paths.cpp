@@ -7,7 +7,7 @@
 namespace beltrami {
 
 SeamPaths::SeamPaths(const Surface& surface, const std::vector<bool>& is_root,
-                     const std::vector<double>& cost, double bound)
+                     const std::vector<double>& cost, double bound, const std::vector<bool>* goal)
     : surface_(surface),
       cost_of_edge_(cost),
       bound_(bound),
@@ -19,7 +19,7 @@ SeamPaths::SeamPaths(const Surface& surface, const std::vector<bool>& is_root,
     costs_[v] = 0;
     queue.emplace(0, v);
   }
-  grow(queue);
+  grow(queue, goal);
 }
 
 void SeamPaths::add_roots(std::span<const Index> vertices) {
@@ -29,16 +29,20 @@ void SeamPaths::add_roots(std::span<const Index> vertices) {
     towards_[v] = kNone;
     queue.emplace(0, v);
   }
-  grow(queue);
+  grow(queue, nullptr);
 }
 
-void SeamPaths::grow(Queue& queue) {
+void SeamPaths::grow(Queue& queue, const std::vector<bool>* goal) {
   PollSometimes poll;
   while (!queue.empty()) {
     poll();
     const auto [reached, v] = queue.top();
     queue.pop();
     if (reached > costs_[v] || surface_.outgoing[v] == kNone) continue;
+    if (goal != nullptr && (*goal)[v]) {
+      reached_ = v;
+      return;
+    }
     const auto relax = [&, reached = reached](Index h, Index other) {
       const double through = reached + cost_of_edge_[h];
       if (!(through < costs_[other]) || through > bound_) return;

@@ -54,31 +54,36 @@ std::vector<std::vector<Index>> SeamSearch::arcs(bool ends_at_anchors) const {
   return arcs;
 }
 
+/// Calls `reach(vertex)` for the vertices that a seam or border joins to this one.
+template <class Reach>
+void SeamSearch::for_each_joined(Index vertex, const Reach& reach) const {
+  surface_.for_each_outgoing(vertex, [&](Index h) {
+    if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
+    const Index in = Surface::previous(h);
+    if (surface_.twin[in] == kNone) reach(surface_.origin(in));
+  });
+}
+
 /// Per vertex, whether seams and borders lead there.
 std::vector<bool> SeamSearch::joined_to(Index vertex) const {
   std::vector<bool> joined(degree_.size(), false);
   std::vector<Index> open = {vertex};
   joined[vertex] = true;
-  const auto reach = [&](Index v) {
-    if (joined[v]) return;
-    joined[v] = true;
-    open.push_back(v);
-  };
   while (!open.empty()) {
     const Index v = open.back();
     open.pop_back();
-    surface_.for_each_outgoing(v, [&](Index h) {
-      if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
-      const Index in = Surface::previous(h);
-      if (surface_.twin[in] == kNone) reach(surface_.origin(in));
+    for_each_joined(v, [&](Index w) {
+      if (joined[w]) return;
+      joined[w] = true;
+      open.push_back(w);
     });
   }
   return joined;
 }
 
-/// Whether seams and borders lead from one vertex to another, looked for from both: where only few
-/// lead from one of them, that is soon known.
-bool SeamSearch::are_joined(Index one, Index other) const {
+/// The one of two vertices to which seams and borders join fewer others, if they do not join the
+/// two: where only few lead from one of them, that is soon known.
+std::optional<Index> SeamSearch::on_smaller_part(Index one, Index other) const {
   struct Reach {
     std::queue<Index> open;
     std::unordered_set<Index> seen;
@@ -88,22 +93,19 @@ bool SeamSearch::are_joined(Index one, Index other) const {
   const auto grow = [&](Reach& own, const Reach& others) {
     const Index v = own.open.front();
     own.open.pop();
-    const auto reach = [&](Index w) {
+    for_each_joined(v, [&](Index w) {
       if (!own.seen.insert(w).second) return;
       own.open.push(w);
       met = met || others.seen.contains(w);
-    };
-    surface_.for_each_outgoing(v, [&](Index h) {
-      if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
-      const Index in = Surface::previous(h);
-      if (surface_.twin[in] == kNone) reach(surface_.origin(in));
     });
   };
-  while (!met && !from_one.open.empty() && !from_other.open.empty()) {
+  while (!met) {
+    if (from_one.open.empty()) return one;
+    if (from_other.open.empty()) return other;
     grow(from_one, from_other);
     if (!met) grow(from_other, from_one);
   }
-  return met;
+  return std::nullopt;
 }
 
 /// Whether an edge that is no seam joins none and no border: it would part nothing.
@@ -124,17 +126,13 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, b
     cost += cost_[h];
   }
   for (const Index h : arc) mark(h, false);
-  const Index end = surface_.target(arc.back());
+  const Index begin = surface_.origin(arc.front()), end = surface_.target(arc.back());
   std::vector<Index> path = arc;
-  if (may_part && !are_joined(surface_.origin(arc.front()), end)) {
-    const std::vector<bool> joined = joined_to(surface_.origin(arc.front()));
-    const SeamPaths paths(surface_, joined, cost_, cost);
-    const std::vector<bool> others = joined_to(end);
-    Index nearest = end;
-    for (Index v = 0; v < surface_.vertex_count(); ++v) {
-      if (others[v] && paths.costs()[v] < paths.costs()[nearest]) nearest = v;
-    }
-    if (paths.costs()[nearest] < cost * (1 - kLeastGain)) path = paths.from(nearest).halfedges;
+  const std::optional<Index> from = may_part ? on_smaller_part(begin, end) : std::nullopt;
+  if (from) {
+    const std::vector<bool> others = joined_to(*from == begin ? end : begin);
+    const SeamPaths paths(surface_, joined_to(*from), cost_, cost * (1 - kLeastGain), &others);
+    if (paths.reached() != kNone) path = paths.from(paths.reached()).halfedges;
     if (path.size() == 1 && is_alone(path.front())) path = arc;
   } else if (across != nullptr) {
     std::vector<Index> other =

@@ -110,7 +110,9 @@ class SeamSearch {
   bool affords(const SeamPath& path) const;
   std::vector<std::vector<Index>> arcs(bool ends_at_anchors) const;
   std::vector<bool> joined_to(Index vertex) const;
-  bool are_joined(Index one, Index other) const;
+  std::optional<Index> on_smaller_part(Index one, Index other) const;
+  template <class Reach>
+  void for_each_joined(Index vertex, const Reach& reach) const;
   bool is_alone(Index halfedge) const;
   bool reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part);
   bool reconnect_all(bool around_handles);

@@ -131,6 +131,26 @@ TEST(SeamPaths, AreTheCheapest) {
   }
 }
 
+TEST(SeamPaths, EndAtTheNearestGoal) {
+  std::mt19937_64 generator(2);
+  for (const TriangleList& mesh : {meshes::torus(5), meshes::grid(6, 5)}) {
+    const Surface surface = built(mesh);
+    const std::vector<double> cost = random_cost(surface, 5, generator);
+    std::vector<bool> root(surface.positions.size(), false), goal = root;
+    root[0] = true;
+    const std::vector<double> reached = bellman_ford(surface, root, cost);
+    for (int i = 0; i < 4; ++i) goal[1 + random_below(generator, size_of(root) - 1)] = true;
+    double least = kNever;
+    for (Index v = 0; v < surface.vertex_count(); ++v) {
+      if (goal[v]) least = std::min(least, reached[v]);
+    }
+    const SeamPaths paths(surface, root, cost, kNever, &goal);
+    ASSERT_TRUE(goal[paths.reached()]);
+    EXPECT_EQ(paths.from(paths.reached()).cost, least);
+    EXPECT_EQ(SeamPaths(surface, root, cost, 0.5 * least, &goal).reached(), kNone);
+  }
+}
+
 TEST(SeamPaths, AlongTheBorderAsWell) {
   // All but the border of a strip is closed.
   const Surface surface = built(meshes::strip(5));
