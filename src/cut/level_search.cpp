@@ -450,6 +450,7 @@ void LevelSearch::improve(int rounds, Attempt& best) {
 
 /// Charts that were parted are joined elsewhere on trial, where that makes it better.
 void LevelSearch::join_charts(Attempt& best) {
+  LocalMaps maps;
   std::vector<Index> tried;
   for (int i = 0; i < effort_.joins && best.excess <= 1 && !work_.out_of_time();) {
     search_.take(best.seams.seams, best.seams.anchors);
@@ -466,7 +467,6 @@ void LevelSearch::join_charts(Attempt& best) {
       search_.extend(energy, true);
       shorten_seams(energy, true);
       if (search_.cost() > best.cost * (1 - kWorthMapping)) continue;
-      LocalMaps maps;
       Attempt attempt;
       ++i;
       gained = judge(false, maps, attempt) && attempt.is_better_than(best);
