@@ -64,11 +64,12 @@ double turn(const Point& a, const Point& b, const Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
+double length_sq(const Point& p, const Point& q) {
+  return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
+}
+
 /// Of a triangle: greatest, 0.29, for an equilateral one; below 0 for one that is turned over.
 double quality(const Point& a, const Point& b, const Point& c) {
-  const auto length_sq = [](const Point& p, const Point& q) {
-    return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
-  };
   const double found = turn(a, b, c) / (length_sq(a, b) + length_sq(b, c) + length_sq(c, a));
   return std::isfinite(found) ? found : 0;
 }
@@ -233,8 +234,12 @@ class EarClipper {
   /// Whether no other corner is in the ear or on its cut; only reflex ones can be.
   bool is_empty(std::uint32_t i) const {
     const Point &a = point(previous_[i]), &b = point(i), &c = point(next_[i]);
-    const Point low = {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})};
-    const Point high = {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})};
+    // So far beyond the cut a corner is still on it.
+    const double beyond = slack_ > 0 ? slack_ / std::sqrt(length_sq(a, c)) : 0;
+    const Point low = {std::min({a[0], b[0], c[0]}) - beyond,
+                       std::min({a[1], b[1], c[1]}) - beyond};
+    const Point high = {std::max({a[0], b[0], c[0]}) + beyond,
+                        std::max({a[1], b[1], c[1]}) + beyond};
     return !reflex_->any(low, high, [&](std::uint32_t k) {
       return !is_cut(k) && k != previous_[i] && k != i && k != next_[i] &&
              blocks(point(k), a, b, c, slack_);

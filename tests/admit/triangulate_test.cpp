@@ -79,6 +79,22 @@ TEST(TriangulatePolygons, NoCutRunsThroughACorner) {
   }
 }
 
+// Corner 4 is on the line from 2 to 0, and seen along the normal a rounding error outside it, where
+// the box of the triangle on that cut ends: without area between two faces it would part them.
+TEST(TriangulatePolygons, NoCutRunsThroughACornerThatIsOutsideByRounding) {
+  const std::vector<Vec3> hexagon = {
+      {-0.116989, 0.019132, 0.261250}, {-0.116169, 0.017294, 0.272250},
+      {-0.116169, 0.017294, 0.261250}, {-0.116374, 0.017753, 0.261250},
+      {-0.116579, 0.018213, 0.261250}, {-0.116784, 0.018672, 0.261250}};
+  const Polygons polygons{{0, 1, 2, 3, 4, 5}, {6}};
+  const Triangulation result = triangulate(hexagon, polygons, Work(1));
+  expect_complete(polygons, result);
+  for (const Triangle& t : result.triangles) {
+    const Vec3& a = hexagon[t[0]];
+    EXPECT_GT((hexagon[t[1]] - a).cross(hexagon[t[2]] - a).norm(), 1e-10);
+  }
+}
+
 TEST(TriangulatePolygons, RepeatsAnEdgeOnlyWhereThereIsNoOtherWay) {
   // Both diagonals of the square are edges of triangles.
   const Polygons crossed{{0, 1, 2, 3, 0, 2, 4, 1, 3, 4}, {4, 7, 10}};
