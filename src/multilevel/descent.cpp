@@ -45,7 +45,8 @@ constexpr std::int64_t kGrain = 16384;
 constexpr Index kFewestFaces = 20;
 /// With a tenth of the faces the boundary crosses itself too often when it is carried over.
 constexpr Index kContactReduction = 4;
-/// Of a trial's patches: what these do not mend takes seconds with wider ones.
+/// Of the patches of a trial and of a start that there are others for: what these do not mend takes
+/// seconds with wider ones, half a minute where a hundred faces are folded.
 constexpr int kTrialRings = 2;
 
 struct Led {
@@ -249,6 +250,7 @@ std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<Res
     std::vector<Vec2> uvs = carry_boundary(mesh, minimum->coarse, minimum->uvs);
     solve_harmonic(mesh, modified_cotangents(rest, minimum->metric, work), uvs, work);
     const RepairOptions mend{.simple_boundary = simple,
+                             .most_rings = kTrialRings,
                              .global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
     if (repair(mesh, rest, uvs, mend, still).flips_after > 0) continue;
     if (simple && count_crossings(mesh.boundary, uvs).count > 0) continue;

@@ -37,6 +37,10 @@ constexpr double kMostFlips = 0.02;
 /// Of the regions around what the first ones, of kRegionRings, left.
 constexpr int kWiderRings = 8;
 constexpr std::array<int, 4> kPatchRings = {2, 4, 6, 8};
+/// Faces that the patches of a repair may have together, as often as each is tried, and so many
+/// times those of the mesh: some two seconds. Beyond it patches are most of the mesh, and another
+/// start or the global fix is cheaper; a hundred folds near hubs took half a minute.
+constexpr std::int64_t kLeastAllowance = 100'000, kAllowance = 4;
 constexpr double kLocalShare = 0.6;  // of the work, if the global fix is needed
 
 double cross(const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -47,7 +51,12 @@ class Repair {
  public:
   Repair(const DiskMesh& mesh, const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
          const RepairOptions& options, const Work& work)
-      : mesh_(mesh), rest_(rest), uvs_(uvs), options_(options), work_(work) {}
+      : mesh_(mesh),
+        rest_(rest),
+        uvs_(uvs),
+        options_(options),
+        work_(work),
+        allowance_(std::max(kLeastAllowance, kAllowance * mesh.face_count())) {}
 
   RepairResult run() {
     std::vector<Index> bad = find_bad();
@@ -200,7 +209,7 @@ class Repair {
     for (const Index face : faces) waiting.push_back({face, {}});
     const auto is_positive = [&](Index face) { return positive(face); };
     std::size_t layers = 1;
-    while (!waiting.empty()) {
+    while (!waiting.empty() && allowance_ > 0) {
       poll_interrupt();
       std::vector<PatchTry> tries;
       std::vector<std::size_t> ends;  // of each layer
@@ -228,7 +237,10 @@ class Repair {
   std::vector<Patch> untangled(const std::function<void(Patch&)>& prepare,
                                std::span<PatchTry> tries) {
     std::vector<Patch> made;
-    for (const PatchTry& next : tries) prepare(made.emplace_back(next.patch));
+    for (const PatchTry& next : tries) {
+      prepare(made.emplace_back(next.patch));
+      allowance_ -= size_of(next.patch.faces);
+    }
     const Work alone = work_.aside();
     parallel_for(
         work_, static_cast<std::int64_t>(tries.size()), 1, [&](std::int64_t i, std::int64_t) {
@@ -270,6 +282,7 @@ class Repair {
   std::vector<Vec2>& uvs_;
   const RepairOptions options_;
   const Work work_;
+  std::int64_t allowance_;      ///< faces of patches that may still be tried
   std::vector<Index> changed_;  ///< faces of which a corner has moved since the last look at all
   RepairResult result_;
 };

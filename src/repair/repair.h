@@ -40,7 +40,7 @@ struct RepairResult {
 ///    faces are then positive and the boundary has no more crossings than before. Where it would
 ///    have more, again with the boundary held, and from a straight one. Of over 30 faces, but no
 ///    more than 2% of all, the regions within 4 rings come first, each untangled at once, and
-///    those within 8 of what is left.
+///    those within 8 of what is left. Patches that are most of the mesh again and again end it.
 /// 3. Global fix: see global_fix.h; taken if it leaves fewer faces that are not positive, or no
 ///    crossing where a simple boundary was asked for. What rounding folded in it goes through 1 and
 ///    2 again.
