@@ -263,7 +263,8 @@ std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<Res
 std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
                             const ChartOptions& options, const Work& work) {
   std::vector<Vec2> uvs = tutte_embedding(mesh, work);
-  const RepairOptions mend{.global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
+  RepairOptions mend{.global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
+  if (options.is_trial) mend.most_rings = kTrialRings;
   if (repair(mesh, rest, uvs, mend, work.part(0, 0)).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
   return other.empty() ? grid_drawing(mesh) : other;
