@@ -33,6 +33,8 @@ namespace {
 /// Units in the last place between the places that are tried, sweep by sweep.
 constexpr std::array<int, 6> kSpacings = {1, 1, 2, 4, 8, 16};
 constexpr int kReach = 2;  // of these to each side
+/// Of the way into a kernel, the first that is tried; each next one is twice as much.
+constexpr double kLeastShare = 0x1p-12;
 constexpr std::array<int, 4> kPatchRings = {1, 2, 4, 8};
 constexpr std::size_t kMostPatches = 2000;
 constexpr int kCrossingRounds = 4;
@@ -139,7 +141,11 @@ class Rounding {
     if (best.bad > 0 && !stays_near_[vertex]) {
       std::vector<Vec2> ring;
       mesh_.for_each_outgoing(vertex, [&](Index h) { ring.push_back(uvs_[mesh_.target(h)]); });
-      if (const auto centre = kernel_centroid(ring)) attempt(*centre);
+      const auto centre = kernel_centroid(ring);
+      // No further into the kernel than serves: its faces may be large beside the one that is not.
+      for (double share = kLeastShare; centre && share <= 1 && best.bad > 0; share *= 2) {
+        attempt(start + share * (*centre - start));
+      }
     }
     uvs_[vertex] = place;
   }
