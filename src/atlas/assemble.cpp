@@ -12,6 +12,7 @@
 #include "atlas/open.h"
 #include "atlas/pages.h"
 #include "atlas/pins.h"
+#include "atlas/seams.h"
 #include "base/interrupt.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
@@ -203,6 +204,27 @@ Outcome outcome_of(const Atlas& atlas, bool float32) {
   return float32 ? Outcome::kNotInjectiveFloat32 : Outcome::kNotInjective;
 }
 
+/// Names the components whose maps reach the target, but not the numbers that they are rounded to.
+void name_missed(const SeamTarget& target, const Admitted& admitted,
+                 const std::vector<AtlasChart>& charts, Atlas& atlas) {
+  std::map<Index, MissedTarget> components;
+  std::map<Index, double> areas;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    const ChartInfo& chart = atlas.charts[c];
+    const Index component = admitted.topology.component_of_face[charts[c].chart.input_face.front()];
+    const auto [at, is_new] = components.try_emplace(component, MissedTarget{chart.first_face});
+    MissedTarget& sum = at->second;
+    sum.first_face = std::min(sum.first_face, chart.first_face);
+    sum.faces += chart.faces;
+    sum.symmetric_dirichlet += chart.area * chart.symmetric_dirichlet;
+    areas[component] += chart.area;
+  }
+  for (auto& [component, sum] : components) {
+    sum.symmetric_dirichlet /= areas[component];
+    if (sum.symmetric_dirichlet > target.energy + kEnergyTolerance) atlas.missed.push_back(sum);
+  }
+}
+
 }  // namespace
 
 void assemble(const AtlasInput& input, const AtlasOptions& options, const Admitted& admitted,
@@ -225,6 +247,9 @@ void assemble(const AtlasInput& input, const AtlasOptions& options, const Admitt
   collector.share();
   atlas.energy =
       measure_charts(placed.surface.charts, placed.maps, placed.page_scale, atlas.charts, work);
+  if (options.target && atlas.missed.empty()) {
+    name_missed(*options.target, admitted, placed.surface.charts, atlas);
+  }
   atlas.seam_length = seam_length(placed.surface.charts, admitted.input_vertex);
   double area = 0;
   for (const ChartInfo& chart : atlas.charts) area += chart.area;
