@@ -471,6 +471,15 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, const s
   return text + ": see beltrami " + command.get_name() + " --help";
 }
 
+/// The command that a command line names, and a space; "" where it names none.
+std::string command_of(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::vector<std::string> names = command_names(app);
+  for (const std::string& word : words) {
+    if (contains(names, word)) return word + " ";
+  }
+  return "";
+}
+
 /// The first word of the command line that is no command or no option, with what it was to be; ""
 /// where there is none.
 std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
@@ -542,7 +551,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const std::string unknown = unknown_word(app, words);
     if (!unknown.empty()) return tell(kExitUnusable, {"beltrami: ", unknown});
-    return tell(kExitUnusable, {"beltrami: ", error.what(), " (see beltrami --help)"});
+    return tell(kExitUnusable,
+                {"beltrami: ", error.what(), " (see beltrami ", command_of(app, words), "--help)"});
   }
   if (completions_app->parsed()) {
     std::vector<CompletedCommand> commands = completed_commands(app);

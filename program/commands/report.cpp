@@ -54,9 +54,10 @@ void append_atlas(const Report& report, std::string& text) {
   append(text, "energy     %.6g mean, %.6g at the 99th percentile, %.6g max (2 is isometric)\n",
          atlas.symmetric_dirichlet, atlas.p99, atlas.max);
   if (atlas.slivers > 0) {
-    append(text,
-           "note       %llu slivers of no area to speak of do not count: with them %.6g mean\n",
-           static_cast<unsigned long long>(atlas.slivers), atlas.symmetric_dirichlet_with_slivers);
+    append(text, "note       %llu %s of no area to speak of %s not count: with %s %.6g mean\n",
+           static_cast<unsigned long long>(atlas.slivers),
+           atlas.slivers == 1 ? "sliver" : "slivers", atlas.slivers == 1 ? "does" : "do",
+           atlas.slivers == 1 ? "it" : "them", atlas.symmetric_dirichlet_with_slivers);
   }
   if (!report.target) return;
   const Target& target = *report.target;
@@ -68,9 +69,10 @@ void append_atlas(const Report& report, std::string& text) {
   text += "\n";
   if (atlas.missed_parts > 0) {
     append(text,
-           "note       %llu parts miss it, the worst with %.6g: %llu triangles from face %llu "
+           "note       %llu %s it, the worst with %.6g: %llu triangles from face %llu "
            "(counted from 0)\n",
-           static_cast<unsigned long long>(atlas.missed_parts), atlas.missed_energy,
+           static_cast<unsigned long long>(atlas.missed_parts),
+           atlas.missed_parts == 1 ? "part misses" : "parts miss", atlas.missed_energy,
            static_cast<unsigned long long>(atlas.missed_triangles),
            static_cast<unsigned long long>(atlas.missed_face));
   }
@@ -151,22 +153,28 @@ void append_layout(const Report& report, std::string& text) {
 /// What had to be done to the input, where that is anything.
 void append_admitted(const Report& report, std::string& text) {
   const beltrami_atlas& atlas = *report.atlas;
-  const std::pair<std::uint64_t, const char*> counts[] = {
-      {report.short_faces.value_or(0), "faces of fewer than three corners"},
-      {atlas.welded_vertices, "vertices welded"},
-      {atlas.unused_vertices, "vertices unused"},
-      {atlas.repeated_faces, "faces with a vertex twice"},
-      {atlas.faces_without_area, "faces without area"},
-      {atlas.copies, "copies of faces"},
-      {atlas.crowded_edges, "edges of three faces or more"},
-      {atlas.one_sided_edges, "edges of a one-sided surface"},
-      {atlas.split_vertices, "vertices split"},
-      {atlas.reversed_faces, "faces turned over"},
-      {atlas.filled_holes, "holes filled"},
-      {atlas.stacked_parts, "parts stacked on others"}};
+  struct Count {
+    std::uint64_t count;
+    const char *one, *several;
+  };
+  const Count counts[] = {
+      {report.short_faces.value_or(0), "face of fewer than three corners",
+       "faces of fewer than three corners"},
+      {atlas.welded_vertices, "vertex welded", "vertices welded"},
+      {atlas.unused_vertices, "vertex unused", "vertices unused"},
+      {atlas.repeated_faces, "face with a vertex twice", "faces with a vertex twice"},
+      {atlas.faces_without_area, "face without area", "faces without area"},
+      {atlas.copies, "copy of a face", "copies of faces"},
+      {atlas.crowded_edges, "edge of three faces or more", "edges of three faces or more"},
+      {atlas.one_sided_edges, "edge of a one-sided surface", "edges of a one-sided surface"},
+      {atlas.split_vertices, "vertex split", "vertices split"},
+      {atlas.reversed_faces, "face turned over", "faces turned over"},
+      {atlas.filled_holes, "hole filled", "holes filled"},
+      {atlas.stacked_parts, "part stacked on another", "parts stacked on others"}};
   std::string line;
-  for (const auto& [count, what] : counts) {
-    if (count > 0) line += (line.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  for (const auto& [count, one, several] : counts) {
+    if (count == 0) continue;
+    line += (line.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : several);
   }
   if (!line.empty()) text += "admitted   " + line + "\n";
 }

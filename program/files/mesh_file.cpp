@@ -82,8 +82,8 @@ void require_writable_format(const std::string& path) {
   const std::string extension = extension_of(path);
   if (extension == ".obj" || extension == ".ply") return;
   throw Failure(path +
-                ": results are written as OBJ or PLY, and as glTF where the input is glTF: use the "
-                "extension .obj, .ply, .gltf or .glb");
+                ": results are written as OBJ, PLY or glTF: use the extension "
+                ".obj, .ply, .gltf or .glb");
 }
 
 bool is_gltf_name(const std::string& path) {

@@ -178,6 +178,7 @@ std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& pat
     found.push_back("vertex property " + column.name());
   }
   for (const Column& column : mesh.face_columns) {
+    if (mesh.gltf) break;  // they number what it has
     found.push_back("face property " + column.name());
   }
   for (const Table& table : mesh.tables) found.push_back("element " + table.name);

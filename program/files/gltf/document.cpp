@@ -81,7 +81,9 @@ void require_version(const Document& document) {
   if (!document.json.is_object()) root.fail("the JSON is no object: this is not glTF");
   const std::optional<Item> asset = root.object("asset");
   if (!asset) root.fail("there is no asset: this is not glTF");
-  const std::string version = asset->text("version");
+  const Json* number = asset->find("version");
+  const bool is_number = number != nullptr && number->is_number();
+  const std::string version = is_number ? number->dump() : asset->text("version");
   if (version.starts_with("2.")) return;
   root.fail(version.empty()
                 ? "asset.version is missing: this is not glTF 2.0"
