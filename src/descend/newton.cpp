@@ -46,8 +46,8 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   };
   result.converged =
       stepper.free_count() == 0 || run_newton(run, work, result.energies, take_step, give_up);
-  result.is_cut_short = !result.converged && (result.iterations() >= options.max_iterations ||
-                                              work.out_of_time());
+  result.is_cut_short =
+      !result.converged && (result.iterations() >= options.max_iterations || work.out_of_time());
   if (!result.refused) result.admitted.clear();
   return result;
 }

@@ -15,10 +15,10 @@ namespace beltrami {
 
 /// A map that a descent ended with.
 struct Descent {
-  std::vector<Vec2> uvs;  ///< one per vertex
-  double energy = 0;      ///< mean
-  int iterations = 0;     ///< on the way to it
-  bool converged = false;  ///< it was not cut short by a limit
+  std::vector<Vec2> uvs;    ///< one per vertex
+  double energy = 0;        ///< mean
+  int iterations = 0;       ///< on the way to it
+  bool converged = false;   ///< it was not cut short by a limit
   bool in_contact = false;  ///< boundary parts press on each other
 };
 

@@ -154,7 +154,8 @@ TEST(GltfRead, OtherFormatsKeepTheTrianglesAndSaySo) {
   GltfBuilder builder;
   builder.mesh({{"POSITION", square(builder)}}, builder.indices<std::uint8_t>({0, 1, 2}));
   const MeshFile file = read_bytes(builder);
-  EXPECT_EQ(not_kept(file, "a.ply"), std::vector<std::string>{"nodes, materials, textures and animations of glTF"});
+  EXPECT_EQ(not_kept(file, "a.ply"),
+            std::vector<std::string>{"nodes, materials, textures and animations of glTF"});
   EXPECT_TRUE(not_kept(file, "a.glb").empty());
 }
 

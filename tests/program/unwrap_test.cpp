@@ -307,7 +307,7 @@ TEST(Unwrap, SaysWhatIsWrong) {
   EXPECT_NE(error({in, out, "--seams", directory.file("s", "0 1 2")}).find("pairs"),
             std::string::npos);
   EXPECT_NE(error({in, out, "--cut", "islands"}).find("no texture coordinates"), std::string::npos);
-  EXPECT_NE(error({in, directory.path("out.stl")}).find("OBJ or PLY"), std::string::npos);
+  EXPECT_NE(error({in, directory.path("out.stl")}).find("OBJ, PLY or glTF"), std::string::npos);
   const std::string flat = directory.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_NE(error({flat, out}).find("no area"), std::string::npos);
 }
