@@ -16,6 +16,7 @@
 #include "base/interrupt.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
+#include "cut/seam_target.h"
 #include "exact/atlas_certificate.h"
 #include "mesh/chart.h"
 
