@@ -21,8 +21,18 @@ namespace {
 /// The values of the body one after another.
 class Values {
  public:
-  Values(TextCursor& cursor, PlyEncoding encoding, const char* end)
-      : cursor_(cursor), encoding_(encoding), at_(cursor.position()), end_(end) {}
+  /// `rows`: how many there are to be.
+  Values(TextCursor& cursor, PlyEncoding encoding, std::uint64_t rows, const char* end)
+      : cursor_(cursor), encoding_(encoding), at_(cursor.position()), end_(end) {
+    if (encoding != PlyEncoding::kText) return;
+    std::uint64_t lines = 0;
+    TextCursor look = cursor;
+    for (look.skip_to_word(); !look.at_end(); look.skip_to_word()) {
+      look.skip_line();
+      ++lines;
+    }
+    row_is_line_ = lines == rows;
+  }
 
   /// False at the end of the file.
   bool next(Scalar type, double& value) {
@@ -46,6 +56,17 @@ class Values {
     return true;
   }
 
+  /// Passes over what a row has beyond the header's properties: that can be told where each row has
+  /// a line of its own, as the format wants it.
+  void end_row() {
+    if (!row_is_line_) return;
+    cursor_.skip_blanks();
+    if (cursor_.at_line_end()) return;
+    has_more_ = true;
+    cursor_.skip_line();
+  }
+  bool has_more() const { return has_more_; }
+
   /// For messages: the line in text, nothing in binary.
   std::string place(const std::string& path) const {
     return encoding_ == PlyEncoding::kText ? cursor_.place() : path + ": ";
@@ -56,6 +77,7 @@ class Values {
   PlyEncoding encoding_;
   const char* at_;
   const char* end_;
+  bool row_is_line_ = false, has_more_ = false;
 };
 
 std::string short_number(double value) {
@@ -78,6 +100,12 @@ class Truncation : public Failure {
   std::string where_;
 };
 
+std::uint64_t rows_of(const PlyHeader& header) {
+  std::uint64_t rows = 0;
+  for (const PlyElement& element : header.elements) rows += element.count;
+  return rows;
+}
+
 class PlyReader {
  public:
   PlyReader(std::string_view text, const std::string& path, Content content)
@@ -85,7 +113,7 @@ class PlyReader {
         content_(content),
         cursor_(text, path),
         header_(read_ply_header(cursor_)),
-        values_(cursor_, header_.encoding, text.data() + text.size()) {}
+        values_(cursor_, header_.encoding, rows_of(header_), text.data() + text.size()) {}
 
   MeshFile read() {
     if (count_of("vertex") == 0) throw Failure(path_ + ": no vertices");
@@ -108,6 +136,7 @@ class PlyReader {
     for (const std::string& keyword : header_.unknown) {
       note_unknown(mesh_.not_kept, "header lines", keyword);
     }
+    if (values_.has_more()) mesh_.not_kept.emplace_back("numbers that the header does not name");
     mesh_.comments = std::move(header_.comments);
     return std::move(mesh_);
   }
@@ -184,6 +213,7 @@ class PlyReader {
       if (wants_uvs() && !corners_have_uvs()) {
         mesh_.uvs.insert(mesh_.uvs.end(), row.begin() + 3, row.end());
       }
+      values_.end_row();
     }
   }
 
@@ -237,6 +267,7 @@ class PlyReader {
           read_value(target, element, i, mesh_.face_columns, nullptr);
         }
       }
+      values_.end_row();
       if (mesh_.polygons.size() == before) {
         set_aside(i, rows);
       } else {
@@ -300,6 +331,7 @@ class PlyReader {
           read_value({&property, -1, -1}, element, i, mesh_.face_columns, nullptr);  // passed over
         }
       }
+      values_.end_row();
     }
   }
 
@@ -332,6 +364,7 @@ class PlyReader {
     if (targets.empty()) return;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const Target& target : targets) read_value(target, element, i, table.columns, nullptr);
+      values_.end_row();
     }
     if (!table.columns.empty()) mesh_.tables.push_back(std::move(table));
   }

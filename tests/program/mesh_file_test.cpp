@@ -236,6 +236,23 @@ std::string ply_error(const std::string& text, Content content = Content::kSurfa
   return "read";
 }
 
+// Rows of a line each may hold more than the header names; rows that share lines are told apart by
+// their numbers alone.
+TEST(ReadPly, PassesOverWhatTheHeaderDoesNotName) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string rows = "0 0 0 7\n1 0 0\n\n0 1 0\n3 0 1 2 6 0.5 0.25\n3 2 1 0\n";
+  const MeshFile mesh = read_ply(header + rows, "a.ply", Content::kSurface);
+  EXPECT_EQ(mesh.positions, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(mesh.polygons.corners(), (Faces{0, 1, 2, 2, 1, 0}));
+  EXPECT_EQ(mesh.not_kept, std::vector<std::string>{"numbers that the header does not name"});
+  const MeshFile shared =
+      read_ply(header + "0 0 0 1 0 0\n0 1 0 3 0 1 2\n3 2 1 0\n", "a.ply", Content::kSurface);
+  EXPECT_EQ(shared.polygons.corners(), (Faces{0, 1, 2, 2, 1, 0}));
+  EXPECT_TRUE(shared.not_kept.empty());
+}
+
 TEST(ReadPly, CountsWhatIsStoredAndNothingElse) {
   const std::string coordinates = "property float x\nproperty float y\nproperty float z\n";
   const std::string uvs = "property float s\nproperty float t\n";
