@@ -161,6 +161,22 @@ TEST(Rounding, OpensFacesThatPlacingFolds) {
   }
 }
 
+// A vertex that placing puts a thousandth of an edge outside its kernel goes back about as far, not
+// to the middle of what may be large faces.
+TEST(Rounding, GoesNoFurtherIntoAKernelThanServes) {
+  const DiskMesh mesh = disks::disk(meshes::grid(4, 4));
+  const std::vector<Vec2> uvs = disks::flat_uvs(mesh);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.on_boundary[v]) continue;
+    const Index beside = mesh.target(mesh.outgoing[v]);
+    std::vector<Vec2> placed = uvs;
+    placed[v] = uvs[v] + 1.001 * (uvs[beside] - uvs[v]);
+    const Rounded rounded = round_map(mesh, uvs, placed, kSingle, Work(1));
+    EXPECT_TRUE(rounded.certificate.injective());
+    EXPECT_LT((rounded.uvs[v] - placed[v]).norm(), 0.01 * (uvs[beside] - uvs[v]).norm());
+  }
+}
+
 TEST(Rounding, HasTheSameBitsOnTwoThreads) {
   const DiskMesh mesh = disks::disk(meshes::grid(20, 20));
   std::vector<Vec2> uvs = disks::flat_uvs(mesh);
