@@ -329,7 +329,7 @@ TEST(GltfWrite, ImagesThatStayBehindAreNamed) {
   const MeshFile file = read_mesh(directory.file("a.gltf", builder.text()), Content::kSurface);
   EXPECT_TRUE(write_with_uvs(file, kCut, 0, directory.path("b.gltf")).not_kept.empty());
   EXPECT_EQ(write_with_uvs(file, kCut, 0, directory.path("c/b.gltf")).not_kept,
-            std::vector<std::string>{"image beside the input: wood a.png"});
+            std::vector<std::string>{"1 image beside the input (wood a.png)"});
 }
 
 }  // namespace

@@ -29,6 +29,16 @@ namespace beltrami::cli {
 namespace gltf {
 namespace {
 
+/// The first of the names; more would bury the rest of the line.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) {
+    text += (i > 0 ? ", " : "") + one_line(names[i]);
+  }
+  return names.size() > kMostNames ? text + ", ..." : text;
+}
+
 constexpr std::uint64_t kTriangles = 4;
 /// Says which corners of a mesh are one vertex of a solid, by the vertices as they were.
 constexpr const char* kManifold = "EXT_mesh_manifold";
@@ -211,9 +221,7 @@ class Writer {
 
   /// "2 textures (normalTexture of materials[0] 'wood', ...) were for TEXCOORD_0".
   std::string textures_that_misfit() const {
-    constexpr std::uint64_t kMostNames = 6;  // more would bury the rest of the line
-    std::uint64_t count = 0;
-    std::string names;
+    std::vector<std::string> names;
     std::vector<TextureUse> uses;
     try {
       uses = textures_of(model_);
@@ -221,13 +229,10 @@ class Writer {
       return "textures were for " + uv_name_;  // one is not as it should be, which is no hindrance
     }
     for (const TextureUse& use : uses) {
-      if (use.uv_set != uv_set_) continue;
-      if (count < kMostNames) names += (count > 0 ? ", " : "") + use.name;
-      ++count;
+      if (use.uv_set == uv_set_) names.push_back(use.name);
     }
-    if (count > kMostNames) names += ", ...";
-    return counted(count, "texture", "textures") + " (" + names + ") " +
-           (count == 1 ? "was" : "were") + " for " + uv_name_;
+    return counted(names.size(), "texture", "textures") + " (" + listed(names) + ") " +
+           (names.size() == 1 ? "was" : "were") + " for " + uv_name_;
   }
 
   /// Attributes of a primitive, or of a morph target of it.
@@ -431,8 +436,9 @@ GltfOutput write_gltf(const MeshFile& file, std::uint32_t uv_set, const std::str
   output.not_kept = file.not_kept;
   output.not_kept.insert(output.not_kept.end(), writer.not_kept().begin(), writer.not_kept().end());
   output.notes = writer.notes();
-  for (const std::string& image : left) {
-    output.not_kept.push_back("image beside the input: " + one_line(image));
+  if (!left.empty()) {
+    output.not_kept.push_back(gltf::counted(left.size(), "image", "images") +
+                              " beside the input (" + gltf::listed(left) + ")");
   }
   return output;
 }
