@@ -278,6 +278,18 @@ TEST(Bake, WithoutNormalsTangentsOfTheOldUvsGo) {
       << model.outcome.err;
 }
 
+// The numbers of an extension that nobody here knows may name a texture; those of a lamp do not.
+TEST(Bake, TheNumbersOfALampKeepNoTexture) {
+  for (const auto& [name, left] : {std::pair("KHR_lights_punctual", 1u), {"NOBODY_knows", 2u}}) {
+    GltfBuilder builder = bent_strip(kTwoHalves);
+    add_texture(builder, png_of(16, smooth), "baseColorTexture");
+    builder.json["extensions"] = {{name, {{"lights", {{{"color", {0, 0, 0}}}}}}}};
+    const BakedModel model(builder);
+    ASSERT_EQ(model.outcome.exit_code, 0) << model.outcome.err;
+    EXPECT_EQ(model.parts->json["images"].size(), left) << name;
+  }
+}
+
 TEST(Bake, FormatsThatCannotBeReadAreNamed) {
   GltfBuilder builder = bent_strip(kTwoHalves);
   add_texture(builder, "RIFF\1\1\1\1WEBPVP8 ", "baseColorTexture");

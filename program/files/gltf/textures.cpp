@@ -26,6 +26,9 @@ constexpr const char* kTransform = "KHR_texture_transform";
 /// Extensions by which a texture has an image of another format.
 constexpr std::array<const char*, 4> kOtherFormats = {"KHR_texture_basisu", "EXT_texture_webp",
                                                       "EXT_texture_avif", "MSFT_texture_dds"};
+/// Extensions of a scene whose numbers are those of no texture.
+constexpr std::array<std::string_view, 2> kWithoutTextures = {"KHR_lights_punctual",
+                                                              "KHR_materials_variants"};
 /// What OpenGL calls the ways of samplers.
 constexpr std::uint64_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
 
@@ -174,9 +177,13 @@ class Taken {
  public:
   Taken(const Json& json, const char* list)
       : marks_(json.contains(list) ? json[list].size() : 0, false) {
+    if (json.contains("extras")) mark_numbers(json["extras"], marks_);
+    if (!json.contains("extensions")) return;
     // Extensions of scenes, such as those of avatars, have materials of their own.
-    for (const char* key : {"extensions", "extras"}) {
-      if (json.contains(key)) mark_numbers(json[key], marks_);
+    for (const auto& [name, extension] : json["extensions"].items()) {
+      const bool has_none = std::find(kWithoutTextures.begin(), kWithoutTextures.end(), name) !=
+                            kWithoutTextures.end();
+      if (!has_none) mark_numbers(extension, marks_);
     }
   }
   void mark(const Json& number) {
