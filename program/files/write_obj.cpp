@@ -177,9 +177,10 @@ std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& pat
     if (std::find(kept.begin(), kept.end(), &column) != kept.end()) continue;
     found.push_back("vertex property " + column.name());
   }
-  for (const Column& column : mesh.face_columns) {
-    if (mesh.gltf) break;  // they number what it has
-    found.push_back("face property " + column.name());
+  if (!mesh.gltf) {  // whose properties of faces are the numbers of its meshes and materials
+    for (const Column& column : mesh.face_columns) {
+      found.push_back("face property " + column.name());
+    }
   }
   for (const Table& table : mesh.tables) found.push_back("element " + table.name);
   return found;

@@ -47,7 +47,7 @@ constexpr Index kFewestFaces = 20;
 constexpr Index kContactReduction = 4;
 /// Of the patches of a trial and of a start that there are others for: what these do not mend takes
 /// seconds with wider ones, half a minute where a hundred faces are folded.
-constexpr int kTrialRings = 2;
+constexpr int kNarrowRings = 2;
 
 struct Led {
   NewtonResult newton;  ///< of the energy asked for
@@ -157,7 +157,7 @@ std::vector<Vec2> contact_from_coarser(const DiskMesh& mesh, const std::vector<R
     solve_metric(mesh, rest, minimum->metric, stiffness, *laplacian, anchors, false, uvs, work);
     put_in_place(anchored, carried, uvs);
     RepairOptions mend{.global_fix = false};
-    if (options.is_trial) mend.most_rings = kTrialRings;
+    if (options.is_trial) mend.most_rings = kNarrowRings;
     return repair(mesh, rest, uvs, mend, still).flips_after == 0;
   };
   try {
@@ -250,7 +250,7 @@ std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<Res
     std::vector<Vec2> uvs = carry_boundary(mesh, minimum->coarse, minimum->uvs);
     solve_harmonic(mesh, modified_cotangents(rest, minimum->metric, work), uvs, work);
     const RepairOptions mend{.simple_boundary = simple,
-                             .most_rings = kTrialRings,
+                             .most_rings = kNarrowRings,
                              .global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
     if (repair(mesh, rest, uvs, mend, still).flips_after > 0) continue;
     if (simple && count_crossings(mesh.boundary, uvs).count > 0) continue;
@@ -264,7 +264,7 @@ std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle
                             const ChartOptions& options, const Work& work) {
   std::vector<Vec2> uvs = tutte_embedding(mesh, work);
   RepairOptions mend{.global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
-  if (options.is_trial) mend.most_rings = kTrialRings;
+  if (options.is_trial) mend.most_rings = kNarrowRings;
   if (repair(mesh, rest, uvs, mend, work.part(0, 0)).flips_after == 0) return uvs;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
   return other.empty() ? grid_drawing(mesh) : other;

@@ -82,8 +82,9 @@ void require_version(const Document& document) {
   const std::optional<Item> asset = root.object("asset");
   if (!asset) root.fail("there is no asset: this is not glTF");
   const Json* number = asset->find("version");
-  const bool is_number = number != nullptr && number->is_number();
-  const std::string version = is_number ? number->dump() : asset->text("version");
+  // Files of glTF 1.0 have a number there, too.
+  const bool is_one = number != nullptr && number->is_number() && *number < 2;
+  const std::string version = is_one ? number->dump() : asset->text("version");
   if (version.starts_with("2.")) return;
   root.fail(version.empty()
                 ? "asset.version is missing: this is not glTF 2.0"
