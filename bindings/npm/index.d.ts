@@ -239,8 +239,8 @@ export interface UnwrapOptions extends Running {
   packTurns?: 'any' | 'quarter' | 'none';
   /** Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin. A number from 1 to 64. Default: 1. */
   packBlock?: number;
-  /** Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. A number from 0 to 1,000,000,000. Default: 0. */
-  packSplits?: number;
+  /** Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams. A number from 0 to 1,000,000,000. Default: 10. */
+  fillWeight?: number;
   /** How much more seams may cost for being symmetric where the surface is: 0.5 for half as much again. They lie in the plane that it is mirrored by, or come in pairs, to within a few edges; 0 does not look for one. A number from 0 to 100. Default: 0. */
   symmetricSeams?: number;
   /** How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos t) times an edge there; 0 counts lengths alone. A number from 0 to 100. Default: 0. */
@@ -501,7 +501,7 @@ export interface PackingReport {
   readonly seconds: number;
   /** Of the whole process during the call. */
   readonly cpuSeconds: number;
-  /** Charts that were made two of, with the option pack-splits. */
+  /** Charts that were made two of, with the option fill-weight. */
   readonly splits: number;
   /** Of the seams of those, in roots of the surface's area. */
   readonly splitLength: number;

@@ -53,7 +53,7 @@ export const options = {
   maxPages: ["max-pages", 6],
   packTurns: ["pack-turns", 6],
   packBlock: ["pack-block", 6],
-  packSplits: ["pack-splits", 2],
+  fillWeight: ["fill-weight", 2],
   symmetricSeams: ["symmetric-seams", 2],
   straightSeams: ["straight-seams", 2],
   effort: ["effort", 2],

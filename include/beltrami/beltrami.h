@@ -201,7 +201,7 @@ enum {
   BELTRAMI_OPTION_MAX_PAGES = 34,       /* int: 0: one, or with a density as many as it takes */
   BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_PACK_TURNS_ */
   BELTRAMI_OPTION_PACK_BLOCK = 36,      /* int: charts share no block of so many texels a side */
-  BELTRAMI_OPTION_PACK_SPLITS = 37,     /* float: seam length that more utilisation is worth; 0 */
+  BELTRAMI_OPTION_FILL_WEIGHT = 37,     /* float: seam length that more utilisation is worth; 0 */
   /* Of the search, too. */
   BELTRAMI_OPTION_SYMMETRIC_SEAMS =
       38,                              /* float: share that symmetry may cost more; 0: not sought */
@@ -997,7 +997,7 @@ typedef struct beltrami_packing {
                            * the edges of pages, in the numbers that are delivered */
   double seconds;         /* wall time of the call */
   double cpu_seconds;     /* of the whole process during the call */
-  uint64_t splits;        /* charts that were made two of, with the option pack-splits */
+  uint64_t splits;        /* charts that were made two of, with the option fill-weight */
   double split_length;    /* of the seams of those, in roots of the surface's area */
   double unsplit_utilisation; /* utilisation without splits; the same where there are none */
 } beltrami_packing;

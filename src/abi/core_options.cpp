@@ -85,12 +85,13 @@ constexpr std::int32_t kOfTheSearch[] = {
     BELTRAMI_OPTION_PRESET,          BELTRAMI_OPTION_TARGET_ENERGY,  BELTRAMI_OPTION_TARGET_P99,
     BELTRAMI_OPTION_MAX_CHARTS,      BELTRAMI_OPTION_SEAM_BUDGET,    BELTRAMI_OPTION_CONCAVE_SEAMS,
     BELTRAMI_OPTION_HIDDEN_SEAMS,    BELTRAMI_OPTION_HARD_SEAMS,     BELTRAMI_OPTION_MATERIAL_SEAMS,
-    BELTRAMI_OPTION_SYMMETRIC_SEAMS, BELTRAMI_OPTION_STRAIGHT_SEAMS, BELTRAMI_OPTION_FLAT_SEAMS};
+    BELTRAMI_OPTION_SYMMETRIC_SEAMS, BELTRAMI_OPTION_STRAIGHT_SEAMS, BELTRAMI_OPTION_FLAT_SEAMS,
+    BELTRAMI_OPTION_FILL_WEIGHT};
 
 constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
                                      BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
                                      BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK,
-                                     BELTRAMI_OPTION_PACK_SPLITS,     BELTRAMI_OPTION_SNAP_TEXELS};
+                                     BELTRAMI_OPTION_FILL_WEIGHT,     BELTRAMI_OPTION_SNAP_TEXELS};
 
 /// Pages that are as many as it takes: as many as the option max-pages allows.
 constexpr int kManyPages = 1000;
@@ -194,7 +195,10 @@ AtlasOptions atlas_options(const Options& options) {
     atlas.pack = pack_options(options);
     atlas.pack->snap = options.snap_texels;
   }
-  atlas.split_price = options.pack_splits;
+  // Seams that are given, along hard edges or symmetric are to stay so.
+  const bool is_free = options.cut == BELTRAMI_CUT_AUTO && options.weights.symmetry == 0 &&
+                       options.preset != BELTRAMI_PRESET_HARD_SURFACE;
+  if (is_free && options.texels_per_unit == 0) atlas.fill_weight = options.fill_weight;
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
   atlas.float32 = std::exchange(atlas.chart.float32, false);
@@ -252,7 +256,7 @@ void require_effect_on_atlas(const Options& options, bool pins) {
   }
   if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
     if (options.texels_per_unit > 0) {
-      refuse_if_set(options, BELTRAMI_OPTION_PACK_SPLITS,
+      refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT,
                     written(*find_option(BELTRAMI_OPTION_TEXELS_PER_UNIT), options),
                     "or let charts be as large as they fit");
     }

@@ -503,16 +503,17 @@ const OptionEntry kOptions[] = {
         .calls = BELTRAMI_CALL_UNWRAP | BELTRAMI_CALL_PACK,
     },
     {
-        .key = BELTRAMI_OPTION_PACK_SPLITS,
+        .key = BELTRAMI_OPTION_FILL_WEIGHT,
         .type = BELTRAMI_TYPE_FLOAT,
-        .name = "pack-splits",
-        .summary = "Length of seams, over the root of the area, that all of the utilisation is "
-                   "worth: at 10 a chart is split in two where a tenth of the root of the area "
-                   "lets a hundredth more of the pages be filled; 0 splits none.",
+        .name = "fill-weight",
+        .summary = "Length of seams, in roots of the area, that all of a page is worth to the "
+                   "search for seams: at 10 a chart is split in two where a tenth of the root of "
+                   "the area lets a hundredth more of the pages be filled; 0 splits none. Boxes "
+                   "and the like stay whole, and so do symmetric and painted seams.",
         .minimum = 0,
         .maximum = 1e9,
-        .get = get<&Options::pack_splits>,
-        .set = set<&Options::pack_splits>,
+        .get = get<&Options::fill_weight>,
+        .set = set<&Options::fill_weight>,
         .calls = BELTRAMI_CALL_UNWRAP,
     },
     {

@@ -45,7 +45,7 @@ struct Options {
   int max_pages = 0;
   std::int32_t pack_turns = BELTRAMI_PACK_TURNS_ANY;
   int pack_block = 1;
-  double pack_splits = 0;
+  double fill_weight = 10;
   bool snap_texels = false;
   std::int32_t effort = BELTRAMI_EFFORT_NORMAL;
 };

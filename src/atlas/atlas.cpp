@@ -93,8 +93,9 @@ Index most_charts(const AtlasOptions& options, const Admitted& admitted) {
 
 /// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
 /// their pages.
-double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOptions& options,
-                       const SplitCharts& charts, const Work& work, Atlas& atlas) {
+double pack_onto_pages(const AtlasInput& input, const Admitted& admitted, int exponent,
+                       const AtlasOptions& options, const SplitCharts& charts, const Work& work,
+                       Atlas& atlas) {
   PackOptions pack = *options.pack;
   pack.effort *= options.effort.packing;
   // The frame of a map is nobody's choice: upright its borders are more likely to lie along texels.
@@ -105,7 +106,8 @@ double pack_onto_pages(const Admitted& admitted, int exponent, const AtlasOption
     const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
     pack.texels_per_unit = std::clamp(scaled, kLeastDensity, 1 / kLeastDensity);
   }
-  SplitRules rules{.price = options.split_price,
+  const bool is_painted = !input.hints.vertex_paint.empty() || !input.hints.edge_paint.empty();
+  SplitRules rules{.price = is_painted ? 0 : options.fill_weight,
                    .most_charts = most_charts(options, admitted),
                    .polygons = options.admit.polygons};
   if (options.target) rules.seam_budget = options.target->seam_budget;
@@ -166,8 +168,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
       placed = mapped.maps;
       scales = scale_by_density(input.densities, admitted, mapped.charts, placed);
       if (options.pack && input.pins.empty()) {
-        page_scale = pack_onto_pages(admitted, exponent, options, {mapped.charts, placed, scales},
-                                     inner, atlas);
+        page_scale = pack_onto_pages(input, admitted, exponent, options,
+                                     {mapped.charts, placed, scales}, inner, atlas);
         numbers.exponent = 0;
       } else {
         numbers.exponent = place_maps(mapped.charts, exponent, options.unit_square, options.float32,

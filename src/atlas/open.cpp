@@ -14,9 +14,9 @@
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/open_minimal.h"
+#include "cut/seam_surface.h"
 #include "cut/seam_target.h"
 #include "cut/search_effort.h"
-#include "cut/search_level.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/split_fans.h"
 #include "mesh/surface.h"
@@ -146,16 +146,17 @@ std::vector<std::vector<Index>> inherited_collapses(const Surface& surface,
   return collapsed;
 }
 
-/// What a cut makes of a piece; `level`: on which its seams were found, or null; `maps`: by which
+/// What a cut makes of a piece; `coarse`: on which its seams were found, or null; `maps`: by which
 /// they were judged, or none.
-OpenedSurface charts_of(const SurfacePiece& piece, CutSurface cut, const SearchLevel* level,
+OpenedSurface charts_of(const SurfacePiece& piece, CutSurface cut, const SeamSurface* coarse,
                         std::vector<std::vector<Vec2>> maps) {
   if (!cut.non_disks.empty()) {
     throw Error(Fault::kInternal, "a chart of the cut surface is no disk, please report it");
   }
   OpenedSurface opened;
   std::vector<std::vector<Index>> collapsed;
-  if (level != nullptr) collapsed = inherited_collapses(piece.surface, cut.charts, level->history);
+  if (coarse != nullptr)
+    collapsed = inherited_collapses(piece.surface, cut.charts, coarse->history);
   for (std::size_t c = 0; c < cut.charts.size(); ++c) {
     Chart& chart = cut.charts[c];
     const auto first_virtual =
@@ -324,7 +325,7 @@ OpenedSurface open_searched(const SurfacePiece& piece, const SeamTarget& target,
     found.seams = opened_further(surface, found.seams, piece.locked, work);
     cut = cut_into_charts(surface, found.seams, work);
   }
-  OpenedSurface opened = charts_of(piece, std::move(cut), found.search.level.get(), found.maps);
+  OpenedSurface opened = charts_of(piece, std::move(cut), found.search.coarse.get(), found.maps);
   opened.predicted_energy = found.energy;
   opened.search = std::move(found.search);
   opened.seams = std::move(found.seams);

@@ -16,8 +16,8 @@
 #include "cut/given.h"
 #include "cut/seam_costs.h"
 #include "cut/seam_target.h"
-#include "cut/search.h"
 #include "cut/search_effort.h"
+#include "cut/search_seams.h"
 #include "mesh/chart.h"
 #include "mesh/surface.h"
 

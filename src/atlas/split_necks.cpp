@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "atlas/chart_parts.h"
@@ -35,20 +36,25 @@ constexpr double kLeastSaved = 0.005;
 constexpr double kHope = 1.5;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
-/// Of all charts: smaller ones are not split.
+/// Charts of fewer faces were modelled one face after the other, and stay what is expected of them:
+/// a box stays a cross.
+constexpr Index kLeastFaces = 32;
+/// Of all charts: smaller ones are not split, unless they are longer than such a page.
 constexpr double kLeastPiece = 0.01;
 /// Necks of a chart that are looked at.
 constexpr int kNecks = 3;
-/// Splits that are tried next to one another, in packings of so little effort.
-constexpr Index kTries = 4;
-constexpr double kEffort = 0.05;
+/// Splits that are tried next to one another, in sketches of packings.
+constexpr Index kTries = 3;
+/// Texels a side of the pages of these, and turns of their charts, at most: they are compared with
+/// one another alone.
+constexpr int kSketch = 256, kSketchTurns = 4;
 /// Borders in these are thinned by so many texels.
 constexpr double kThin = 0.25;
 /// Splits that may follow one another without a gain: one may pay only with the next.
 constexpr int kPatience = 2;
 constexpr Index kMostSplits = 64;
-/// Numbers of splits that are packed with all effort before none is made.
-constexpr int kWhole = 3;
+/// Numbers of splits that are packed at the resolution asked for before none is made.
+constexpr std::size_t kWhole = 3;
 
 /// A chart, or a part of one.
 struct Piece {
@@ -92,7 +98,14 @@ class Splitter {
   Splitter(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
            const SplitCharts& whole, const Work& work)
       : admitted_(admitted), rules_(rules), options_(options), work_(work) {
-    options_.effort = kEffort;
+    options_.effort = 0;
+    options_.turns = std::min(options.turns, kSketchTurns);
+    options_.upright = true;
+    if (options.resolution > kSketch) {
+      options_.margin *= static_cast<double>(kSketch) / options.resolution;
+      options_.resolution = kSketch;
+      options_.block = 1;
+    }
     double area = 0, covered = 0;
     for (std::size_t c = 0; c < whole.charts.size(); ++c) {
       pieces_.push_back({whole.charts[c], whole.maps[c], whole.scales[c], {}, {}, {}});
@@ -117,20 +130,29 @@ class Splitter {
   /// The length of seams that is worth a gain of utilisation.
   double worth(double utilisation) const { return rules_.price * root_ * utilisation; }
 
-  /// Finds splits in an order; `utilisation`: of all charts whole. Returns how many of the first
-  /// are best, by what they gain beyond their price, and others that gain, the better first.
-  std::vector<Index> find(double utilisation) {
+  /// Finds splits in an order. Returns how many of the first are best, by what they gain beyond
+  /// their price, and others that gain, the better first.
+  std::vector<Index> find() {
     if (!(covered_ > 0)) return {};
-    utilisation_ = utilisation;
-    density_ = std::sqrt(utilisation * options_.max_pages / covered_) * options_.resolution;
     for (Index p = 0; p < size_of(pieces_); ++p) alive_.push_back(p);
-    parallel_for(work_, size_of(pieces_), 1,
-                 [&](std::int64_t p, std::int64_t) { prepare(pieces_[p]); });
     const double before = sketched(alive_, work_);
+    utilisation_ = before;
+    density_ = std::sqrt(before * options_.max_pages / covered_) * options_.resolution;
+    parallel_for(work_, size_of(pieces_), 1, [&](std::int64_t p, std::int64_t) {
+      find_necks_of(pieces_[p]);
+      thin(pieces_[p].outline, kThin / density_);
+    });
     std::vector<double> net{before};
-    std::size_t best = 0;
-    double cost = 0;
-    while (size_of(splits_) < kMostSplits && splits_.size() < best + kPatience + 1) {
+    double cost = split_overlong();
+    if (!splits_.empty()) {
+      // Some alone are worth nothing: the longest of those that are left sets the density.
+      net.resize(splits_.size(), -kFar);
+      net.push_back(sketched(alive_, work_) - cost / worth(1));
+    }
+    const std::size_t first = splits_.size();
+    std::size_t best = net.back() > before ? first : 0;
+    while (splits_.size() < std::max(best, first) + kPatience + 1 &&
+           size_of(splits_) < kMostSplits) {
       if (work_.out_of_time() || !may_have_more()) break;
       const std::optional<double> found = split_best(cost);
       if (!found) break;
@@ -181,23 +203,36 @@ class Splitter {
     return rules_.most_charts == 0 || size_of(alive_) < rules_.most_charts;
   }
 
-  /// Finds the necks of a piece, and makes its outline one for sketches.
-  void prepare(Piece& piece) const {
+  /// Of one that is well filled.
+  double page_area() const { return covered_ / (kFull * options_.max_pages); }
+
+  void find_necks_of(Piece& piece) const {
     const AtlasChart& chart = piece.chart;
-    const bool may_be_split = !piece.map.error && piece.map.outcome < Outcome::kNotInjective &&
-                              piece.outline.area > kLeastPiece * covered_;
-    if (may_be_split) {
-      const NeckOptions options{.worth = kHope * worth(utilisation_ * utilisation_ / covered_),
-                                .page = covered_ / (kFull * options_.max_pages),
-                                .least_share = kLeastShare + kSpareShare,
-                                .most = kNecks};
-      piece.necks =
-          find_necks(chart.chart.mesh, piece.map.uvs, costs(chart), chart.real_faces, options);
-      std::erase_if(piece.necks,
-                    [&](const Neck& neck) { return neck.saved < kLeastSaved * covered_; });
-      piece.is_used.assign(piece.necks.size(), false);
+    const bool is_sound = !piece.map.error && piece.map.outcome < Outcome::kNotInjective;
+    if (!is_sound || chart.real_faces < kLeastFaces) return;
+    if (piece.outline.area <= kLeastPiece * covered_ && !is_overlong(piece)) return;
+    const NeckOptions options{.worth = kHope * worth(utilisation_ * utilisation_ / covered_),
+                              .page = page_area(),
+                              .least_share = kLeastShare + kSpareShare,
+                              .most = kNecks};
+    piece.necks =
+        find_necks(chart.chart.mesh, piece.map.uvs, costs(chart), chart.real_faces, options);
+    std::erase_if(piece.necks,
+                  [&](const Neck& neck) { return neck.saved < kLeastSaved * covered_; });
+    piece.is_used.assign(piece.necks.size(), false);
+  }
+
+  /// Whether a piece fits on no page that is well filled, however it is turned.
+  bool is_overlong(const Piece& piece) const {
+    const Vec2 along = turn_to_least_box(piece.outline.hull);
+    double least = kFar, most = -kFar;
+    for (const Vec2& p : piece.outline.hull) {
+      const double place = along.x() * p.x() - along.y() * p.y();
+      least = std::min(least, place);
+      most = std::max(most, place);
     }
-    thin(piece.outline, kThin / density_);
+    const double length = most - least;
+    return length > 0 && length * length > 2 * page_area();
   }
 
   /// Per half-edge the length of a seam there: what fills holes costs nothing.
@@ -296,7 +331,7 @@ class Splitter {
         }
       }
       for (Piece& part : trial.parts) {
-        prepare(part);
+        thin(part.outline, kThin / density_);
         outlines.push_back(part.outline);
       }
       trial.utilisation = pack_outlines(std::move(outlines), options_, work_.aside()).utilisation;
@@ -305,16 +340,46 @@ class Splitter {
     });
     Trial& best = *std::max_element(trials.begin(), trials.end(),
                                     [](const Trial& a, const Trial& b) { return a.net < b.net; });
-    const Candidate& candidate = best.candidate;
-    splits_.push_back({candidate.piece,
-                       {size_of(pieces_), size_of(pieces_) + 1},
-                       pieces_[candidate.piece].necks[candidate.neck].cost});
-    std::erase(alive_, candidate.piece);
-    for (Piece& part : best.parts) {
+    split(best.candidate.piece, best.candidate.neck, std::move(best.parts));
+    return best.utilisation;
+  }
+
+  /// Lets a piece give way to two, whose outlines are thin.
+  void split(Index piece, Index neck, std::vector<Piece> parts) {
+    splits_.push_back(
+        {piece, {size_of(pieces_), size_of(pieces_) + 1}, pieces_[piece].necks[neck].cost});
+    std::erase(alive_, piece);
+    parallel_for(work_, size_of(parts), 1,
+                 [&](std::int64_t i, std::int64_t) { find_necks_of(parts[i]); });
+    for (Piece& part : parts) {
       alive_.push_back(size_of(pieces_));
       pieces_.push_back(std::move(part));
     }
-    return best.utilisation;
+  }
+
+  /// Splits what is too long for a page where that promises most, until nothing is: as long as one
+  /// is left it alone sets the density. Returns what that costs.
+  double split_overlong() {
+    double cost = 0;
+    for (std::size_t i = 0; i < alive_.size() && size_of(splits_) < kMostSplits;) {
+      const Index p = alive_[i];
+      std::vector<Piece> parts;
+      Index neck = 0;
+      if (may_have_more() && !work_.out_of_time() && is_overlong(pieces_[p])) {
+        for (; neck < size_of(pieces_[p].necks) && parts.empty(); ++neck) {
+          if (cost + pieces_[p].necks[neck].cost > room_) continue;
+          parts = parts_of(pieces_[p], pieces_[p].necks[neck]);
+        }
+      }
+      if (parts.empty()) {
+        ++i;
+        continue;
+      }
+      for (Piece& part : parts) thin(part.outline, kThin / density_);
+      split(p, neck - 1, std::move(parts));
+      cost += splits_.back().cost;
+    }
+    return cost;
   }
 
   const Admitted& admitted_;
@@ -335,33 +400,51 @@ class Splitter {
 
 Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
                       bool float32, SplitCharts charts, const Work& work) {
-  constexpr double kPacked = 0.3, kFound = 0.7;  // in the progress
-  Splitter splitter(admitted, rules, options, charts, work.part(kPacked, kFound));
-  const std::vector<AtlasChart> whole = charts.charts;
-  const std::vector<double> scales = charts.scales;
-  Pages pages = pack_maps(charts.charts, options, float32, charts.maps, work.part(0, kPacked));
-  const std::vector<MappedChart> packed = charts.maps;
-  const double before = utilisation_of(whole, packed, pages);
-  const double length = seam_length(whole, admitted.input_vertex);
-  pages.split = SplitFigures{before, 0, 0};
-  int tries = 0;
-  for (const Index count : splitter.find(before)) {
-    if (tries++ == kWhole || work.out_of_time()) break;
-    splitter.take(count, charts);
-    const double done = 1 - (1 - kFound) * std::ldexp(1, 1 - tries);
-    Pages split =
-        pack_maps(charts.charts, options, float32, charts.maps, work.part(done, (1 + done) / 2));
-    const double more = seam_length(charts.charts, admitted.input_vertex) - length;
-    const double gained = utilisation_of(charts.charts, charts.maps, split) - before;
-    if (gained > 0 && splitter.worth(gained) >= more) {
-      split.split = SplitFigures{before, count, more / splitter.root()};
-      return split;
+  constexpr double kFound = 0.5, kChosen = 0.7;  // in the progress
+  struct Packed {
+    std::vector<AtlasChart> charts;
+    std::vector<MappedChart> maps;
+    std::vector<double> scales;
+    Pages pages;
+    double utilisation = 0;
+    double length = 0;  // of seams
+  };
+  PackOptions first_fit = options;
+  first_fit.effort = 0;
+  Splitter splitter(admitted, rules, first_fit, charts, work.part(0, kFound));
+  const auto packed = [&](Index count, const PackOptions& how, double from, double to) {
+    Packed made;
+    splitter.take(count, {made.charts, made.maps, made.scales});
+    made.length = seam_length(made.charts, admitted.input_vertex);
+    made.pages = pack_maps(made.charts, how, float32, made.maps, work.part(from, to));
+    made.utilisation = utilisation_of(made.charts, made.maps, made.pages);
+    return made;
+  };
+  Packed best;
+  SplitFigures chosen;
+  const std::vector<Index> counts = splitter.find();
+  if (!counts.empty()) {
+    best = packed(0, first_fit, kFound, kChosen);
+    chosen.before = best.utilisation;
+    for (const Index count : std::span(counts).first(std::min(counts.size(), kWhole))) {
+      if (work.out_of_time()) break;
+      Packed trial = packed(count, first_fit, kFound, kChosen);
+      const double gained = trial.utilisation - best.utilisation;
+      const double longer = trial.length - best.length;
+      if (gained <= 0 || splitter.worth(gained) < longer) continue;
+      chosen.count = count;
+      chosen.length = longer / splitter.root();
+      best = std::move(trial);
+      break;
     }
   }
-  charts.charts = whole;
-  charts.scales = scales;
-  charts.maps = packed;
-  return pages;
+  if (options.effort > 0 || counts.empty()) best = packed(chosen.count, options, kChosen, 1);
+  if (chosen.count == 0) chosen.before = best.utilisation;
+  charts.charts = std::move(best.charts);
+  charts.maps = std::move(best.maps);
+  charts.scales = std::move(best.scales);
+  best.pages.split = chosen;
+  return std::move(best.pages);
 }
 
 }  // namespace beltrami

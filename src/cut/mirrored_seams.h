@@ -7,7 +7,7 @@
 #include "base/work.h"
 #include "cut/edge_marks.h"
 #include "cut/mirror.h"
-#include "cut/search_level.h"
+#include "cut/seam_surface.h"
 #include "mesh/surface.h"
 
 namespace beltrami {

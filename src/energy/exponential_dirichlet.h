@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/bracket.h"
 #include "base/portable_math.h"
 #include "energy/density.h"
 #include "energy/symmetric_dirichlet.h"
@@ -78,7 +79,8 @@ struct ExponentialDirichlet {
   template <class Sum>
   static double best_scale(const Sum& sum) {
     const double start = SymmetricDirichlet::best_scale(sum);
-    double low = -kFarthest, high = kFarthest, at = 0;
+    Bracket log_scale{-kFarthest, kFarthest};
+    double at = 0;
     for (double step = 1; std::abs(step) > kSameScale;) {
       const double scale = portable::exp(at) * start;
       const auto [slope, curvature] = sum([&](double area, double s1, double s2) {
@@ -90,9 +92,8 @@ struct ExponentialDirichlet {
                                                            2 * g.slope * (rising + falling))};
       });
       if (!std::isfinite(curvature)) return start;
-      (slope > 0 ? high : low) = at;
-      const double newton = at - slope / curvature;
-      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+      log_scale.note(at, slope > 0);
+      const double next = log_scale.inside(at - slope / curvature);
       step = next - at;
       at = next;
     }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/bracket.h"
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "energy/density.h"
@@ -74,16 +75,20 @@ struct SymmetricArap {
         sum([](double area, double s1, double s2) {
           return std::array{area * s1, area * s1 * s1, area / s2, area / (s2 * s2)};
         });
-    double low = -60, high = 60;
-    for (int i = 0; i < 100; ++i) {
-      const double middle = 0.5 * (low + high), s = portable::exp(middle);
+    Bracket log_scale{-kFarthest, kFarthest};
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = log_scale.middle(), s = portable::exp(middle);
       const double slope = s * s1_sq - sum_s1 - inverse_s2_sq / (s * s * s) + inverse_s2 / (s * s);
-      (slope > 0 ? high : low) = middle;
+      log_scale.note(middle, slope > 0);
     }
-    return portable::exp(0.5 * (low + high));
+    return portable::exp(log_scale.middle());
   }
 
  private:
+  /// Of the logarithm of a scale: beyond it doubles end. So often the bracket is halved.
+  static constexpr double kFarthest = 60;
+  static constexpr int kHalvings = 100;
+
   /// Beside the ridge the slope across it falls to 0, a subgradient on it: else every step would
   /// leap over.
   static void smooth_ridge(double share, DensityModel& m) {

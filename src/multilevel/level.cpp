@@ -7,12 +7,12 @@
 #include "exact/certificate.h"
 #include "flatten/carried_target.h"
 #include "flatten/dirichlet.h"
+#include "local/regions.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
 #include "multilevel/anchors.h"
 #include "prolong/derivative.h"
 #include "prolong/interpolation.h"
-#include "repair/regions.h"
 
 namespace beltrami {
 namespace {

@@ -44,42 +44,54 @@
 #include "energy/energy.h"
 #include "energy/symmetric_dirichlet.h"
 #include "flatten/metric.h"
+#include "local/regions.h"
 #include "mesh/boundary.h"
 #include "mesh/disk_mesh.h"
 #include "multilevel/descent.h"
 #include "multilevel/extras.h"
 #include "repair/outliers.h"
-#include "repair/regions.h"
 #include "repair/spikes.h"
 
 namespace beltrami {
 namespace {
 
-constexpr double kTolerance = 3e-4;  // relative decrease: leaves the energy 0.1% too high
+/// Relative decrease of the energy in a step at which L-BFGS ends: it leaves it 0.1% too high.
+constexpr double kTolerance = 3e-4;
+/// Steps of all rounds together.
 constexpr int kMostSteps = 30;
-constexpr double kSpike = 30;       // times the distortion on a coarser mesh
-constexpr double kShortest = 0.01;  // a step that regions follow
-constexpr double kNear = 6;         // times that step: what it would make singular is relaxed
-constexpr int kRings = 8;           // around it
-constexpr double kMuchLeft = 1e-2;  // predicted relative decrease that is then worth Newton steps
+/// Faces with more times the distortion of the coarser mesh are spikes, and relaxed before a step.
+constexpr double kSpike = 30;
+/// A step that regions follow may be so short, of a full one.
+constexpr double kShortest = 0.01;
+/// Regions relax what so many times that step would make singular...
+constexpr double kNear = 6;
+/// ... and so many rings around it.
+constexpr int kRings = 8;
+/// Predicted relative decrease from which on Newton steps of their own are worth their cost.
+constexpr double kMuchLeft = 1e-2;
 constexpr int kNewtonSteps = 10;
-constexpr double kNothingLost = 1.002;     // times the distortion on a coarser mesh
-constexpr double kNewtonTolerance = 1e-3;  // relative decrease
-constexpr double kAsFitted = 2e-3;         // relative decrease up to which a factor is as good
-
-/// With more faces in the way, in a mesh that is large or not, the map is rough: patches would hold
-/// each other up, and regions around the worst of them are relaxed instead.
+/// Relative decrease at which these end.
+constexpr double kNewtonTolerance = 1e-3;
+/// A map with no more times the distortion of the coarser mesh has lost nothing on the way.
+constexpr double kNothingLost = 1.002;
+/// A factor serves until the energy has fallen by so much of itself, the Hessian until it has by
+/// so much.
+constexpr double kAsFitted = 2e-3, kStale = 1e-3;
+/// Faces in the way, as a share of all and as a number, with more of which a map is rough: patches
+/// would hold each other up, and regions around the worst of them are relaxed instead.
 constexpr double kManyOf = 1e-4, kMany = 10;
-constexpr double kMostRelaxed = 1e-2;  // of the faces
-constexpr double kWorthIt = 1e-3;      // predicted relative decrease without which it is not rough
-/// With more of a rough map near to being singular regions follow each step.
+/// Predicted relative decrease without which that is not worth it.
+constexpr double kWorthIt = 1e-3;
+/// Share of the faces that regions are put around at once.
+constexpr double kMostRelaxed = 1e-2;
+/// Share of the faces near to being singular with more of which regions follow each step.
 constexpr double kNearOf = 3e-4;
-/// After so many of these, if the last one gained so much, the Hessian is worth its cost where it
-/// is to be had.
+/// After so many of these steps the Hessian is worth its cost, where it is to be had...
 constexpr int kFirstSteps = 3;
+/// ... if the last one gained so much of the energy.
 constexpr double kFarFromRest = 2e-3;
-constexpr double kStale = 1e-3;  // relative decrease from which on another one is
-/// Of the energy: what is left of it after more is measured, since a difference may be rounding.
+/// Where regions gain more of the energy, what is left of it is measured: a difference may be
+/// rounding.
 constexpr double kMostlyGained = 0.5;
 
 /// What a length of the polish means. Decreases are relative ones of the energy.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bracket.h"
 #include "base/error.h"
 #include "base/types.h"
 #include "pack/greedy.h"
@@ -26,6 +27,13 @@ constexpr double kSteps = 1.6e8;
 /// Room beyond the page in which layouts are made that then are brought to its size.
 constexpr double kStrip = 1.4;
 
+/// What charts with their margins mostly fill of a page.
+constexpr double kFirstShare = 0.75;
+
+/// From a density at which charts do not fit to the next, and from one at which they do, while the
+/// other end is unknown.
+constexpr double kStepDown = 0.8, kStepUp = 1.05;
+
 /// Disks of half the margin fill no more of a plane than this.
 constexpr double kDensestDisks = 0.9069;
 
@@ -37,7 +45,7 @@ constexpr double kDensestDisks = 0.9069;
 }
 
 /// A generator of numbers (Steele, Lea and Flood 2014): the same everywhere.
-class Numbers {
+class RandomNumbers {
  public:
   /// In [0, count).
   std::size_t below(std::size_t count) {
@@ -120,20 +128,20 @@ class OnePage {
   void start() {
     constexpr double kEnough = 0.985;  // of the side
     constexpr int kMostTries = 12;
-    double low = 0, high = 0;
+    constexpr double kSame = 1.01;    // of densities: further tries gain no more
+    constexpr double kBelow = 0.998;  // of the estimate, which is for charts without corners
+    Bracket fitting_density;
     set_density(problem_.density_for(kFirstShare));
     for (int tries = 0;; ++tries) {
       const Layout layout = lay(first_, Rule::kLowest);
       const bool whole = layout.failed == kNone;
       const bool fits = whole && layout.height <= cells_;
       if (fits) keep(layout);
-      (fits ? low : high) = density_;
+      fitting_density.note(density_, !fits);
       if (fits && (layout.height >= kEnough * cells_ || tries >= kMostTries)) return;
-      if (low > 0 && high > 0 && high < 1.01 * low) return;
+      if (fitting_density.is_within(kSame)) return;
       if (tries > kMostStepsDown) refuse_margins(problem_);
-      double next = whole ? 0.998 * fitting(layout) : kStepDown * density_;
-      if (low > 0 && high > 0 && (next <= low || next >= high)) next = 0.5 * (low + high);
-      set_density(next);
+      set_density(fitting_density.inside(whole ? kBelow * fitting(layout) : kStepDown * density_));
     }
   }
 
@@ -141,7 +149,7 @@ class OnePage {
   void improve() {
     const auto budget = static_cast<std::int64_t>(kSteps * problem_.options().effort);
     if (budget <= 0) return;
-    Numbers numbers;
+    RandomNumbers random;
     Rule rule = Rule::kLowest;
     raise_density();
     Plan plan = first_;
@@ -156,7 +164,7 @@ class OnePage {
     for (std::int64_t misses = 0; misses < most_misses; ++misses) {
       if (steps_ >= budget || count < 2 || problem_.work().out_of_time()) return;
       Plan tried = plan;
-      const Rule rule_tried = change(numbers, tried) ? rule : other_of(rule);
+      const Rule rule_tried = change(random, tried) ? rule : other_of(rule);
       const Layout layout = lay(tried, rule_tried, current.side);
       const Cost found = cost(layout);
       if (current < found) continue;
@@ -181,10 +189,12 @@ class OnePage {
 
   /// Takes a chart to another place of the order, changes two, or says how one is turned. Returns
   /// false where the rule is to change instead.
-  bool change(Numbers& numbers, Plan& plan) const {
+  bool change(RandomNumbers& random, Plan& plan) const {
     std::vector<Index>& order = plan.order;
-    const std::size_t from = numbers.below(order.size()), to = numbers.below(order.size());
-    const std::size_t kind = numbers.below(16);
+    const std::size_t from = random.below(order.size()), to = random.below(order.size());
+    // Of sixteen changes one is of the rule, five swap two charts, five take one elsewhere, two
+    // leave the turn of one open, and three say it.
+    const std::size_t kind = random.below(16);
     if (kind == 0) return false;
     if (kind < 6) {
       std::swap(order[from], order[to]);
@@ -196,15 +206,12 @@ class OnePage {
       // Mostly of the first charts, which are large.
       const Index chart = order[std::min(from, to)];
       const auto turns = static_cast<std::size_t>(problem_.turns());
-      plan.turns[chart] = kind < 13 ? kNone : static_cast<int>(numbers.below(turns));
+      plan.turns[chart] = kind < 13 ? kNone : static_cast<int>(random.below(turns));
     }
     return true;
   }
 
   static constexpr std::int64_t kPlansOfFew = 100;
-  /// What charts with their margins mostly fill.
-  static constexpr double kFirstShare = 0.75;
-  static constexpr double kStepDown = 0.8;
 
   const Problem& problem_;
   int cells_;
@@ -224,26 +231,25 @@ Packed pack_on_pages(const Problem& problem) {
   const Page empty(problem.cells(), problem.cells());
   const Plan plan{problem.order(), {}};
   std::vector<Page> spare;
-  double density = problem.density_for(0.75), low = 0, high = 0;
+  double density = problem.density_for(kFirstShare);
+  Bracket fitting_density;
   Packed best;
   for (int step = 0; step < kMostStepsDown; ++step) {
     const Masks masks = problem.masks(density);
     const Layout layout =
         place_in_order(masks, plan, Rule::kLowest, {}, empty, problem.options().max_pages, spare);
     if (layout.failed == kNone) {
-      low = density;
       best = {problem.placements(masks, layout), density};
-    } else {
-      high = density;
     }
-    if (low > 0 && high > 0 && high < kEnough * low) break;
-    if (low == 0) {
-      density *= 0.85;
+    fitting_density.note(density, layout.failed != kNone);
+    if (fitting_density.is_within(kEnough)) break;
+    if (fitting_density.is_closed()) {
+      density = fitting_density.middle();
     } else {
-      density = high == 0 ? 1.05 * density : 0.5 * (low + high);
+      density *= fitting_density.has_low() ? kStepUp : kStepDown;
     }
   }
-  if (low == 0) refuse_margins(problem);
+  if (!fitting_density.has_low()) refuse_margins(problem);
   return best;
 }
 

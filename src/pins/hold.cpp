@@ -15,6 +15,7 @@
 #include "descend/tutte.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
+#include "local/untangle.h"
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
 #include "multilevel/descent.h"
@@ -22,7 +23,6 @@
 #include "pins/pin_field.h"
 #include "pins/similarity.h"
 #include "repair/touching.h"
-#include "repair/untangle.h"
 
 namespace beltrami {
 namespace {

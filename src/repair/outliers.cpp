@@ -11,10 +11,10 @@
 #include "base/parallel.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "local/patch.h"
+#include "local/patch_tries.h"
+#include "local/patch_work.h"
 #include "mesh/face_block.h"
-#include "repair/patch.h"
-#include "repair/patch_tries.h"
-#include "repair/patch_work.h"
 
 namespace beltrami {
 namespace {

@@ -14,15 +14,15 @@
 #include "exact/certificate.h"
 #include "exact/crossings.h"
 #include "exact/orientation.h"
+#include "local/hub_turns.h"
+#include "local/kernel.h"
+#include "local/patch.h"
+#include "local/patch_tries.h"
+#include "local/patch_work.h"
+#include "local/regions.h"
+#include "local/untangle.h"
 #include "mesh/hub.h"
 #include "repair/global_fix.h"
-#include "repair/hub_turns.h"
-#include "repair/kernel.h"
-#include "repair/patch.h"
-#include "repair/patch_tries.h"
-#include "repair/patch_work.h"
-#include "repair/regions.h"
-#include "repair/untangle.h"
 
 namespace beltrami {
 namespace {

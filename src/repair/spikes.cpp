@@ -11,9 +11,9 @@
 #include "base/parallel.h"
 #include "base/sort_unique.h"
 #include "base/types.h"
-#include "descend/vertex_sweep.h"
+#include "local/regions.h"
+#include "local/vertex_sweep.h"
 #include "mesh/face_block.h"
-#include "repair/regions.h"
 
 namespace beltrami {
 namespace {

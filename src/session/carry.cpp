@@ -6,15 +6,17 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/sort_unique.h"
 #include "base/types.h"
 #include "exact/atlas_certificate.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
+#include "local/patch.h"
+#include "local/untangle.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "pins/similarity.h"
 #include "repair/touching.h"
-#include "repair/untangle.h"
 
 namespace beltrami {
 namespace {
@@ -192,40 +194,29 @@ std::vector<Index> faces_around(const DiskMesh& mesh, std::vector<bool> near, in
 /// Unfolds a region around the vertices in which those of faces outside of it stay.
 bool unfold_around(const DiskMesh& mesh, const std::vector<bool>& near, int rings,
                    const std::vector<bool>& held, std::vector<Vec2>& uvs, const Work& work) {
-  const std::vector<Index> region = faces_around(mesh, near, rings);
-  std::vector<bool> inside(mesh.faces.size(), false), fixed(uvs.size(), false);
+  std::vector<Index> region = faces_around(mesh, near, rings);
+  std::vector<bool> inside(mesh.faces.size(), false), stays(uvs.size(), false);
   for (const Index f : region) inside[f] = true;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (inside[f]) continue;
-    for (const Index v : mesh.faces[f]) fixed[v] = true;
+    for (const Index v : mesh.faces[f]) stays[v] = true;
   }
   for (std::size_t v = 0; v < held.size(); ++v) {
-    if (held[v]) fixed[v] = true;
+    if (held[v]) stays[v] = true;
   }
-  if (std::find(fixed.begin(), fixed.end(), true) == fixed.end()) fixed[mesh.boundary[0]] = true;
-  std::vector<Index> local(uvs.size(), kNone), vertices;
-  std::vector<Triangle> faces;
-  std::vector<Vec3> positions;
-  std::vector<Vec2> places;
-  std::vector<bool> stays;
+  std::vector<Index> moving;
   for (const Index f : region) {
-    Triangle face{};
-    for (int k = 0; k < 3; ++k) {
-      const Index v = mesh.faces[f][k];
-      if (local[v] == kNone) {
-        local[v] = size_of(vertices);
-        vertices.push_back(v);
-        positions.push_back(mesh.positions[v]);
-        places.push_back(uvs[v]);
-        stays.push_back(fixed[v]);
-      }
-      face[k] = local[v];
+    for (const Index v : mesh.faces[f]) {
+      if (!stays[v]) moving.push_back(v);
     }
-    faces.push_back(face);
   }
-  const std::vector<RestTriangle> rest = rest_triangles(positions, faces, work);
-  if (!untangle(faces, rest, stays, places, work)) return false;
-  for (std::size_t i = 0; i < vertices.size(); ++i) uvs[vertices[i]] = places[i];
+  sort_unique(moving);
+  Patch patch = make_patch(mesh, {}, uvs, std::move(region), moving);
+  std::vector<Vec3> positions;
+  for (const Index v : patch.mesh_vertices) positions.push_back(mesh.positions[v]);
+  patch.rest = rest_triangles(positions, patch.faces, work);
+  if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, work)) return false;
+  patch.exchange(uvs);
   return true;
 }
 

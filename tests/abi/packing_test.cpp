@@ -185,7 +185,7 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
   EXPECT_EQ(whole.splits, 0u);
   EXPECT_EQ(whole.split_length, 0);
   EXPECT_EQ(whole.unsplit_utilisation, whole.utilisation);
-  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_PACK_SPLITS, 20), BELTRAMI_OK);
+  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_FILL_WEIGHT, 20), BELTRAMI_OK);
   ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
   const beltrami_packing packing = packing_of(context);
   EXPECT_GT(packing.splits, 0u);
@@ -201,7 +201,7 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
     set_option(context, key, value);
     EXPECT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr),
               BELTRAMI_E_INVALID_ARGUMENT);
-    EXPECT_NE(message(context).find("pack-splits=20 has no effect with " + std::string(where)),
+    EXPECT_NE(message(context).find("fill-weight=20 has no effect with " + std::string(where)),
               std::string::npos)
         << message(context);
   };

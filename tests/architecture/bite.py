@@ -20,8 +20,8 @@ BREAKS = [
         "src/base/types.h:1: 'base' may not include",
     ),
     (
-        "layers.py", "src/repair/kernel.h", '#include "flatten/metric.h"',
-        "'repair' may not include 'flatten'",
+        "layers.py", "src/local/kernel.h", '#include "flatten/metric.h"',
+        "'local' may not include 'flatten'",
     ),
     (
         "layers.py", "program/commands/report.cpp", '#include "exact/orientation.h"',

@@ -9,7 +9,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
-#include "cut/search.h"
+#include "cut/search_seams.h"
 #include "energy/measure.h"
 #include "pack/pack.h"
 #include "support/atlases.h"

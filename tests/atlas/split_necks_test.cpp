@@ -34,7 +34,7 @@ using meshes::TriangleList;
 AtlasOptions priced(double price, int resolution = 256) {
   AtlasOptions options;
   options.pack.emplace().resolution = resolution;
-  options.split_price = price;
+  options.fill_weight = price;
   return options;
 }
 
@@ -144,7 +144,7 @@ TEST(SplitNecks, CutsThroughHolesForTheEdgesBeside) {
   options.fill_limit = 4;
   const Atlas whole = unwrapped(mesh, options);
   ASSERT_EQ(whole.filled_holes, 1);
-  options.split_price = 8;
+  options.fill_weight = 8;
   const Atlas atlas = unwrapped(mesh, options);
   expect_sound(mesh, atlas);
   expect_connected(atlas);
@@ -222,7 +222,7 @@ TEST(SplitNecks, PaysOnModelsOfPeople) {
     AtlasOptions options = priced(0, 1024);
     options.target.emplace();
     const Atlas whole = unwrapped(mesh, options, 2);
-    options.split_price = 10;
+    options.fill_weight = 10;
     const Atlas atlas = unwrapped(mesh, options, 2);
     expect_connected(atlas);
     expect_worth(atlas, whole, 10);

@@ -11,7 +11,7 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
-#include "cut/search.h"
+#include "cut/search_seams.h"
 #include "cut/unfold.h"
 #include "mesh/surface.h"
 #include "support/atlases.h"

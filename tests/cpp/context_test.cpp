@@ -38,7 +38,7 @@ TEST(CppOptions, EveryOptionHasAKeyOfItsType) {
       kInjectivity, kRefine, kRefineIterations, kTimeLimit, kFloat32, kDelaunay, kMemoryLimit, kCut,
       kHardAngle, kWeld, kWeldDistance, kFillHoles, kShareCopies, kPreset, kTargetEnergy,
       kTargetP99, kMaxCharts, kSeamBudget, kConcaveSeams, kHiddenSeams, kHardSeams, kMaterialSeams,
-      kPack, kResolution, kMargin, kTexelsPerUnit, kMaxPages, kPackTurns, kPackBlock, kPackSplits,
+      kPack, kResolution, kMargin, kTexelsPerUnit, kMaxPages, kPackTurns, kPackBlock, kFillWeight,
       kSymmetricSeams, kStraightSeams, kEffort, kFlatSeams, kStack, kRectify, kSnapTexels);
   const std::vector<OptionInfo> all = options();
   EXPECT_EQ(types.size(), all.size());

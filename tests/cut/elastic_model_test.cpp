@@ -17,7 +17,7 @@
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
-#include "cut/seam_search.h"
+#include "cut/seam_tree.h"
 #include "support/cuts.h"
 #include "support/meshes.h"
 #include "support/solids.h"
@@ -233,7 +233,7 @@ TEST(ElasticModel, RealMapsHaveAboutItsEnergy) {
   const Surface surface = built(mesh);
   EdgeMarks seams = open_minimal(surface, topology_of(surface, Work(1)), {}, Work(1));
   const std::vector<double> cost = edge_lengths(surface, Work(1));
-  SeamSearch search(surface, surface.face_count(), cost, std::move(seams), 0, 0.02, Work(1));
+  SeamTree search(surface, surface.face_count(), cost, std::move(seams), 0, 0.02, Work(1));
   for (const double energy : {2.1, 2.05, 2.02}) {
     search.extend(energy);
     const LocalMaps maps =

@@ -10,7 +10,7 @@
 
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
-#include "cut/seam_search.h"
+#include "cut/seam_tree.h"
 #include "exact/crossings.h"
 #include "mesh/disk_mesh.h"
 #include "support/cuts.h"
@@ -38,8 +38,8 @@ EdgeMarks opened(const Surface& surface) {
 /// Short seams, and some more, by which the model's excess over 2 falls to a fourth.
 std::pair<EdgeMarks, EdgeMarks> growing_seams(const Surface& surface) {
   const std::vector<double> cost = edge_lengths(surface, Work(1));
-  SeamSearch search(surface, surface.face_count(), cost, opened(surface), kAnyLength, kLeastCost,
-                    Work(1));
+  SeamTree search(surface, surface.face_count(), cost, opened(surface), kAnyLength, kLeastCost,
+                  Work(1));
   const EdgeMarks few = search.seams();
   search.extend(2 + 0.25 * (search.energy() - 2));
   return {few, search.seams()};

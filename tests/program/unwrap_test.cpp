@@ -152,7 +152,7 @@ TEST(Unwrap, SplitsChartsAtAPrice) {
   const std::string in = directory.file("in.obj", strip), out = directory.path("out.obj");
   const std::string seams = directory.path("seams"), report = directory.path("r.json");
   const Outcome outcome =
-      run({"unwrap", in, out, "--pack-splits", "20", "--write-seams", seams, "--report", report});
+      run({"unwrap", in, out, "--fill-weight", "20", "--write-seams", seams, "--report", report});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("\nsplits "), std::string::npos) << outcome.out;
   const Json json = Json::parse(directory.read("r.json"));
@@ -168,9 +168,9 @@ TEST(Unwrap, SplitsChartsAtAPrice) {
       run({"unwrap", in, out, "--seams", seams, "--cut", "given", "--report", report}).exit_code,
       0);
   EXPECT_EQ(Json::parse(directory.read("r.json"))["charts"], json["charts"]);
-  const Outcome refused = run({"unwrap", in, out, "--pack-splits", "20", "--pack", "none"});
+  const Outcome refused = run({"unwrap", in, out, "--fill-weight", "20", "--pack", "none"});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("pack-splits=20 has no effect with pack=none"), std::string::npos);
+  EXPECT_NE(refused.err.find("fill-weight=20 has no effect with pack=none"), std::string::npos);
 }
 
 TEST(Unwrap, SaysWhetherTheTargetIsReached) {

@@ -283,7 +283,7 @@ def draw_properties(layout: Any, operator: Any) -> None:
     layout.use_property_decorate = False
     box = layout.box()
     for name in operator.__class__.__annotations__:
-        place = box if name in settings.PAGE_OPTIONS or name == "pack_splits" else layout
+        place = box if name in settings.PAGE_OPTIONS or name == "fill_weight" else layout
         place.prop(operator, name)
 
 

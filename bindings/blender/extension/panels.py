@@ -115,7 +115,7 @@ class IMAGE_PT_beltrami_pages(_Section, bpy.types.Panel):
     """Options of pages."""
 
     bl_label = "Pages"
-    names = (*settings.PAGE_OPTIONS, "pack_splits")
+    names = (*settings.PAGE_OPTIONS, "fill_weight")
 
 
 class IMAGE_PT_beltrami_seams(_Section, bpy.types.Panel):
@@ -127,7 +127,7 @@ class IMAGE_PT_beltrami_seams(_Section, bpy.types.Panel):
         *(
             name
             for name in properties.ALL_OPTIONS
-            if name not in (*settings.PAGE_OPTIONS, "pack_splits", *_HAND_SET)
+            if name not in (*settings.PAGE_OPTIONS, "fill_weight", *_HAND_SET)
         ),
         "scaled",
     )

@@ -65,7 +65,7 @@ def test_splits_charts_at_a_price() -> None:
     assert whole.packing is not None
     assert whole.packing.splits == 0
     assert whole.packing.unsplit_utilisation == whole.utilisation
-    atlas = beltrami.unwrap(vertices, quads, pack_splits=20.0)
+    atlas = beltrami.unwrap(vertices, quads, fill_weight=20.0)
     assert atlas.injective
     assert atlas.packing is not None
     assert atlas.packing.splits == len(atlas.charts) - 1 > 0
@@ -74,8 +74,8 @@ def test_splits_charts_at_a_price() -> None:
     assert 20 * gained >= atlas.packing.split_length > 0
     given = beltrami.unwrap(vertices, quads, cut="given", seams=atlas.seams)
     assert (given.chart_of_face == atlas.chart_of_face).all()
-    with pytest.raises(beltrami.InvalidArgumentError, match="pack-splits=20 has no effect"):
-        beltrami.unwrap(vertices, quads, pack_splits=20.0, pack="none")
+    with pytest.raises(beltrami.InvalidArgumentError, match="fill-weight=20 has no effect"):
+        beltrami.unwrap(vertices, quads, fill_weight=20.0, pack="none")
 
 
 def test_packs_meshes_onto_common_pages() -> None:

@@ -215,7 +215,7 @@ def test_pages_are_shared_by_as_many_as_there_have_to_be():
 
 
 @pytest.mark.parametrize(
-    "options", [{"pack": "none"}, {"pack_splits": 1.0}, {"stack": "copies"}, {"share_copies": True}]
+    "options", [{"pack": "none"}, {"fill_weight": 1.0}, {"stack": "copies"}, {"share_copies": True}]
 )
 def test_options_of_one_atlas_do_not_go_with_a_shared_page(options):
     with pytest.raises(ValueError, match=f"does not go with {next(iter(options))}="):

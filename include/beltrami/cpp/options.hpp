@@ -130,7 +130,7 @@ inline constexpr Real kTexelsPerUnit{BELTRAMI_OPTION_TEXELS_PER_UNIT};
 inline constexpr Integer kMaxPages{BELTRAMI_OPTION_MAX_PAGES};
 inline constexpr Option<PackTurns> kPackTurns{BELTRAMI_OPTION_PACK_TURNS};
 inline constexpr Integer kPackBlock{BELTRAMI_OPTION_PACK_BLOCK};
-inline constexpr Real kPackSplits{BELTRAMI_OPTION_PACK_SPLITS};
+inline constexpr Real kFillWeight{BELTRAMI_OPTION_FILL_WEIGHT};
 inline constexpr Real kSymmetricSeams{BELTRAMI_OPTION_SYMMETRIC_SEAMS};
 inline constexpr Real kStraightSeams{BELTRAMI_OPTION_STRAIGHT_SEAMS};
 inline constexpr Option<Effort> kEffort{BELTRAMI_OPTION_EFFORT};

@@ -267,9 +267,9 @@ OPTIONS = (
         True, True, False,
     ),
     Option(
-        "pack_splits", "float", 0.0, 0.0, 1000000000.0,
+        "fill_weight", "float", 10.0, 0.0, 1000000000.0,
         (),
-        "Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none.",
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams.",
         True, False, False,
     ),
     Option(

@@ -36,7 +36,7 @@ AUTO_OPTIONS = (
     "fill_holes",
     "weld",
     "stack",
-    "pack_splits",
+    "fill_weight",
     *PAGE_OPTIONS,
 )
 
@@ -50,7 +50,7 @@ SOFT_RANGES = {
     "pack_block": (1, 8),
     "max_charts": (0, 100),
     "fill_holes": (0, 10),
-    "pack_splits": (0, 50),
+    "fill_weight": (0, 50),
     "concave_seams": (0, 2),
     "hidden_seams": (0, 5),
     "hard_seams": (0.1, 2),

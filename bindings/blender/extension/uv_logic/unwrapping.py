@@ -92,7 +92,7 @@ def unwrap(parts: Sequence[Part], request: Request, progress: Progress = silent)
     if alone:
         atlas = _atlas_of(surface, request, progress, packed=True)
         return _outcome(parts, surface, _corner_uvs(atlas), request, atlas.reached_target)
-    if {"stack", "pack_splits"} & request.options.keys():
+    if {"stack", "fill_weight"} & request.options.keys():
         raise RefusedError(
             "stacking and splits need the pages for themselves: select all faces, and unpin UVs"
         )

@@ -84,7 +84,7 @@ namespace Beltrami
         MaxPages = 34,
         PackTurns = 35,
         PackBlock = 36,
-        PackSplits = 37,
+        FillWeight = 37,
         SymmetricSeams = 38,
         StraightSeams = 39,
         Effort = 40,
@@ -720,7 +720,7 @@ namespace Beltrami
         public double Seconds;
         /// <summary>Of the whole process during the call.</summary>
         public double CpuSeconds;
-        /// <summary>Charts that were made two of, with the option pack-splits.</summary>
+        /// <summary>Charts that were made two of, with the option fill-weight.</summary>
         public ulong Splits;
         /// <summary>Of the seams of those, in roots of the surface's area.</summary>
         public double SplitLength;

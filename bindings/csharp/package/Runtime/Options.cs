@@ -331,14 +331,15 @@ namespace Beltrami
             set { SetInt(Option.PackBlock, value); }
         }
 
-        /// <summary>Length of seams, over the root of the area, that all of the utilisation is
-        /// worth: at 10 a chart is split in two where a tenth of the root of the area lets a
-        /// hundredth more of the pages be filled; 0 splits none. A number from 0 to 1,000,000,000.
-        /// Default: 0.0.</summary>
-        public double PackSplits
+        /// <summary>Length of seams, in roots of the area, that all of a page is worth to the
+        /// search for seams: at 10 a chart is split in two where a tenth of the root of the area
+        /// lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay
+        /// whole, and so do symmetric and painted seams. A number from 0 to 1,000,000,000. Default:
+        /// 10.0.</summary>
+        public double FillWeight
         {
-            get { return Get(Option.PackSplits); }
-            set { SetFloat(Option.PackSplits, value); }
+            get { return Get(Option.FillWeight); }
+            set { SetFloat(Option.FillWeight, value); }
         }
 
         /// <summary>How much more seams may cost for being symmetric where the surface is: 0.5 for

@@ -19,7 +19,7 @@ from ._tables import UnwrapOptions
 _OF_CALLS = ("threads", "float32")
 _OF_PAGES = ("resolution", "margin", "texels_per_unit", "max_pages", "pack_turns", "pack_block")
 #: Options that say how the charts of one atlas lie to each other, and what they are without.
-_OF_ONE_ATLAS = {"pack": "pages", "pack_splits": 0, "stack": "none", "share_copies": False}
+_OF_ONE_ATLAS = {"pack": "pages", "fill_weight": 0, "stack": "none", "share_copies": False}
 
 
 def options(given: dict[str, object]) -> tuple[dict[str, object], dict[str, object]]:

@@ -91,7 +91,7 @@ class UnwrapOptions(TypedDict, total=False):
     max_pages: int
     pack_turns: PackTurnsChoice
     pack_block: int
-    pack_splits: float
+    fill_weight: float
     symmetric_seams: float
     straight_seams: float
     effort: EffortChoice
@@ -511,7 +511,7 @@ class PackingReport:
     cpu_seconds : float
         Of the whole process during the call.
     splits : int
-        Charts that were made two of, with the option pack-splits.
+        Charts that were made two of, with the option fill-weight.
     split_length : float
         Of the seams of those, in roots of the surface's area.
     unsplit_utilisation : float

@@ -70,7 +70,7 @@ def unwrap_batch(
     max_pages: int = 0,
     pack_turns: PackTurnsChoice = "any",
     pack_block: int = 1,
-    pack_splits: float = 0.0,
+    fill_weight: float = 10.0,
     symmetric_seams: float = 0.0,
     straight_seams: float = 0.0,
     effort: EffortChoice = "normal",
@@ -252,10 +252,11 @@ def unwrap_batch(
     pack_block : int, default 1
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.
-    pack_splits : float, default 0.0
-        Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
-        chart is split in two where a tenth of the root of the area lets a hundredth more of the
-        pages be filled; 0 splits none. A number from 0 to 1,000,000,000.
+    fill_weight : float, default 10.0
+        Length of seams, in roots of the area, that all of a page is worth to the search for seams:
+        at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
+        the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and
+        painted seams. A number from 0 to 1,000,000,000.
     symmetric_seams : float, default 0.0
         How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
         again. They lie in the plane that it is mirrored by, or come in pairs, to within a few
@@ -351,7 +352,7 @@ def unwrap_batch(
         "max_pages": max_pages,
         "pack_turns": pack_turns,
         "pack_block": pack_block,
-        "pack_splits": pack_splits,
+        "fill_weight": fill_weight,
         "symmetric_seams": symmetric_seams,
         "straight_seams": straight_seams,
         "effort": effort,

@@ -75,7 +75,7 @@ __version__ = _library.version()
 #: What `PackOptions` says, and not a keyword.
 _OF_PAGES = {
     *("pack", "resolution", "margin", "texels_per_unit", "max_pages", "pack_turns", "pack_block"),
-    *("pack_splits", "unit_square", "float32"),
+    *("fill_weight", "unit_square", "float32"),
 }
 
 

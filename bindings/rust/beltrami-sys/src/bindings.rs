@@ -203,7 +203,7 @@ pub const BELTRAMI_OPTION_PACK_TURNS: _bindgen_ty_3 = 35;
 /// int: charts share no block of so many texels a side
 pub const BELTRAMI_OPTION_PACK_BLOCK: _bindgen_ty_3 = 36;
 /// float: seam length that more utilisation is worth; 0
-pub const BELTRAMI_OPTION_PACK_SPLITS: _bindgen_ty_3 = 37;
+pub const BELTRAMI_OPTION_FILL_WEIGHT: _bindgen_ty_3 = 37;
 /// Of the search, too.
 pub const BELTRAMI_OPTION_SYMMETRIC_SEAMS: _bindgen_ty_3 = 38;
 /// float: what turns of seams cost; 0: nothing
@@ -1961,7 +1961,7 @@ pub struct beltrami_packing {
     pub seconds: f64,
     /// of the whole process during the call
     pub cpu_seconds: f64,
-    /// charts that were made two of, with the option pack-splits
+    /// charts that were made two of, with the option fill-weight
     pub splits: u64,
     /// of the seams of those, in roots of the surface's area
     pub split_length: f64,

@@ -48,7 +48,7 @@ pub struct PageSummary {
     /// Processor time of the whole process during the call.
     pub cpu_seconds: f64,
     /// Charts that were made two of, with
-    /// [`UnwrapOptions::pack_splits`](crate::UnwrapOptions::pack_splits).
+    /// [`UnwrapOptions::fill_weight`](crate::UnwrapOptions::fill_weight).
     pub splits: usize,
     /// Length of the seams of those, in roots of the surface's area.
     pub split_length: f64,

@@ -89,7 +89,7 @@ fn charts_are_split_at_a_price() {
     let faces: Vec<[u32; 3]> =
         (0..48).map(|i| if i % 2 == 0 { [i, i + 2, i + 1] } else { [i, i + 1, i + 2] }).collect();
     let surface = Surface::new(&positions, &faces);
-    let mut unwrapper = Unwrapper::with_options(&UnwrapOptions::new().pack_splits(20.0)).unwrap();
+    let mut unwrapper = Unwrapper::with_options(&UnwrapOptions::new().fill_weight(20.0)).unwrap();
     let summary = unwrapper.unwrap(&surface).unwrap().packing().unwrap().summary();
     assert!(summary.splits > 0 && summary.charts == 1 + summary.splits);
     let gained = summary.utilisation - summary.unsplit_utilisation;

@@ -565,16 +565,17 @@ options! {
         "Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin."
         Int(&[]), 1..=64, default 1, calls 6;
 
-    /// Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a
-    /// chart is split in two where a tenth of the root of the area lets a hundredth more of the
-    /// pages be filled; 0 splits none.
+    /// Length of seams, in roots of the area, that all of a page is worth to the search for seams:
+    /// at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
+    /// the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and
+    /// painted seams.
     ///
     /// From 0 to 1000000000.
     ///
-    /// Default: 0.
-    pack_splits(f64) of [UnwrapOptions] = 37 "pack-splits"
-        "Length of seams, over the root of the area, that all of the utilisation is worth: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none."
-        Float(&[]), 0..=1000000000, default 0, calls 2;
+    /// Default: 10.
+    fill_weight(f64) of [UnwrapOptions] = 37 "fill-weight"
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams."
+        Float(&[]), 0..=1000000000, default 10, calls 2;
 
     /// How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
     /// again. They lie in the plane that it is mirrored by, or come in pairs, to within a few

@@ -12,9 +12,9 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "energy/energy.h"
+#include "local/patch.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
-#include "repair/patch.h"
 
 namespace beltrami {
 

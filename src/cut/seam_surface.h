@@ -13,7 +13,7 @@
 namespace beltrami {
 
 /// A surface on which seams are sought.
-struct SearchLevel {
+struct SeamSurface {
   Surface surface;
   Index real_faces = 0;
   EdgeMarks locked;  ///< or none
@@ -26,7 +26,7 @@ struct SearchLevel {
 };
 
 /// Per half-edge what a path along it costs: infinite along locked edges.
-std::vector<double> path_costs(const SearchLevel& level);
+std::vector<double> path_costs(const SeamSurface& coarse);
 
 /// Faces to which a surface is simplified that is to have about `faces`: more where components
 /// would keep too few, all where that is hardly more.
@@ -35,13 +35,13 @@ Index coarse_target(const Surface& fine, const Topology& topology, Index faces);
 /// A simplification of `fine` to the coarse_target of `faces`, or `fine` itself. Faces after
 /// `real_faces` are virtual: edges among them cost little, for no seam will be there. A coarse
 /// surface knows of no locked edges.
-SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
-                          const EdgeMarks& locked, Index faces, const SeamWeights& weights,
-                          const SeamHints& hints, const Work& work);
+SeamSurface make_seam_surface(const Surface& fine, Index real_faces, const Topology& topology,
+                              const EdgeMarks& locked, Index faces, const SeamWeights& weights,
+                              const SeamHints& hints, const Work& work);
 
 /// What seams cost on the finer surface, its shape being judged on the coarse one: as at the coarse
-/// vertices that its own became. Precondition: the level is no copy of it.
-std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, Index real_faces,
+/// vertices that its own became. Precondition: the coarse one is no copy of it.
+std::vector<double> finer_costs(const SeamSurface& coarse, const Surface& fine, Index real_faces,
                                 const SeamWeights& weights, const SeamHints& hints,
                                 const Work& work);
 
@@ -51,9 +51,9 @@ struct AnchoredSeams {
   std::vector<bool> anchors;  ///< per vertex
 };
 
-/// Seams of a level on the finer surface, straightened there by `cost`. Those that were carried to
-/// locked edges and cannot leave them are left out.
-AnchoredSeams carry_to_finer(const SearchLevel& level, const Surface& fine,
+/// Seams of a coarse surface on the finer one, straightened there by `cost`. Those that were
+/// carried to locked edges and cannot leave them are left out.
+AnchoredSeams carry_to_finer(const SeamSurface& coarse, const Surface& fine,
                              std::vector<double> cost, const EdgeMarks& locked,
                              const AnchoredSeams& seams, const Work& work);
 

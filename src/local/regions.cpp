@@ -1,4 +1,4 @@
-#include "repair/regions.h"
+#include "local/regions.h"
 
 #include <algorithm>
 #include <atomic>
@@ -14,10 +14,10 @@
 #include "base/sort_unique.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
+#include "local/patch_work.h"
+#include "local/untangle.h"
 #include "mesh/hub.h"
 #include "mesh/surface.h"
-#include "repair/patch_work.h"
-#include "repair/untangle.h"
 
 namespace beltrami {
 namespace {
@@ -197,54 +197,26 @@ Regions::Regions(const DiskMesh& mesh, const std::vector<Index>& faces, const Re
 
 Patch Regions::patch(Index region, const std::vector<RestTriangle>& rest,
                      const std::vector<Vec2>& uvs) const {
-  const Index first = begins_[region], end = begins_[region + 1];
-  const auto moves = [&](Index v) { return of_[v] >= first && of_[v] < end; };
-  Patch patch;
-  std::vector<Index> rim;  // vertices of the faces that stay
+  const std::vector<Index> moving(vertices_.begin() + begins_[region],
+                                  vertices_.begin() + begins_[region + 1]);
+  const auto moves = [&](Index v) {
+    return of_[v] >= begins_[region] && of_[v] < begins_[region + 1];
+  };
+  std::vector<Index> faces;
   PollSometimes poll;
-  for (Index place = first; place < end; ++place) {
+  for (const Index v : moving) {
     poll();
-    const Index v = vertices_[place];
-    patch.moves_boundary = patch.moves_boundary || mesh_.on_boundary[v];
     mesh_.for_each_outgoing(v, [&](Index h) {
-      const Triangle& corners = mesh_.faces[h / 3];
       // Each face comes with the first of its corners that moves.
-      if (std::any_of(corners.begin(), corners.end(), [&](Index u) { return u < v && moves(u); })) {
-        return;
-      }
-      patch.mesh_faces.push_back(h / 3);
-      for (const Index u : corners) {
-        if (!moves(u)) rim.push_back(u);
+      const Triangle& corners = mesh_.faces[h / 3];
+      if (std::none_of(corners.begin(), corners.end(),
+                       [&](Index u) { return u < v && moves(u); })) {
+        faces.push_back(h / 3);
       }
     });
   }
-  sort_interruptibly(patch.mesh_faces.begin(), patch.mesh_faces.end(), std::less<>());
-  sort_unique(rim);
-  // Merges both; where those that move have come to.
-  std::vector<Index> places(static_cast<std::size_t>(end - first));
-  for (std::size_t i = 0, of_rim = 0; i < places.size() || of_rim < rim.size();) {
-    const bool is_rim =
-        i == places.size() || (of_rim < rim.size() && rim[of_rim] < vertices_[first + i]);
-    if (!is_rim) places[i] = size_of(patch.mesh_vertices);
-    const Index v = is_rim ? rim[of_rim++] : vertices_[first + i++];
-    patch.mesh_vertices.push_back(v);
-    patch.uvs.push_back(uvs[v]);
-    patch.fixed.push_back(is_rim);
-  }
-  const auto local = [&](Index v) {
-    if (moves(v)) return places[of_[v] - first];
-    const auto& all = patch.mesh_vertices;
-    return static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
-  };
-  for (const Index f : patch.mesh_faces) {
-    poll();
-    const Triangle& t = mesh_.faces[f];
-    patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
-    if (!rest.empty()) patch.rest.push_back(rest[f]);
-  }
-  // A region that is the whole mesh would drift.
-  if (rim.empty()) patch.fixed[0] = true;
-  return patch;
+  sort_interruptibly(faces.begin(), faces.end(), std::less<>());
+  return make_patch(mesh_, rest, uvs, std::move(faces), moving);
 }
 
 std::vector<std::optional<Patch>> Regions::treat(const std::vector<RestTriangle>& rest,

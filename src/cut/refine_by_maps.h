@@ -1,4 +1,4 @@
-// Seams of one level: by the elastic model, and corrected by real maps.
+// Seams of a coarse surface: by the elastic model, and corrected by real maps.
 #pragma once
 
 #include <limits>
@@ -8,10 +8,10 @@
 #include "base/work.h"
 #include "cut/local_maps.h"
 #include "cut/mirror.h"
-#include "cut/seam_search.h"
+#include "cut/seam_surface.h"
 #include "cut/seam_target.h"
+#include "cut/seam_tree.h"
 #include "cut/search_effort.h"
-#include "cut/search_level.h"
 
 namespace beltrami {
 
@@ -38,14 +38,15 @@ struct Attempt {
   double promised() const;
 };
 
-/// The search on one level. All that is asked for it does from the seams that it stands at.
-class LevelSearch {
+/// The search on one coarse surface. All that is asked for it does from the seams that it stands
+/// at.
+class SeamRefinement {
  public:
   /// `seams` open the surface into disks. `mirror`: the seams are symmetric to it and to stay so,
-  /// or null. Keeps references to `level`, `target`, `effort` and the mirror.
-  LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-              const SeamTarget& target, const SearchEffort& effort, const Work& work,
-              const Mirror* mirror = nullptr);
+  /// or null. Keeps references to `coarse`, `target`, `effort` and the mirror.
+  SeamRefinement(const SeamSurface& coarse, AnchoredSeams seams, const Start& start,
+                 const SeamTarget& target, const SearchEffort& effort, const Work& work,
+                 const Mirror* mirror = nullptr);
 
   /// By the model alone.
   Attempt sketch();
@@ -83,7 +84,7 @@ class LevelSearch {
   void join_charts(Attempt& best);
   void vary(int rounds, Attempt& best);
 
-  const SearchLevel& level_;
+  const SeamSurface& coarse_;
   const Mirror* mirror_;  ///< or null
   const Start start_;
   const SeamTarget& target_;
@@ -91,7 +92,7 @@ class LevelSearch {
   const Work work_;
   int steps_ = 0;                  ///< that were reported
   std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
-  SeamSearch search_;
+  SeamTree tree_;
   LocalMaps apart_;     ///< judged last, with contact
   double contact_ = 1;  ///< by what its excess was more than without
 };

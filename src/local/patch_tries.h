@@ -8,9 +8,9 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "local/patch.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
-#include "repair/patch.h"
 
 namespace beltrami {
 

@@ -28,6 +28,12 @@ struct Patch {
   void exchange(std::vector<Vec2>& mesh_uvs);
 };
 
+/// The patch of these faces, in which the vertices `moving` may move; both increasing, and every
+/// face of a vertex that may move is among them. `rest` may be empty, and the patch's then is.
+Patch make_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                 const std::vector<Vec2>& uvs, std::vector<Index> faces,
+                 const std::vector<Index>& moving);
+
 /// Cuts out the faces within `rings` vertex rings of `face`; the rings of hubs, vertices with more
 /// than 1000 faces, are left out, and hubs are fixed. `rest` may be empty, and the patch's then is.
 Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,

@@ -1,4 +1,4 @@
-#include "cut/search.h"
+#include "cut/search_seams.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,12 @@
 
 #include "base/parallel.h"
 #include "cut/cut_into_charts.h"
-#include "cut/level_search.h"
 #include "cut/mirror.h"
 #include "cut/mirrored_seams.h"
 #include "cut/open_minimal.h"
+#include "cut/refine_by_maps.h"
 #include "cut/seam_costs.h"
-#include "cut/search_level.h"
+#include "cut/seam_surface.h"
 #include "cut/straighten.h"
 #include "mesh/disk_mesh.h"
 
@@ -34,15 +34,15 @@ constexpr Index kLeastRounds = 2, kMostRounds = 40;
 constexpr double kMirrorTolerance = 0.01;
 /// Straightening that gains more than the rest moves seams from where they are needed.
 constexpr double kStraight = 0.95;
-// Shares of the progress: where a coarser level is made; of the search on it where sketches begin
+// Shares of the progress: where a coarse surface is made; of the search on it where sketches begin
 // and end; where that search ends if what it finds is improved; and where all of it ends.
 constexpr double kCoarser = 0.1, kSketching = 0.05, kSketched = 0.4, kSearched = 0.35,
                  kFound = 0.94;
 
 /// A cut graph that is as short as is easily had.
-AnchoredSeams opened(const SearchLevel& level, const Work& work) {
-  const Surface& surface = level.surface;
-  return {open_minimal(surface, topology_of(surface, work), level.locked, work),
+AnchoredSeams opened(const SeamSurface& coarse, const Work& work) {
+  const Surface& surface = coarse.surface;
+  return {open_minimal(surface, topology_of(surface, work), coarse.locked, work),
           std::vector<bool>(surface.positions.size(), false)};
 }
 
@@ -72,31 +72,32 @@ Attempt best_of(std::vector<Attempt> made) {
   return best;
 }
 
-/// Where the level has many faces, starts are sketched on one of fewer; `mirror`: whose plane seams
-/// are drawn to, or null. Without seams where the time was up before any were judged.
-Attempt search_level(const SearchLevel& level, const SeamTarget& target, const SearchEffort& effort,
-                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
+/// Where the coarse surface has many faces, starts are sketched on one of fewer; `mirror`: whose
+/// plane seams are drawn to, or null. Without seams where the time was up before any were judged.
+Attempt search_coarse(const SeamSurface& coarse, const SeamTarget& target,
+                      const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
+                      const Work& work) {
   std::vector<Start> starts;
   for (int i = 0; i < effort.starts; ++i) {
     starts.push_back({i % 2 == 0 ? kFewPaths : kManyPaths, i / 2});
   }
-  const Surface& surface = level.surface;
+  const Surface& surface = coarse.surface;
   const Work begin = work.part(0, kSketching);
   const Topology topology = topology_of(surface, begin);
   const bool is_rough =
       coarse_target(surface, topology, effort.rough_faces) == surface.face_count();
-  SearchLevel rough;
+  SeamSurface rough;
   if (!is_rough) {
-    rough = coarser_level(surface, level.real_faces, topology, {}, effort.rough_faces, weights,
-                          level.hints, begin);
+    rough = make_seam_surface(surface, coarse.real_faces, topology, {}, effort.rough_faces, weights,
+                              coarse.hints, begin);
     if (mirror != nullptr) weigh_mirror(rough.surface, *mirror, kAlongMirror, rough.cost, work);
   }
-  const SearchLevel& sketched = is_rough ? level : rough;
+  const SeamSurface& sketched = is_rough ? coarse : rough;
   const AnchoredSeams open = opened(sketched, begin);
   const std::vector<Attempt> sketches =
       attempts(work.part(kSketching, kSketched), starts, [&](const Start& start, const Work& part) {
         if (part.out_of_time()) return Attempt();
-        return LevelSearch(sketched, open, start, target, effort, part).sketch();
+        return SeamRefinement(sketched, open, start, target, effort, part).sketch();
       });
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), 0);
@@ -107,13 +108,13 @@ Attempt search_level(const SearchLevel& level, const SeamTarget& target, const S
   const auto finish = [&](std::size_t i, const Work& part) {
     if (part.out_of_time() || sketches[i].seams.seams.empty()) return Attempt();
     AnchoredSeams carried = is_rough ? sketches[i].seams
-                                     : carry_to_finer(rough, surface, level.cost, level.locked,
+                                     : carry_to_finer(rough, surface, coarse.cost, coarse.locked,
                                                       sketches[i].seams, part.part(0, 0));
     // Coarse seams do not heed locked edges: what gave way may have opened the surface.
-    const bool is_open = is_rough || level.locked.empty() ||
+    const bool is_open = is_rough || coarse.locked.empty() ||
                          cut_into_charts(surface, carried.seams, part.part(0, 0)).non_disks.empty();
-    if (!is_open) carried = opened(level, part.part(0, 0));
-    return LevelSearch(level, std::move(carried), starts[i], target, effort, part).run(is_open);
+    if (!is_open) carried = opened(coarse, part.part(0, 0));
+    return SeamRefinement(coarse, std::move(carried), starts[i], target, effort, part).run(is_open);
   };
   return best_of(attempts(work.part(kSketched, 1), order, finish));
 }
@@ -138,22 +139,23 @@ double length_of(const Surface& surface, const EdgeMarks& marks) {
 /// What half of the seams and its image make, as one that reaches the target, or comes as near to
 /// it as they do; they themselves where that costs more than `most` times as much, by `cost`, or
 /// breaks another bound that they keep. Whether it did not.
-bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTarget& target,
+bool make_symmetric(const SeamSurface& coarse, const Mirror& mirror, const SeamTarget& target,
                     const SearchEffort& effort, const std::vector<double>& cost, double most,
                     const Work& work, Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
   if (!any_of(seams)) return true;
-  const std::vector<double> path_cost = path_costs(level);
+  const std::vector<double> path_cost = path_costs(coarse);
   const std::vector<int> sides = {1, -1};
   Attempt best = best_of(attempts(work, sides, [&](int side, const Work& part) {
     AnchoredSeams half =
-        mirrored_seams(level.surface, mirror, found.seams, side, path_cost, level.locked, part);
-    half.seams = straighten(level.surface, half.seams, level.cost, half.anchors, level.locked,
-                            level.straightness, part);
-    return LevelSearch(level, std::move(half), Start(), target, effort, part, &mirror).run(true);
+        mirrored_seams(coarse.surface, mirror, found.seams, side, path_cost, coarse.locked, part);
+    half.seams = straighten(coarse.surface, half.seams, coarse.cost, half.anchors, coarse.locked,
+                            coarse.straightness, part);
+    return SeamRefinement(coarse, std::move(half), Start(), target, effort, part, &mirror)
+        .run(true);
   }));
   if (best.seams.seams.empty()) return false;
-  const Surface& surface = level.surface;
+  const Surface& surface = coarse.surface;
   if (best.excess > std::max(1.0, found.excess)) return false;
   if (sum_of(surface, best.seams.seams, cost) > most * sum_of(surface, seams, cost)) return false;
   const auto is_possible = [&](const EdgeMarks& marks) {
@@ -172,43 +174,43 @@ bool make_symmetric(const SearchLevel& level, const Mirror& mirror, const SeamTa
   return true;
 }
 
-/// On the level from nothing; `mirror`: whose plane seams are drawn to, or null.
-Attempt search_anew(const SearchLevel& level, const SeamTarget& target, const SearchEffort& effort,
+/// On the coarse surface from nothing; `mirror`: whose plane seams are drawn to, or null.
+Attempt search_anew(const SeamSurface& coarse, const SeamTarget& target, const SearchEffort& effort,
                     const SeamWeights& weights, const Mirror* mirror, const Work& work) {
-  AnchoredSeams open = opened(level, work.part(0, 0));
+  AnchoredSeams open = opened(coarse, work.part(0, 0));
   if (!any_of(open.seams)) {
-    Attempt whole = LevelSearch(level, open, Start(), target, effort, work.aside()).judged();
+    Attempt whole = SeamRefinement(coarse, open, Start(), target, effort, work.aside()).judged();
     if (whole.excess <= 1) return whole;
   }
   const double searched = effort.improves ? kSearched : 1;
-  Attempt found = search_level(level, target, effort, weights, mirror, work.part(0, searched));
+  Attempt found = search_coarse(coarse, target, effort, weights, mirror, work.part(0, searched));
   if (found.seams.seams.empty()) found.seams = std::move(open);
   if (effort.improves) {
     const Index rounds =
-        std::clamp(effort.varied_faces / level.surface.face_count(), kLeastRounds, kMostRounds);
-    LevelSearch(level, found.seams, Start(), target, effort, work.part(searched, 1))
+        std::clamp(effort.varied_faces / coarse.surface.face_count(), kLeastRounds, kMostRounds);
+    SeamRefinement(coarse, found.seams, Start(), target, effort, work.part(searched, 1))
         .improve(effort.varied_faces > 0 ? rounds : 0, found);
   }
   return found;
 }
 
-/// The mirror of a surface, towards whose plane seams are then drawn on the level; null: it has
+/// The mirror of a surface, towards whose plane seams are then drawn; null: it has
 /// none.
-std::shared_ptr<const Mirror> drawn_to_mirror(SearchLevel& level, const Work& work) {
-  std::optional<Mirror> mirror = find_mirror(level.surface, kMirrorTolerance, work);
+std::shared_ptr<const Mirror> drawn_to_mirror(SeamSurface& coarse, const Work& work) {
+  std::optional<Mirror> mirror = find_mirror(coarse.surface, kMirrorTolerance, work);
   if (!mirror) return {};
-  weigh_mirror(level.surface, *mirror, kAlongMirror, level.cost, work);
+  weigh_mirror(coarse.surface, *mirror, kAlongMirror, coarse.cost, work);
   return std::make_shared<const Mirror>(*std::move(mirror));
 }
 
 /// Seams that would lose a bend for which they were made, if they were straightened, are held.
-void hold_bends(const SearchLevel& level, const Work& work, Attempt& found) {
+void hold_bends(const SeamSurface& coarse, const Work& work, Attempt& found) {
   const EdgeMarks straight =
-      straighten(level.surface, found.seams.seams, level.cost, found.seams.anchors, level.locked,
-                 level.straightness, work);
-  if (sum_of(level.surface, straight, level.cost) >= kStraight * found.cost) return;
+      straighten(coarse.surface, found.seams.seams, coarse.cost, found.seams.anchors, coarse.locked,
+                 coarse.straightness, work);
+  if (sum_of(coarse.surface, straight, coarse.cost) >= kStraight * found.cost) return;
   for (Index h = 0; h < size_of(straight); ++h) {
-    if (found.seams.seams[h]) found.seams.anchors[level.surface.origin(h)] = true;
+    if (found.seams.seams[h]) found.seams.anchors[coarse.surface.origin(h)] = true;
   }
 }
 
@@ -220,35 +222,36 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamHints& hints, const BegunSearch& begun, const Work& work) {
   SearchedSeams searched;
   BegunSearch& search = searched.search;
-  search = {begun.level, {}, begun.mirror};
+  search = {begun.coarse, {}, begun.mirror};
   Attempt found;
-  if (begun.level && !begun.seams.seams.empty()) {
-    LevelSearch again(*begun.level, begun.seams, Start(), target, effort,
-                      work.part(kCoarser, kFound), begun.mirror.get());
+  if (begun.coarse && !begun.seams.seams.empty()) {
+    SeamRefinement again(*begun.coarse, begun.seams, Start(), target, effort,
+                         work.part(kCoarser, kFound), begun.mirror.get());
     found = effort.improves ? again.run_calibrated(0) : again.run(true);
     if (found.seams.seams.empty()) found.seams = begun.seams;
   } else {
     std::vector<double> cost;  // before any is drawn to a mirror
-    if (!begun.level || weights.symmetry > 0) {
-      SearchLevel level = coarser_level(surface, real_faces, topology, locked, effort.coarse_faces,
-                                        weights, hints, work.part(0, kCoarser));
-      cost = level.cost;
-      if (weights.symmetry > 0) search.mirror = drawn_to_mirror(level, work);
-      search.level = std::make_shared<const SearchLevel>(std::move(level));
+    if (!begun.coarse || weights.symmetry > 0) {
+      SeamSurface coarse =
+          make_seam_surface(surface, real_faces, topology, locked, effort.coarse_faces, weights,
+                            hints, work.part(0, kCoarser));
+      cost = coarse.cost;
+      if (weights.symmetry > 0) search.mirror = drawn_to_mirror(coarse, work);
+      search.coarse = std::make_shared<const SeamSurface>(std::move(coarse));
     }
-    found = search_anew(*search.level, target, effort, weights, search.mirror.get(),
+    found = search_anew(*search.coarse, target, effort, weights, search.mirror.get(),
                         work.part(kCoarser, kFound));
-    if (search.mirror && !make_symmetric(*search.level, *search.mirror, target, effort, cost,
+    if (search.mirror && !make_symmetric(*search.coarse, *search.mirror, target, effort, cost,
                                          1 + weights.symmetry, work.part(kFound, 0.96), found)) {
       search.mirror.reset();
-      SearchLevel level = *search.level;
-      level.cost = std::move(cost);
-      search.level = std::make_shared<const SearchLevel>(std::move(level));
-      found = search_anew(*search.level, target, effort, weights, nullptr, work.part(0.96, 0.97));
+      SeamSurface coarse = *search.coarse;
+      coarse.cost = std::move(cost);
+      search.coarse = std::make_shared<const SeamSurface>(std::move(coarse));
+      found = search_anew(*search.coarse, target, effort, weights, nullptr, work.part(0.96, 0.97));
     }
   }
   searched.energy = found.energy;
-  const SearchLevel& coarse = *search.level;
+  const SeamSurface& coarse = *search.coarse;
   if (coarse.fine_vertex.empty()) {
     if (any_of(found.seams.seams)) searched.maps = std::move(found.maps);
     searched.seams = std::move(found.seams.seams);
@@ -262,9 +265,10 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       carry_to_finer(coarse, surface, std::move(cost), locked, found.seams, work.part(0.97, 1));
   if (surface.face_count() <= effort.finest_faces && !work.out_of_time() && any_of(carried.seams) &&
       !search.mirror && cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
-    auto whole = std::make_shared<const SearchLevel>(coarser_level(
+    auto whole = std::make_shared<const SeamSurface>(make_seam_surface(
         surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));
-    found = LevelSearch(*whole, carried, Start(), target, effort, work.aside()).run_calibrated(0);
+    found =
+        SeamRefinement(*whole, carried, Start(), target, effort, work.aside()).run_calibrated(0);
     if (found.excess <= 1) {
       search = {std::move(whole), found.seams, {}};
       searched.energy = found.energy;

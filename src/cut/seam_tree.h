@@ -22,7 +22,7 @@ constexpr double kLeastGain = 1e-7;
 
 /// Seams that grow and shrink. What they leave of a surface are the same pieces as at the start:
 /// they grow by trees, and lose branches only.
-class SeamSearch {
+class SeamTree {
  public:
   /// `seams` open the surface into disks; `cost`: per half-edge, both of an edge alike, infinite
   /// where no seam may be; `budget`: seams of more length over the root of the area are not
@@ -30,9 +30,9 @@ class SeamSearch {
   /// for short ones are worth little to the eye; `anchors`: per vertex, or none; `mirror`: what
   /// extends and shrinks does so in mirrored pairs, or null. Keeps references to `surface`, `cost`
   /// and the mirror.
-  SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-             EdgeMarks seams, double budget, double least_cost, const Work& work,
-             std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
+  SeamTree(const Surface& surface, Index real_faces, const std::vector<double>& cost,
+           EdgeMarks seams, double budget, double least_cost, const Work& work,
+           std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. `exactly`: the last one, which reaches it, is the cheapest

@@ -1,4 +1,4 @@
-#include "repair/kernel.h"
+#include "local/kernel.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Seams that grow, shrink and are joined anew, and leave the same disks.
-#include "cut/seam_search.h"
+#include "cut/seam_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -232,7 +232,7 @@ struct Trial {
     return cut.charts.size();
   }
 
-  void expect_sound(const SeamSearch& search, std::size_t pieces) const {
+  void expect_sound(const SeamTree& search, std::size_t pieces) const {
     EXPECT_EQ(charts(search.seams()), pieces);
     const double sum = total(surface, search.seams(), cost);
     EXPECT_NEAR(search.cost(), sum, 1e-9 * (1 + sum));
@@ -247,7 +247,7 @@ struct Trial {
 };
 
 /// A step that is chosen at random, and what it promises.
-void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
+void step(const Trial& trial, SeamTree& search, std::mt19937_64& generator) {
   constexpr double kTargets[] = {2.001, 2.01, 2.05, 2.2, 2.6, 4, 20};
   const double target = kTargets[random_below(generator, 7)];
   const double energy = search.energy(), cost = search.cost();
@@ -289,15 +289,15 @@ void step(const Trial& trial, SeamSearch& search, std::mt19937_64& generator) {
   }
 }
 
-TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
+TEST(SeamTree, KeepsThePiecesWhateverItDoes) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     std::mt19937_64 generator(seed);
     for (const TriangleList& mesh : surfaces()) {
       const Trial trial(mesh, seed % 2 == 0 ? 1.5 : 6, generator);
       const EdgeMarks seams = trial.opened();
       const std::size_t pieces = trial.charts(seams);
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
-                        kLeastCost, Work(1));
+      SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                      kLeastCost, Work(1));
       for (int i = 0; i < 16; ++i) {
         step(trial, search, generator);
         trial.expect_sound(search, pieces);
@@ -307,11 +307,11 @@ TEST(SeamSearch, KeepsThePiecesWhateverItDoes) {
   }
 }
 
-TEST(SeamSearch, RuinsSoManyBranchesAndOthersInOtherRounds) {
+TEST(SeamTree, RuinsSoManyBranchesAndOthersInOtherRounds) {
   std::mt19937_64 generator(13);
   const Trial trial(disks::blob(3), 1, generator);
-  SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                    kAnyLength, kLeastCost, Work(1));
+  SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(), kAnyLength,
+                  kLeastCost, Work(1));
   ASSERT_TRUE(search.extend(2.01));
   const EdgeMarks whole = search.seams();
   std::set<EdgeMarks> left;
@@ -330,12 +330,12 @@ TEST(SeamSearch, RuinsSoManyBranchesAndOthersInOtherRounds) {
   EXPECT_GE(left.size(), 4);
 }
 
-TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
+TEST(SeamTree, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
   std::mt19937_64 generator(5);
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
-    SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      kAnyLength, kLeastCost, Work(1));
+    SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                    kAnyLength, kLeastCost, Work(1));
     const EdgeMarks before = search.seams();
     double excess = search.energy() - 2;
     for (int i = 0; i < 4; ++i) {
@@ -353,12 +353,12 @@ TEST(SeamSearch, ExtendsToAnyEnergyAskedForAndFallsOnTheWay) {
   }
 }
 
-TEST(SeamSearch, AnExactExtensionCostsNoMore) {
+TEST(SeamTree, AnExactExtensionCostsNoMore) {
   std::mt19937_64 generator(12);
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
-    SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      kAnyLength, kLeastCost, Work(1));
+    SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                    kAnyLength, kLeastCost, Work(1));
     for (int i = 0; i < 6; ++i) {
       const EdgeMarks before = search.seams();
       const double cost = search.cost(), target = 2 + 0.9 * (search.energy() - 2);
@@ -373,23 +373,23 @@ TEST(SeamSearch, AnExactExtensionCostsNoMore) {
   }
 }
 
-TEST(SeamSearch, AnExtensionReachedDoesNothing) {
+TEST(SeamTree, AnExtensionReachedDoesNothing) {
   std::mt19937_64 generator(6);
   const Trial trial(disks::blob(3), 1, generator);
-  SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                    kAnyLength, kLeastCost, Work(1));
+  SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(), kAnyLength,
+                  kLeastCost, Work(1));
   ASSERT_TRUE(search.extend(2.1));
   const EdgeMarks seams = search.seams();
   EXPECT_TRUE(search.extend(search.energy()));
   EXPECT_EQ(search.seams(), seams);
 }
 
-TEST(SeamSearch, ShrinksUpToTheEnergyAskedForAndNotBeyond) {
+TEST(SeamTree, ShrinksUpToTheEnergyAskedForAndNotBeyond) {
   std::mt19937_64 generator(7);
   for (const TriangleList& mesh : {disks::blob(3), meshes::torus(12), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 1, generator);
-    SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
-                      kAnyLength, kLeastCost, Work(1));
+    SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, trial.opened(),
+                    kAnyLength, kLeastCost, Work(1));
     const double most = search.energy();
     search.extend(2 + 0.1 * (most - 2));
     const double least = search.energy(), cost = search.cost();
@@ -403,15 +403,15 @@ TEST(SeamSearch, ShrinksUpToTheEnergyAskedForAndNotBeyond) {
   }
 }
 
-TEST(SeamSearch, JoinsPartsAnewWhereThatIsCheaper) {
+TEST(SeamTree, JoinsPartsAnewWhereThatIsCheaper) {
   // Beside the seams it is cheaper.
   std::mt19937_64 generator(8);
   const Trial trial(disks::blob(3), 1, generator);
   const EdgeMarks seams = trial.opened();
   std::vector<double> cost = trial.cost;
   for (Index h = 0; h < size_of(cost); ++h) cost[h] *= seams[h] ? 10 : 1;
-  SeamSearch search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, kLeastCost,
-                    Work(1));
+  SeamTree search(trial.surface, trial.surface.face_count(), cost, seams, kAnyLength, kLeastCost,
+                  Work(1));
   const double before = search.cost();
   search.reconnect();
   EXPECT_LT(search.cost(), 0.5 * before);
@@ -419,7 +419,7 @@ TEST(SeamSearch, JoinsPartsAnewWhereThatIsCheaper) {
   EXPECT_NEAR(search.cost(), total(trial.surface, search.seams(), cost), 1e-9);
 }
 
-TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
+TEST(SeamTree, NeverLeavesAnEdgeAlone) {
   // Seams of two edges, the ends of which are neighbours.
   const Surface surface = built(surfaces().front());
   const std::vector<double> cost(surface.twin.size(), 1);
@@ -431,7 +431,7 @@ TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
     if (a * b == 3) cheap[h] = 0.1;
   }
   for (const std::vector<double>& costs : {cost, cheap}) {
-    SeamSearch search(surface, surface.face_count(), costs, seams, kAnyLength, kLeastCost, Work(1));
+    SeamTree search(surface, surface.face_count(), costs, seams, kAnyLength, kLeastCost, Work(1));
     ASSERT_EQ(search.cost(), 2);
     search.reconnect();
     search.shrink(1000);
@@ -442,15 +442,14 @@ TEST(SeamSearch, NeverLeavesAnEdgeAlone) {
   }
 }
 
-TEST(SeamSearch, JoinsChartsAndKnowsWhatThatCosts) {
+TEST(SeamTree, JoinsChartsAndKnowsWhatThatCosts) {
   std::mt19937_64 generator(11);
   int joined = 0;
   for (const TriangleList& mesh : {meshes::sphere(3), meshes::torus(9), meshes::bumps(12, 12)}) {
     const Trial trial(mesh, 0.5, generator);
     const Surface& surface = trial.surface;
     for (int round = 0; round < 20; ++round) {
-      SeamSearch search(surface, surface.face_count(), trial.cost, trial.opened(), 0, 0.02,
-                        Work(1));
+      SeamTree search(surface, surface.face_count(), trial.cost, trial.opened(), 0, 0.02, Work(1));
       search.extend(2.02);
       EdgeMarks seams = search.seams();
       // A part of the surface is cut out: faces nearer to one place than to another.
@@ -467,7 +466,7 @@ TEST(SeamSearch, JoinsChartsAndKnowsWhatThatCosts) {
       const CutSurface cut = cut_into_charts(surface, seams, Work(1));
       if (!cut.non_disks.empty()) continue;
       search.take(seams);
-      for (const SeamSearch::Joint& joint : search.joints(cut.chart_of_face, 2.05)) {
+      for (const SeamTree::Joint& joint : search.joints(cut.chart_of_face, 2.05)) {
         search.take(seams);
         const double cost = search.cost();
         search.join(joint);
@@ -481,7 +480,7 @@ TEST(SeamSearch, JoinsChartsAndKnowsWhatThatCosts) {
   EXPECT_GT(joined, 100);
 }
 
-TEST(SeamSearch, LockedEdgesStayUncut) {
+TEST(SeamTree, LockedEdgesStayUncut) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     std::mt19937_64 generator(seed);
     for (const TriangleList& mesh : {meshes::torus(9), disks::blob(3), meshes::bumps(10, 10)}) {
@@ -496,8 +495,8 @@ TEST(SeamSearch, LockedEdgesStayUncut) {
         ASSERT_FALSE(locked[h] && seams[h]);
         if (locked[h]) trial.cost[h] = kNever;
       }
-      SeamSearch search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
-                        kLeastCost, Work(1));
+      SeamTree search(trial.surface, trial.surface.face_count(), trial.cost, seams, kAnyLength,
+                      kLeastCost, Work(1));
       search.extend(2 + 0.1 * (search.energy() - 2));
       search.reconnect();
       search.shrink(2 + 2 * (search.energy() - 2));

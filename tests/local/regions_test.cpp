@@ -1,5 +1,5 @@
 // Regions: apart from each other, relaxed and untangled as wholes.
-#include "repair/regions.h"
+#include "local/regions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Seams that are searched for a distortion.
-#include "cut/search.h"
+#include "cut/search_seams.h"
 
 #include <gtest/gtest.h>
 
@@ -226,7 +226,7 @@ TEST(Search, GoesOnFromWhatWasFoundForAnotherTarget) {
   ASSERT_FALSE(found.search.seams.seams.empty());
   for (const double energy : {2.03, 2.08}) {
     const SearchedSeams other = go_on(energy, found.search);
-    EXPECT_EQ(other.search.level, found.search.level);  // not simplified again
+    EXPECT_EQ(other.search.coarse, found.search.coarse);  // not simplified again
     EXPECT_EQ(charts(surface, other.seams), 1);
     EXPECT_LE(other.energy, energy);
     EXPECT_GE(other.energy, 2 + 0.8 * (energy - 2));
@@ -402,7 +402,7 @@ TEST(Search, GoesOnSymmetricallyForAnotherTarget) {
   for (const double energy : {2.03, 2.05}) {
     const SearchedSeams other = go_on(energy, found.search);
     // Of the surface that they were found on, too.
-    charts(other.search.level->surface, other.search.seams.seams);
+    charts(other.search.coarse->surface, other.search.seams.seams);
     charts(surface, other.seams);
     EXPECT_LE(other.energy, energy);
     EXPECT_LT(asymmetry(surface, other.seams, 3), 0.05);

@@ -7,8 +7,8 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "exact/edge_tree.h"
+#include "local/patch.h"
 #include "mesh/disk_mesh.h"
-#include "repair/patch.h"
 
 namespace beltrami {
 

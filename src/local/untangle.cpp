@@ -1,4 +1,4 @@
-#include "repair/untangle.h"
+#include "local/untangle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,16 +10,16 @@
 #include "cut/edge_marks.h"
 #include "cut/mirror.h"
 #include "cut/seam_costs.h"
+#include "cut/seam_surface.h"
 #include "cut/seam_target.h"
 #include "cut/search_effort.h"
-#include "cut/search_level.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
 
 /// What a search leaves to one of the same surface for another target.
 struct BegunSearch {
-  std::shared_ptr<const SearchLevel> level;  ///< on which seams were decided; null: none were
+  std::shared_ptr<const SeamSurface> coarse;  ///< on which seams were decided; null: none were
   AnchoredSeams seams;  ///< what was found there; empty where no coarser one was searched
   std::shared_ptr<const Mirror> mirror;  ///< that the seams are symmetric to; null: none
 };

@@ -11,7 +11,7 @@
 #include "cut/across.h"
 #include "cut/bridges.h"
 #include "cut/seam_paths.h"
-#include "cut/seam_search.h"
+#include "cut/seam_tree.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -24,7 +24,7 @@ constexpr int kReconnections = 4;
 
 /// The seams between vertices that other than two meet at, or that were ends of paths where they
 /// are to end there, each by its half-edges in order; the most costly first.
-std::vector<std::vector<Index>> SeamSearch::arcs(bool ends_at_anchors) const {
+std::vector<std::vector<Index>> SeamTree::arcs(bool ends_at_anchors) const {
   const auto is_node = [&](Index v) {
     return degree_[v] != 2 || (ends_at_anchors && anchored_[v]) || surface_.on_boundary[v];
   };
@@ -56,7 +56,7 @@ std::vector<std::vector<Index>> SeamSearch::arcs(bool ends_at_anchors) const {
 
 /// Calls `reach(vertex)` for the vertices that a seam or border joins to this one.
 template <class Reach>
-void SeamSearch::for_each_joined(Index vertex, const Reach& reach) const {
+void SeamTree::for_each_joined(Index vertex, const Reach& reach) const {
   surface_.for_each_outgoing(vertex, [&](Index h) {
     if (seams_[h] || surface_.twin[h] == kNone) reach(surface_.target(h));
     const Index in = Surface::previous(h);
@@ -65,7 +65,7 @@ void SeamSearch::for_each_joined(Index vertex, const Reach& reach) const {
 }
 
 /// Per vertex, whether seams and borders lead there.
-std::vector<bool> SeamSearch::joined_to(Index vertex) const {
+std::vector<bool> SeamTree::joined_to(Index vertex) const {
   std::vector<bool> joined(degree_.size(), false);
   std::vector<Index> open = {vertex};
   joined[vertex] = true;
@@ -83,7 +83,7 @@ std::vector<bool> SeamSearch::joined_to(Index vertex) const {
 
 /// The one of two vertices to which seams and borders join fewer others, if they do not join the
 /// two: where only few lead from one of them, that is soon known.
-std::optional<Index> SeamSearch::on_smaller_part(Index one, Index other) const {
+std::optional<Index> SeamTree::on_smaller_part(Index one, Index other) const {
   struct Reach {
     std::queue<Index> open;
     std::unordered_set<Index> seen;
@@ -109,7 +109,7 @@ std::optional<Index> SeamSearch::on_smaller_part(Index one, Index other) const {
 }
 
 /// Whether an edge that is no seam joins none and no border: it would part nothing.
-bool SeamSearch::is_alone(Index halfedge) const {
+bool SeamTree::is_alone(Index halfedge) const {
   const auto is_free = [&](Index v) { return degree_[v] == 0 && !surface_.on_boundary[v]; };
   return is_free(surface_.origin(halfedge)) && is_free(surface_.target(halfedge));
 }
@@ -117,7 +117,7 @@ bool SeamSearch::is_alone(Index halfedge) const {
 /// Whether the two parts were joined at less cost, or, with paths `across` annuli, a handle opened.
 /// Where the seams stay joined without it, as they do unless it `may_part` them, the arc goes
 /// around a handle, or between charts and stays.
-bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part) {
+bool SeamTree::reconnect(const std::vector<Index>& arc, PathsAcross* across, bool may_part) {
   double cost = 0;
   for (const Index h : arc) {
     // What was moved before may end here now.
@@ -144,7 +144,7 @@ bool SeamSearch::reconnect(const std::vector<Index>& arc, PathsAcross* across, b
   return is_new;
 }
 
-bool SeamSearch::reconnect_all(bool around_handles) {
+bool SeamTree::reconnect_all(bool around_handles) {
   bool gained = false;
   std::optional<PathsAcross> across;
   if (around_handles) {
@@ -163,13 +163,13 @@ bool SeamSearch::reconnect_all(bool around_handles) {
   return gained;
 }
 
-void SeamSearch::reconnect() {
+void SeamTree::reconnect() {
   for (int round = 0; round < kReconnections && reconnect_all(false); ++round) {
   }
   refresh();
 }
 
-void SeamSearch::reopen() {
+void SeamTree::reopen() {
   for (int round = 0; round < kReconnections && reconnect_all(true); ++round) {
   }
   refresh();

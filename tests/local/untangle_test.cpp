@@ -1,5 +1,5 @@
 // Untangling of a patch as a whole.
-#include "repair/untangle.h"
+#include "local/untangle.h"
 
 #include <gtest/gtest.h>
 

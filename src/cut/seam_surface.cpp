@@ -1,4 +1,4 @@
-#include "cut/search_level.h"
+#include "cut/seam_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -106,11 +106,11 @@ Index coarse_target(const Surface& fine, const Topology& topology, Index faces) 
   return fine.face_count() <= kWorthSimplifying * target ? fine.face_count() : target;
 }
 
-SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology& topology,
-                          const EdgeMarks& locked, Index faces, const SeamWeights& weights,
-                          const SeamHints& hints, const Work& work) {
+SeamSurface make_seam_surface(const Surface& fine, Index real_faces, const Topology& topology,
+                              const EdgeMarks& locked, Index faces, const SeamWeights& weights,
+                              const SeamHints& hints, const Work& work) {
   const Index target = coarse_target(fine, topology, faces);
-  SearchLevel coarse;
+  SeamSurface coarse;
   coarse.straightness = weights.straightness;
   if (target == fine.face_count()) {
     coarse.surface = fine;
@@ -135,14 +135,14 @@ SearchLevel coarser_level(const Surface& fine, Index real_faces, const Topology&
   return coarse;
 }
 
-std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, Index real_faces,
+std::vector<double> finer_costs(const SeamSurface& coarse, const Surface& fine, Index real_faces,
                                 const SeamWeights& weights, const SeamHints& hints,
                                 const Work& work) {
   std::vector<double> factor(fine.positions.size(), 1);
-  for (std::size_t v = 0; v < level.factor.size(); ++v) {
-    factor[level.fine_vertex[v]] = level.factor[v];
+  for (std::size_t v = 0; v < coarse.factor.size(); ++v) {
+    factor[coarse.fine_vertex[v]] = coarse.factor[v];
   }
-  const auto& steps = level.history.steps;
+  const auto& steps = coarse.history.steps;
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     factor[step->vertex] = factor[step->target];
   }
@@ -156,38 +156,38 @@ std::vector<double> finer_costs(const SearchLevel& level, const Surface& fine, I
   return cost;
 }
 
-AnchoredSeams carry_to_finer(const SearchLevel& level, const Surface& fine,
+AnchoredSeams carry_to_finer(const SeamSurface& coarse, const Surface& fine,
                              std::vector<double> cost, const EdgeMarks& locked,
                              const AnchoredSeams& seams, const Work& work) {
   std::vector<std::array<Index, 2>> edges;
-  const Surface& surface = level.surface;
+  const Surface& surface = coarse.surface;
   for (Index h = 0; h < size_of(surface.twin); ++h) {
     if (!seams.seams[h] || surface.edge(h) != h) continue;
-    edges.push_back({level.fine_vertex[surface.origin(h)], level.fine_vertex[surface.target(h)]});
+    edges.push_back({coarse.fine_vertex[surface.origin(h)], coarse.fine_vertex[surface.target(h)]});
   }
   std::vector<bool> anchors(fine.positions.size(), false);
   for (std::size_t v = 0; v < seams.anchors.size(); ++v) {
-    if (seams.anchors[v]) anchors[level.fine_vertex[v]] = true;
+    if (seams.anchors[v]) anchors[coarse.fine_vertex[v]] = true;
   }
   const EdgeMarks marks =
-      marks_of(fine, carry_edges(level.history, edges, fine.on_boundary, anchors));
+      marks_of(fine, carry_edges(coarse.history, edges, fine.on_boundary, anchors));
   if (locked.empty()) {
-    EdgeMarks straight = straighten(fine, marks, cost, anchors, locked, level.straightness, work);
+    EdgeMarks straight = straighten(fine, marks, cost, anchors, locked, coarse.straightness, work);
     return {std::move(straight), std::move(anchors)};
   }
   // The coarse surface does not know of locked edges: seams on them go around, or give way.
   for (std::size_t h = 0; h < locked.size(); ++h) {
     if (locked[h]) cost[h] *= kLockedCost;
   }
-  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, level.straightness, work);
+  EdgeMarks free = straighten(fine, marks, cost, anchors, locked, coarse.straightness, work);
   for (std::size_t h = 0; h < locked.size(); ++h) free[h] = free[h] && !locked[h];
   return {std::move(free), std::move(anchors)};
 }
 
-std::vector<double> path_costs(const SearchLevel& level) {
-  std::vector<double> cost = level.cost;
-  for (std::size_t h = 0; h < level.locked.size(); ++h) {
-    if (level.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
+std::vector<double> path_costs(const SeamSurface& coarse) {
+  std::vector<double> cost = coarse.cost;
+  for (std::size_t h = 0; h < coarse.locked.size(); ++h) {
+    if (coarse.locked[h]) cost[h] = std::numeric_limits<double>::infinity();
   }
   return cost;
 }

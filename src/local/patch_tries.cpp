@@ -1,4 +1,4 @@
-#include "repair/patch_tries.h"
+#include "local/patch_tries.h"
 
 #include <algorithm>
 #include <unordered_set>

@@ -1,4 +1,4 @@
-#include "repair/patch.h"
+#include "local/patch.h"
 
 #include <algorithm>
 #include <functional>
@@ -41,6 +41,12 @@ void merge_into(std::vector<Index>& known, const std::vector<Index>& items) {
   std::inplace_merge(known.begin(), known.begin() + middle, known.end());
 }
 
+std::vector<Index> corners_of(const DiskMesh& mesh, const std::vector<Index>& faces) {
+  return gather(faces, [&](Index f, const auto& take) {
+    for (const Index v : mesh.faces[f]) take(v);
+  });
+}
+
 /// What lies around a face, each list increasing.
 struct Surroundings {
   std::vector<Index> faces;
@@ -53,11 +59,7 @@ Surroundings look_around(const DiskMesh& mesh, Index face, int rings) {
   Surroundings found{{face}, {}, {}};
   std::vector<Index> front{face};
   for (int ring = 0; ring <= rings && !front.empty(); ++ring) {
-    const std::vector<Index> corners = without(gather(front,
-                                                      [&](Index f, const auto& take) {
-                                                        for (const Index v : mesh.faces[f]) take(v);
-                                                      }),
-                                               found.vertices);
+    const std::vector<Index> corners = without(corners_of(mesh, front), found.vertices);
     merge_into(found.vertices, corners);
     if (ring == rings) break;
     std::vector<Index> inner;
@@ -97,40 +99,44 @@ void Patch::exchange(std::vector<Vec2>& mesh_uvs) {
   }
 }
 
-Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                const std::vector<Vec2>& uvs, Index face, int rings) {
+Patch make_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                 const std::vector<Vec2>& uvs, std::vector<Index> faces,
+                 const std::vector<Index>& moving) {
   Patch patch;
-  Surroundings around = look_around(mesh, face, rings);
-  patch.mesh_faces = std::move(around.faces);
-  patch.mesh_vertices = std::move(around.vertices);
-  const auto local = [&](Index v) {
-    const auto& all = patch.mesh_vertices;
-    return static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
-  };
+  patch.mesh_faces = std::move(faces);
+  patch.mesh_vertices = corners_of(mesh, patch.mesh_faces);
+  PollSometimes poll;
   for (const Index f : patch.mesh_faces) {
-    const Triangle& t = mesh.faces[f];
-    patch.faces.push_back({local(t[0]), local(t[1]), local(t[2])});
+    poll();
+    Triangle& corners = patch.faces.emplace_back(mesh.faces[f]);
+    for (Index& v : corners) {
+      const auto& all = patch.mesh_vertices;
+      v = static_cast<Index>(std::lower_bound(all.begin(), all.end(), v) - all.begin());
+    }
     if (!rest.empty()) patch.rest.push_back(rest[f]);
   }
-  patch.fixed.assign(patch.mesh_vertices.size(), false);
-  PollSometimes poll;
-  auto inner = around.inner.begin();
-  for (std::size_t i = 0; i < patch.mesh_vertices.size(); ++i) {
-    poll();
-    const Index v = patch.mesh_vertices[i];
+  auto next = moving.begin();
+  for (const Index v : patch.mesh_vertices) {
+    const bool moves = next != moving.end() && *next == v;
+    if (moves) ++next;
     patch.uvs.push_back(uvs[v]);
-    if (inner != around.inner.end() && *inner == v) {
-      ++inner;
-    } else {
-      patch.fixed[i] = !is_inside(mesh, v, patch.mesh_faces);
-    }
-    patch.moves_boundary = patch.moves_boundary || (!patch.fixed[i] && mesh.on_boundary[v]);
+    patch.fixed.push_back(!moves);
+    patch.moves_boundary = patch.moves_boundary || (moves && mesh.on_boundary[v]);
   }
   // A patch that is the whole mesh would drift.
-  if (std::find(patch.fixed.begin(), patch.fixed.end(), true) == patch.fixed.end()) {
-    patch.fixed[0] = true;
-  }
+  if (moving.size() == patch.mesh_vertices.size()) patch.fixed[0] = true;
   return patch;
+}
+
+Patch cut_patch(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
+                const std::vector<Vec2>& uvs, Index face, int rings) {
+  const Surroundings around = look_around(mesh, face, rings);
+  std::vector<Index> moving = around.inner;
+  for (const Index v : without(around.vertices, around.inner)) {
+    if (is_inside(mesh, v, around.faces)) moving.push_back(v);
+  }
+  std::sort(moving.begin(), moving.end());
+  return make_patch(mesh, rest, uvs, around.faces, moving);
 }
 
 void hold_boundary(const DiskMesh& mesh, Patch& patch) {

@@ -1,4 +1,4 @@
-#include "cut/seam_search.h"
+#include "cut/seam_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,9 +46,9 @@ std::ptrdiff_t halved(std::ptrdiff_t first, const SeamPath& path) {
 
 }  // namespace
 
-SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vector<double>& cost,
-                       EdgeMarks seams, double budget, double least_cost, const Work& work,
-                       std::vector<bool> anchors, const Mirror* mirror)
+SeamTree::SeamTree(const Surface& surface, Index real_faces, const std::vector<double>& cost,
+                   EdgeMarks seams, double budget, double least_cost, const Work& work,
+                   std::vector<bool> anchors, const Mirror* mirror)
     : surface_(surface),
       cost_(cost),
       work_(work),
@@ -62,12 +62,12 @@ SeamSearch::SeamSearch(const Surface& surface, Index real_faces, const std::vect
   take(std::move(seams), std::move(anchors));
 }
 
-void SeamSearch::take(EdgeMarks seams, std::vector<bool> anchors) {
+void SeamTree::take(EdgeMarks seams, std::vector<bool> anchors) {
   anchored_ = std::move(anchors);
   take(std::move(seams));
 }
 
-void SeamSearch::take(EdgeMarks seams) {
+void SeamTree::take(EdgeMarks seams) {
   seams_ = std::move(seams);
   paths_.reset();
   std::fill(degree_.begin(), degree_.end(), 0);
@@ -82,7 +82,7 @@ void SeamSearch::take(EdgeMarks seams) {
   refresh();
 }
 
-void SeamSearch::mark(Index halfedge, bool is) {
+void SeamTree::mark(Index halfedge, bool is) {
   if (!is) paths_.reset();
   seams_[halfedge] = is;
   if (surface_.twin[halfedge] != kNone) seams_[surface_.twin[halfedge]] = is;
@@ -93,7 +93,7 @@ void SeamSearch::mark(Index halfedge, bool is) {
   length_of_seams_ += change * length_of(halfedge);
 }
 
-void SeamSearch::refresh() {
+void SeamTree::refresh() {
   std::vector<bool> pinned(degree_.size());
   for (std::size_t v = 0; v < degree_.size(); ++v) pinned[v] = degree_[v] > 0;
   model_.pin(std::move(pinned));
@@ -101,7 +101,7 @@ void SeamSearch::refresh() {
 
 /// Local extremes of the stress, and of what pinning them would gain, the best for their cost. In a
 /// plate that is clamped at a distance d a point yields in proportion to d^2.
-std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
+std::vector<Index> SeamTree::candidates(const SeamPaths& paths) const {
   const std::vector<double>& stress = model_.stress();
   const auto gain = [&](Index v) {
     const double ratio = stress[v] / (paths.costs()[v] + least_cost_);
@@ -133,20 +133,20 @@ std::vector<Index> SeamSearch::candidates(const SeamPaths& paths) const {
   return apart;
 }
 
-double SeamSearch::length_of(Index halfedge) const {
+double SeamTree::length_of(Index halfedge) const {
   const std::vector<Vec3>& p = surface_.positions;
   return (p[surface_.target(halfedge)] - p[surface_.origin(halfedge)]).norm();
 }
 
 /// Whether the seams stay within their budget with a path.
-bool SeamSearch::affords(const SeamPath& path) const {
+bool SeamTree::affords(const SeamPath& path) const {
   if (budget_ == 0) return true;
   double length = length_of_seams_;
   for (const Index h : path.halfedges) length += length_of(h);
   return length <= budget_;
 }
 
-const SeamPaths& SeamSearch::paths() {
+const SeamPaths& SeamTree::paths() {
   if (paths_) return *paths_;
   std::vector<bool> root(degree_.size());
   for (std::size_t v = 0; v < root.size(); ++v) {
@@ -157,8 +157,8 @@ const SeamPaths& SeamSearch::paths() {
 
 /// The shortest part of a path, from its tip, with which the energy of the model is at most
 /// `target`. Precondition: it is with all of it.
-SeamPath SeamSearch::least_part(const SeamPath& whole, const ModelChange& change,
-                                double target) const {
+SeamPath SeamTree::least_part(const SeamPath& whole, const ModelChange& change,
+                              double target) const {
   std::ptrdiff_t first = 0, beyond = std::ssize(whole.vertices);
   const std::ptrdiff_t count = beyond;
   while (beyond - first > 1) {
@@ -168,7 +168,7 @@ SeamPath SeamSearch::least_part(const SeamPath& whole, const ModelChange& change
   return last_part(whole, first, *paths_);
 }
 
-bool SeamSearch::extend_once(double target, bool exactly) {
+bool SeamTree::extend_once(double target, bool exactly) {
   const SeamPaths& paths = this->paths();
   std::vector<Index> ends = candidates(paths);
   if (ends.size() > kTried) ends.resize(kTried);
@@ -207,7 +207,7 @@ bool SeamSearch::extend_once(double target, bool exactly) {
   return true;
 }
 
-void SeamSearch::add_path(const SeamPath& path) {
+void SeamTree::add_path(const SeamPath& path) {
   for (const Index h : path.halfedges) mark(h, true);
   paths_->add_roots(path.vertices);
   anchored_[path.vertices.front()] = true;
@@ -215,7 +215,7 @@ void SeamSearch::add_path(const SeamPath& path) {
 
 /// The image of a path, from that of its tip to what is a seam there already; straight to the seams
 /// where there is no way beside it.
-void SeamSearch::add_mirrored(const SeamPath& path) {
+void SeamTree::add_mirrored(const SeamPath& path) {
   std::vector<Index> beside;
   for (const Index v : path.vertices) beside.push_back(mirrored(*mirror_, v));
   const Index last = path.halfedges.back(), root = surface_.target(last);
@@ -233,7 +233,7 @@ void SeamSearch::add_mirrored(const SeamPath& path) {
   if (!image.halfedges.empty() && !is_alone) add_path(image);
 }
 
-bool SeamSearch::extend(double target, bool exactly) {
+bool SeamTree::extend(double target, bool exactly) {
   while (model_.energy() > target) {
     poll_interrupt();
     if (work_.out_of_time() || !extend_once(target, exactly)) return false;
@@ -241,7 +241,7 @@ bool SeamSearch::extend(double target, bool exactly) {
   return true;
 }
 
-SeamSearch::Branch SeamSearch::branch_from(Index tip) const {
+SeamTree::Branch SeamTree::branch_from(Index tip) const {
   Branch branch;
   Index v = tip, last = kNone;
   for (;;) {
@@ -260,13 +260,13 @@ SeamSearch::Branch SeamSearch::branch_from(Index tip) const {
   }
 }
 
-void SeamSearch::judge(Branch& branch, double energy_without) const {
+void SeamTree::judge(Branch& branch, double energy_without) const {
   branch.energy = energy_without;
   branch.worth = (branch.energy - model_.energy()) / (branch.cost + least_cost_);
 }
 
 /// A branch and parts of it from its tip, judged.
-std::vector<SeamSearch::Branch> SeamSearch::ends_of(Branch branch) const {
+std::vector<SeamTree::Branch> SeamTree::ends_of(Branch branch) const {
   std::vector<Branch> ends;
   const ModelChange change = model_.without(branch.vertices);
   for (std::ptrdiff_t count = std::ssize(branch.vertices) / 2; count > 0; count /= 2) {
@@ -284,7 +284,7 @@ std::vector<SeamSearch::Branch> SeamSearch::ends_of(Branch branch) const {
 
 /// What a branch is worth hardly falls where others go: one that is still worth less than all the
 /// others were is the least.
-void SeamSearch::shrink(double target) {
+void SeamTree::shrink(double target) {
   const auto is_worth_more = [](const Branch& a, const Branch& b) {
     return std::tuple(a.worth, a.vertices.front(), a.vertices.size()) >
            std::tuple(b.worth, b.vertices.front(), b.vertices.size());
@@ -335,17 +335,17 @@ void SeamSearch::shrink(double target) {
   }
 }
 
-void SeamSearch::remove(const Branch& branch) {
+void SeamTree::remove(const Branch& branch) {
   for (const Index h : branch.halfedges) mark(h, false);
 }
 
-void SeamSearch::put_back(const Branch& branch) {
+void SeamTree::put_back(const Branch& branch) {
   for (const Index h : branch.halfedges) mark(h, true);
   paths_.reset();
 }
 
 /// As much of the branch that it is mirrored to; nothing where that is not to be told.
-SeamSearch::Branch SeamSearch::partner_of(const Branch& branch) const {
+SeamTree::Branch SeamTree::partner_of(const Branch& branch) const {
   if (mirror_ == nullptr) return {};
   const Index image = mirrored(*mirror_, branch.vertices.front());
   Index tip = kNone;
@@ -375,7 +375,7 @@ SeamSearch::Branch SeamSearch::partner_of(const Branch& branch) const {
 
 /// Whether its edges are still seams that hang on their last vertex alone, and can go: an edge that
 /// stays alone would part nothing.
-bool SeamSearch::is_branch(const Branch& branch) const {
+bool SeamTree::is_branch(const Branch& branch) const {
   for (std::size_t i = 0; i < branch.vertices.size(); ++i) {
     if (degree_[branch.vertices[i]] != (i == 0 ? 1 : 2)) return false;
   }
@@ -390,7 +390,7 @@ bool SeamSearch::is_branch(const Branch& branch) const {
 }
 
 /// Puts a branch to where it is worth more at the price of the energy, or nowhere. Whether it went.
-bool SeamSearch::move_branch(Index tip, double price) {
+bool SeamTree::move_branch(Index tip, double price) {
   Branch old = branch_from(tip);
   if (old.halfedges.empty() || !is_branch(old)) return false;
   const double before = model_.energy();
@@ -437,7 +437,7 @@ bool SeamSearch::move_branch(Index tip, double price) {
   return true;
 }
 
-void SeamSearch::exchange(double target, int rounds) {
+void SeamTree::exchange(double target, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     const EdgeMarks before = seams_;
     const std::vector<bool> anchors = anchored_;
@@ -461,7 +461,7 @@ void SeamSearch::exchange(double target, int rounds) {
   }
 }
 
-bool SeamSearch::ruin(int number, int count) {
+bool SeamTree::ruin(int number, int count) {
   std::vector<Index> tips;
   for (Index v = 0; v < surface_.vertex_count(); ++v) {
     if (degree_[v] == 1 && !surface_.on_boundary[v]) tips.push_back(v);
@@ -487,8 +487,8 @@ bool SeamSearch::ruin(int number, int count) {
   return any;
 }
 
-std::vector<SeamSearch::Joint> SeamSearch::joints(const std::vector<Index>& chart,
-                                                  double target) const {
+std::vector<SeamTree::Joint> SeamTree::joints(const std::vector<Index>& chart,
+                                              double target) const {
   const double price = kSeamPrice * cost_of_seams_ / (target - 2);
   std::vector<std::tuple<double, Index, Joint>> found;
   for (const std::vector<Index>& arc : arcs(false)) {
@@ -518,7 +518,7 @@ std::vector<SeamSearch::Joint> SeamSearch::joints(const std::vector<Index>& char
   return joints;
 }
 
-void SeamSearch::join(const Joint& joint) {
+void SeamTree::join(const Joint& joint) {
   for (const Index h : joint.halfedges) mark(h, false);
   refresh();
 }

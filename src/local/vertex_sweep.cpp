@@ -1,4 +1,4 @@
-#include "descend/vertex_sweep.h"
+#include "local/vertex_sweep.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "repair/patch_work.h"
+#include "local/patch_work.h"
 
 #include <algorithm>
 

@@ -1,12 +1,14 @@
-#include "cut/level_search.h"
+#include "cut/refine_by_maps.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "base/bracket.h"
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "cut/cut_into_charts.h"
@@ -22,48 +24,56 @@
 namespace beltrami {
 namespace {
 
-/// First paths go astray by what they cost: times exp(a sin), waves of so many roots of the area in
-/// three directions.
-constexpr double kAstray = 0.25, kWaveLength = 1.0 / 3;
-/// Of a search, about: for its progress.
+/// First paths of a start cost exp(kAstray sin) times as much: another start finds other seams.
+constexpr double kAstray = 0.25;
+/// Of these waves, in roots of the area.
+constexpr double kWaveLength = 1.0 / 3;
+/// Costs go astray in so many ways.
+constexpr int kAstrayStarts = 8;
+/// Steps that a search takes, about: for its progress alone.
 constexpr double kUsualSteps = 8;
-/// Of a budget the coarse seams may spend so much: on the fine surface they are longer.
+/// Share of a budget of length that coarse seams may spend: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
-/// Descents that end sooner may stop on a plateau.
+/// Relative decrease at which maps end that judge: descents that end sooner may stop on a plateau.
 constexpr double kMostTolerance = 1e-3;
-/// Where a map lies on itself on no more of its area, contact mends it: at a cost of no more than
-/// so much of the excess, or the map is parted, too, where it lies on itself on less.
-constexpr double kMostOverlap = 0.03, kLeastOverlap = 0.005, kWorthContact = 0.06;
-/// Maps whose excess is more times the one asked for are of cuts that will grow.
+/// A map that lies on itself on more of its area is parted. Contact mends the rest.
+constexpr double kMostOverlap = 0.03;
+/// Share of the excess asked for that contact may cost. Where it costs more, the map is parted,
+/// too.
+constexpr double kWorthContact = 0.06;
+/// Share of the area that then counts as lying on itself.
+constexpr double kLeastOverlap = 0.005;
+/// Maps with more times the excess asked for are of cuts that will grow: not worth parting yet.
 constexpr double kWorthParting = 1.3;
-/// What is shorter by less is not worth another map.
+/// Relative gain of length below which seams are not worth another map.
 constexpr double kWorthMapping = 1e-3;
-/// Beyond any excess of the model; and what differs by less is one.
-constexpr double kFar = 1e9, kSame = 1.02;
-/// What misses the target comes nearer to it in so many rounds.
+/// Rounds in which what misses the target comes nearer to it.
 constexpr int kMostRounds = 8;
-/// Where the excess is so near to the one asked for, a further round gains nothing; settling goes
-/// on to there.
-constexpr double kNear = 0.98, kFull = 0.997;
-/// The next target of the model aims at so much of the excess asked for.
+/// Shares of the excess asked for: with so much a further round gains nothing...
+constexpr double kNear = 0.98;
+/// ... and settling, which takes smaller steps, goes on to here.
+constexpr double kFull = 0.997;
+/// Share of the excess asked for that the next target of the model aims at.
 constexpr double kAim = 0.99;
-/// By how much the model is corrected in a round.
+/// Factors by which the excess of the model is corrected in a round, the least and the greatest.
 constexpr double kLeastStep = 0.3, kMostStep = 2;
 /// The model's excess is not to be believed below.
 constexpr double kLeastExcess = 1e-4;
-/// By no less of the excess asked for is it told what seams would cost that just reach it.
+/// Excesses of the model that differ by a lesser factor are one.
+constexpr double kSame = 1.02;
+/// Least excess, by the one asked for, from which it is told what seams would cost that just reach
+/// it.
 constexpr double kLeastShare = 1e-3;
-/// An excess so far below the one asked for leaves the model in doubt, or so far above.
+/// Excesses, by the one asked for, outside of which maps say little of where the model is to aim.
 constexpr double kDoubtful = 0.9, kFarAbove = 3;
-/// Seams that promise more when they are brought to the excess asked for have been spoilt on the
-/// way: half a step is tried.
+/// Seams that promise to be longer by this factor have been spoilt on the way to the excess asked
+/// for: half a step is tried.
 constexpr double kSpoilt = 1.003;
-/// The excess at a face counts up to that where the model is taught: a needle says nothing of what
+/// The excess of a face counts up to that where the model is taught: a needle says nothing of what
 /// is around it.
 constexpr double kMostExcess = 10;
-/// Searches vary so much of what they found in a round: branches by two to six, and by the costs of
-/// so many starts.
-constexpr int kLeastRuin = 2, kMostRuin = 6, kAstrayStarts = 8;
+/// Branches that go at once where seams are varied, at least and at most.
+constexpr int kLeastRuin = 2, kMostRuin = 6;
 
 /// Costs for the first paths of a start: smooth, and the same wherever the surface is moved to.
 std::vector<double> costs_astray(const Surface& surface, const std::vector<double>& cost,
@@ -91,6 +101,38 @@ std::vector<double> costs_astray(const Surface& surface, const std::vector<doubl
   return astray;
 }
 
+/// Where the model's excess is to be so that maps just have the one asked for: a bracket between
+/// those with which they had less and more.
+class ModelAim {
+ public:
+  /// Maps of seams with which the model has this excess, where another was aimed at, have so much
+  /// of the excess asked for. An aim between the energies that there are ends at one of them.
+  void note(double aimed, double model_excess, double map_excess) {
+    Bracket& b = bracket_;
+    if (map_excess <= 1) {
+      b.low = std::max({b.low, model_excess, std::min(aimed, b.high)});
+    } else {
+      b.high = std::min({b.high, model_excess, std::max(aimed, b.low)});
+    }
+    const double step =
+        std::clamp(kAim / std::max(map_excess, kLeastExcess), kLeastStep, kMostStep);
+    next_ = is_closed() ? std::sqrt(b.low * b.high) : step * model_excess;
+  }
+
+  /// Whether the next one would be the same.
+  bool is_found() const { return is_closed() && bracket_.is_within(kSame); }
+
+  double next() const { return next_; }
+
+ private:
+  bool is_closed() const {
+    return bracket_.low > 0 && bracket_.low < bracket_.high && bracket_.has_high();
+  }
+
+  Bracket bracket_{.low = 0};
+  double next_ = 0;
+};
+
 }  // namespace
 
 bool Attempt::is_better_than(const Attempt& other) const {
@@ -104,96 +146,96 @@ double Attempt::promised() const {
   return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, kLeastShare)));
 }
 
-LevelSearch::LevelSearch(const SearchLevel& level, AnchoredSeams seams, const Start& start,
-                         const SeamTarget& target, const SearchEffort& effort, const Work& work,
-                         const Mirror* mirror)
-    : level_(level),
+SeamRefinement::SeamRefinement(const SeamSurface& coarse, AnchoredSeams seams, const Start& start,
+                               const SeamTarget& target, const SearchEffort& effort,
+                               const Work& work, const Mirror* mirror)
+    : coarse_(coarse),
       mirror_(mirror),
       start_(start),
       target_(target),
       effort_(effort),
       work_(work),
-      path_cost_(path_costs(level)),
-      search_(level.surface, level.real_faces, path_cost_, std::move(seams.seams),
-              target.seam_budget * kSpent, start.least_cost, work.part(0, 0),
-              std::move(seams.anchors), mirror) {}
+      path_cost_(path_costs(coarse)),
+      tree_(coarse.surface, coarse.real_faces, path_cost_, std::move(seams.seams),
+            target.seam_budget * kSpent, start.least_cost, work.part(0, 0),
+            std::move(seams.anchors), mirror) {}
 
 /// How many steps there will be is not known: the progress nears the end of its share.
-void LevelSearch::report_step() {
+void SeamRefinement::report_step() {
   ++steps_;
   work_.report(steps_ / (steps_ + kUsualSteps));
 }
 
 /// For what is a part of a step, and would take the progress to the end of the share.
-Work LevelSearch::here() const {
+Work SeamRefinement::here() const {
   const double done = steps_ / (steps_ + kUsualSteps);
   return work_.part(done, done);
 }
 
 /// Of the seams, and of their turns where these count.
-double LevelSearch::cost_with_turns() const {
-  if (level_.straightness == 0) return search_.cost();
-  return search_.cost() + cost_of_turns(level_.surface, search_.seams(), level_.cost,
-                                        search_.anchors(), level_.straightness);
+double SeamRefinement::cost_with_turns() const {
+  if (coarse_.straightness == 0) return tree_.cost();
+  return tree_.cost() + cost_of_turns(coarse_.surface, tree_.seams(), coarse_.cost, tree_.anchors(),
+                                      coarse_.straightness);
 }
 
 /// Short and straight seams miss some of what the others ran to: they are taken where they are
 /// shorter with what has to be added to them, exactly so much or what is worth most.
-void LevelSearch::shorten_seams(double model_energy, bool exactly) {
+void SeamRefinement::shorten_seams(double model_energy, bool exactly) {
   // Each side on its own they would not stay alike.
   report_step();
   if (mirror_ != nullptr || work_.out_of_time()) return;
-  const EdgeMarks before = search_.seams();
-  const std::vector<bool> anchors = search_.anchors();
-  const double cost = cost_with_turns(), energy = std::max(model_energy, search_.energy());
-  search_.reconnect();
-  search_.take(straighten(level_.surface, search_.seams(), level_.cost, search_.anchors(),
-                          level_.locked, level_.straightness, work_.aside()));
-  search_.extend(energy, exactly);
-  const bool is_better = cost_with_turns() < cost && search_.energy() <= energy;
-  if (!is_better) search_.take(before, anchors);
+  const EdgeMarks before = tree_.seams();
+  const std::vector<bool> anchors = tree_.anchors();
+  const double cost = cost_with_turns(), energy = std::max(model_energy, tree_.energy());
+  tree_.reconnect();
+  tree_.take(straighten(coarse_.surface, tree_.seams(), coarse_.cost, tree_.anchors(),
+                        coarse_.locked, coarse_.straightness, work_.aside()));
+  tree_.extend(energy, exactly);
+  const bool is_better = cost_with_turns() < cost && tree_.energy() <= energy;
+  if (!is_better) tree_.take(before, anchors);
 }
 
 /// Adds paths that go astray, after the seams were opened again along them where `reopens`. Whether
 /// the energy is reached.
-bool LevelSearch::extend_astray(double model_energy, int number, bool reopens) {
-  std::vector<double> cost = costs_astray(level_.surface, path_cost_, number, work_.aside());
+bool SeamRefinement::extend_astray(double model_energy, int number, bool reopens) {
+  std::vector<double> cost = costs_astray(coarse_.surface, path_cost_, number, work_.aside());
   path_cost_.swap(cost);
-  search_.take(search_.seams());
-  if (reopens) search_.reopen();
-  const bool reaches = search_.extend(model_energy);
+  tree_.take(tree_.seams());
+  if (reopens) tree_.reopen();
+  const bool reaches = tree_.extend(model_energy);
   path_cost_.swap(cost);
-  search_.take(search_.seams());
+  tree_.take(tree_.seams());
   return reaches;
 }
 
-Attempt LevelSearch::sketch() {
+Attempt SeamRefinement::sketch() {
   extend_astray(target_.energy, start_.number, true);
   shorten_seams(target_.energy);
-  search_.exchange(std::max(target_.energy, search_.energy()), effort_.exchanges);
-  search_.reopen();
+  tree_.exchange(std::max(target_.energy, tree_.energy()), effort_.exchanges);
+  tree_.reopen();
   shorten_seams(target_.energy);
   Attempt sketch;
-  sketch.seams = {search_.seams(), search_.anchors()};
-  sketch.energy = search_.energy();
-  sketch.cost = search_.cost();
+  sketch.seams = {tree_.seams(), tree_.anchors()};
+  sketch.energy = tree_.energy();
+  sketch.cost = tree_.cost();
   sketch.excess = (sketch.energy - 2) / (target_.energy - 2);
   return sketch;
 }
 
 /// Of the maps, as descents have it: a relative decrease of the energy.
-double LevelSearch::tolerance() const {
+double SeamRefinement::tolerance() const {
   return std::min(kMostTolerance, effort_.tolerance * (target_.energy - 2));
 }
 
-LocalMaps LevelSearch::map(const LocalMaps* before) const {
-  return map_locally(level_.surface, level_.real_faces, search_.seams(), tolerance(), before,
+LocalMaps SeamRefinement::map(const LocalMaps* before) const {
+  return map_locally(coarse_.surface, coarse_.real_faces, tree_.seams(), tolerance(), before,
                      here());
 }
 
 /// Parts the charts that lie on themselves on more of their area. Whether there was one.
-bool LevelSearch::part_overlaps(const LocalMaps& maps, double tolerance) {
-  EdgeMarks seams = search_.seams();
+bool SeamRefinement::part_overlaps(const LocalMaps& maps, double tolerance) {
+  EdgeMarks seams = tree_.seams();
   bool parted = false;
   Index charts = size_of(maps.uvs);
   for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
@@ -210,31 +252,31 @@ bool LevelSearch::part_overlaps(const LocalMaps& maps, double tolerance) {
     }
     for (Index h = 0; h < size_of(cost); ++h) {
       if (!split.seams[h]) continue;
-      mark_edge(level_.surface, surface_halfedge(h), seams);
+      mark_edge(coarse_.surface, surface_halfedge(h), seams);
       parted = true;
     }
   }
-  if (parted) search_.take(std::move(seams));
+  if (parted) tree_.take(std::move(seams));
   return parted;
 }
 
 /// What was added on one side is added on the other.
-void LevelSearch::mirror_seams() {
+void SeamRefinement::mirror_seams() {
   std::array<AnchoredSeams, 2> mirrored;
   std::array<double, 2> cost = {};
   for (const int i : {0, 1}) {
-    mirrored[i] = mirrored_seams(level_.surface, *mirror_, {search_.seams(), search_.anchors()},
-                                 2 * i - 1, path_cost_, level_.locked, here());
+    mirrored[i] = mirrored_seams(coarse_.surface, *mirror_, {tree_.seams(), tree_.anchors()},
+                                 2 * i - 1, path_cost_, coarse_.locked, here());
     for (Index h = 0; h < size_of(path_cost_); ++h) {
-      if (mirrored[i].seams[h] && level_.surface.edge(h) == h) cost[i] += path_cost_[h];
+      if (mirrored[i].seams[h] && coarse_.surface.edge(h) == h) cost[i] += path_cost_[h];
     }
   }
   AnchoredSeams& more = mirrored[cost[1] > cost[0] ? 1 : 0];
-  search_.take(std::move(more.seams), std::move(more.anchors));
+  tree_.take(std::move(more.seams), std::move(more.anchors));
 }
 
 /// The excess of maps over 2 by that which is asked for, of the mean or of the percentile.
-double LevelSearch::missed_by(const LocalMaps& maps) const {
+double SeamRefinement::missed_by(const LocalMaps& maps) const {
   double most = (maps.energy - 2) / (target_.energy - 2);
   if (target_.p99 > 0) most = std::max(most, (maps.p99 - 2) / (target_.p99 - 2));
   return most;
@@ -242,7 +284,7 @@ double LevelSearch::missed_by(const LocalMaps& maps) const {
 
 /// Maps along the seams that there are, and what they are worth, overlaps parted where they are
 /// near what is asked for. Whether they are.
-bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
+bool SeamRefinement::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
   report_step();
   attempt = Attempt();
   if (work_.out_of_time()) return false;  // maps that are cut short say nothing
@@ -258,18 +300,17 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
     const double free = missed_by(maps);
     if (free > 1 && !is_last) {  // contact can only add to it
       const double guessed = free * contact_;
-      attempt = {
-          {search_.seams(), search_.anchors()}, search_.cost(), maps.energy, guessed, {}, true};
+      attempt = {{tree_.seams(), tree_.anchors()}, tree_.cost(), maps.energy, guessed, {}, true};
       return true;
     }
-    apart = with_contact(maps, level_.real_faces, tolerance(),
+    apart = with_contact(maps, coarse_.real_faces, tolerance(),
                          apart_.uvs.empty() ? nullptr : &apart_, here());
     apart_ = apart;
     contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }
-  attempt = {{search_.seams(), search_.anchors()},
-             search_.cost(),
+  attempt = {{tree_.seams(), tree_.anchors()},
+             tree_.cost(),
              apart.energy,
              missed_by(apart),
              std::move(apart.uvs)};
@@ -278,25 +319,25 @@ bool LevelSearch::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
 
 /// The energy of the model at which maps would have nearly that asked for, if it errs as it does
 /// for the seams that it is at, whose maps have `excess`.
-double LevelSearch::aim(double excess) const {
-  return 2 + (search_.energy() - 2) * kAim / std::clamp(excess, kDoubtful, kFarAbove);
+double SeamRefinement::aim(double excess) const {
+  return 2 + (tree_.energy() - 2) * kAim / std::clamp(excess, kDoubtful, kFarAbove);
 }
 
 /// Brings seams to where maps just have the excess asked for: ends of branches go, or paths are
 /// added. All that is better than `best` on the way takes its place.
-void LevelSearch::settle(Attempt now, LocalMaps& maps, Attempt& best) {
+void SeamRefinement::settle(Attempt now, LocalMaps& maps, Attempt& best) {
   double step = 1;  // of the way
   for (int i = 0; i < effort_.settling && !work_.out_of_time(); ++i) {
     if (now.excess <= 1 && now.excess >= kFull) return;
-    search_.take(now.seams.seams, now.seams.anchors);
+    tree_.take(now.seams.seams, now.seams.anchors);
     const double whole = std::clamp(kFull / now.excess, kLeastStep, kMostStep);
-    const double goal = 2 + (search_.energy() - 2) * (1 + step * (whole - 1));
+    const double goal = 2 + (tree_.energy() - 2) * (1 + step * (whole - 1));
     if (now.excess <= 1) {
-      search_.shrink(goal);
-      if (search_.cost() >= now.cost) return;
+      tree_.shrink(goal);
+      if (tree_.cost() >= now.cost) return;
     } else {
-      search_.extend(goal, true);
-      if (search_.cost() <= now.cost) return;
+      tree_.extend(goal, true);
+      if (tree_.cost() <= now.cost) return;
     }
     Attempt attempt;
     if (!judge(false, maps, attempt)) return;
@@ -310,11 +351,11 @@ void LevelSearch::settle(Attempt now, LocalMaps& maps, Attempt& best) {
 }
 
 /// Teaches the model what maps cost.
-void LevelSearch::calibrate(const LocalMaps& maps) {
-  const Surface& surface = level_.surface;
+void SeamRefinement::calibrate(const LocalMaps& maps) {
+  const Surface& surface = coarse_.surface;
   std::vector<double> excess(surface.positions.size());
   double whole = 0;
-  for (Index f = 0; f < level_.real_faces; ++f) {
+  for (Index f = 0; f < coarse_.real_faces; ++f) {
     const auto [i, j, k] = surface.faces[f];
     const std::vector<Vec3>& p = surface.positions;
     const double area = triangle_area(p[i], p[j], p[k]);
@@ -325,27 +366,27 @@ void LevelSearch::calibrate(const LocalMaps& maps) {
   }
   if (!(whole > 0)) return;
   for (double& e : excess) e /= whole;
-  search_.calibrate(excess);
+  tree_.calibrate(excess);
 }
 
-Attempt LevelSearch::judged() {
+Attempt SeamRefinement::judged() {
   LocalMaps maps;
   Attempt attempt;
   judge(true, maps, attempt);
   return attempt;
 }
 
-Attempt LevelSearch::run(bool is_sketched) {
+Attempt SeamRefinement::run(bool is_sketched) {
   return approach(target_.energy, is_sketched, false, 0);
 }
 
-Attempt LevelSearch::run_calibrated(int calibrations) {
+Attempt SeamRefinement::run_calibrated(int calibrations) {
   LocalMaps maps;
   Attempt found;
   if (!judge(true, maps, found)) return found;
   calibrate(maps);
   const double energy = aim(found.excess);
-  if (calibrations > 0) search_.exchange(std::max(energy, search_.energy()), effort_.exchanges);
+  if (calibrations > 0) tree_.exchange(std::max(energy, tree_.energy()), effort_.exchanges);
   Attempt attempt = approach(energy, true, true, calibrations);
   return attempt.is_better_than(found) ? attempt : found;
 }
@@ -353,28 +394,28 @@ Attempt LevelSearch::run_calibrated(int calibrations) {
 /// From seams with which the model is to have an energy, until maps have the one asked for. The
 /// model is calibrated so often on the way. `is_calibrated`: it was already, and what just misses
 /// the target is worth settling.
-Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_calibrated,
-                              int calibrations) {
+Attempt SeamRefinement::approach(double model_energy, bool is_sketched, bool is_calibrated,
+                                 int calibrations) {
   Attempt best, promising;
   LocalMaps maps;
   std::array<double, 2> last = {-1, -1};  // cost and energy of the model, judged before
-  double excess = kFar;
-  double reached = 0, missed = kFar;  // excesses of the model: the greatest, and the least
+  double excess = std::numeric_limits<double>::infinity();
+  ModelAim aim_of_model;
   for (int round = 0; round < kMostRounds; ++round) {
     const bool is_first = round == 0 && !is_sketched;
-    if (search_.energy() < model_energy) search_.shrink(model_energy);
+    if (tree_.energy() < model_energy) tree_.shrink(model_energy);
     const bool is_correction = round > 0;
     const bool goes_on = is_first ? extend_astray(model_energy, start_.number, true)
-                                  : search_.extend(model_energy, is_correction);
+                                  : tree_.extend(model_energy, is_correction);
     shorten_seams(model_energy, is_correction);
     if (is_first) {
-      search_.exchange(std::max(model_energy, search_.energy()), effort_.exchanges);
+      tree_.exchange(std::max(model_energy, tree_.energy()), effort_.exchanges);
       shorten_seams(model_energy);
     }
     const int most = best.excess <= 1 ? effort_.rounds : kMostRounds;
     const bool ends = round + 1 >= most || work_.out_of_time();
     const bool is_last = !goes_on || ends;
-    const std::array state = {search_.cost(), search_.energy()};
+    const std::array state = {tree_.cost(), tree_.energy()};
     if (state != last) {
       Attempt attempt;
       const bool is_near = judge(is_last, maps, attempt);
@@ -382,33 +423,20 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
       if (is_near && attempt.promised() < promising.promised()) promising = attempt;
       if (is_near && attempt.is_better_than(best)) best = std::move(attempt);
     }
-    last = {search_.cost(), search_.energy()};
+    last = {tree_.cost(), tree_.energy()};
     if (calibrations > 0 && !ends && excess <= kWorthParting) {
       --calibrations;
       calibrate(maps);
-      reached = 0;
-      missed = kFar;
+      aim_of_model = {};
       last = {-1, -1};
       model_energy = aim(excess);
-      search_.exchange(std::max(model_energy, search_.energy()), effort_.exchanges);
+      tree_.exchange(std::max(model_energy, tree_.energy()), effort_.exchanges);
       continue;
     }
     if (ends || (excess <= 1 ? excess >= kNear : is_last)) break;
-    // An aim between the energies that there are ends at one of them.
-    const double aimed = model_energy - 2;
-    const double model_excess = std::max(search_.energy() - 2, kLeastExcess);
-    if (excess <= 1) {
-      reached = std::max({reached, model_excess, std::min(aimed, missed)});
-    } else {
-      missed = std::min({missed, model_excess, std::max(aimed, reached)});
-    }
-    if (reached > 0 && reached < missed && missed < kFar) {
-      if (missed < kSame * reached) break;
-      model_energy = 2 + std::sqrt(reached * missed);
-    } else {
-      const double step = std::clamp(kAim / std::max(excess, kLeastExcess), kLeastStep, kMostStep);
-      model_energy = 2 + model_excess * step;
-    }
+    aim_of_model.note(model_energy - 2, std::max(tree_.energy() - 2, kLeastExcess), excess);
+    if (aim_of_model.is_found()) break;
+    model_energy = 2 + aim_of_model.next();
   }
   if (is_calibrated && promising.promised() < best.cost) settle(std::move(promising), maps, best);
   if (best.excess <= 1) settle(Attempt(best), maps, best);
@@ -417,18 +445,18 @@ Attempt LevelSearch::approach(double model_energy, bool is_sketched, bool is_cal
 
 /// Takes branches that are near one another away and lets others grow, at costs that go astray,
 /// and keeps what is better by its maps (ruin and recreate, Schrimpf et al. 2000).
-void LevelSearch::vary(int rounds, Attempt& best) {
+void SeamRefinement::vary(int rounds, Attempt& best) {
   if (mirror_ != nullptr) return;
   LocalMaps maps;
   for (int round = 1; round <= rounds && best.excess <= 1 && !work_.out_of_time(); ++round) {
-    search_.take(best.seams.seams, best.seams.anchors);
+    tree_.take(best.seams.seams, best.seams.anchors);
     const double energy = aim(best.excess);
     const int count = kLeastRuin + round % (kMostRuin - kLeastRuin + 1);
-    if (!search_.ruin(round, count)) return;
+    if (!tree_.ruin(round, count)) return;
     extend_astray(energy, round % kAstrayStarts, false);
     shorten_seams(energy);
-    if (search_.energy() < energy) search_.shrink(energy);
-    if (search_.cost() >= best.cost) continue;
+    if (tree_.energy() < energy) tree_.shrink(energy);
+    if (tree_.cost() >= best.cost) continue;
     const double promised = best.promised();
     Attempt attempt;
     if (!judge(false, maps, attempt) || attempt.promised() > promised * (1 - kWorthMapping)) {
@@ -439,9 +467,9 @@ void LevelSearch::vary(int rounds, Attempt& best) {
   }
 }
 
-void LevelSearch::improve(int rounds, Attempt& best) {
+void SeamRefinement::improve(int rounds, Attempt& best) {
   if (best.seams.seams.empty()) return;
-  search_.take(best.seams.seams, best.seams.anchors);
+  tree_.take(best.seams.seams, best.seams.anchors);
   Attempt attempt = run_calibrated(1);
   if (attempt.is_better_than(best)) best = std::move(attempt);
   join_charts(best);
@@ -449,24 +477,24 @@ void LevelSearch::improve(int rounds, Attempt& best) {
 }
 
 /// Charts that were parted are joined elsewhere on trial, where that makes it better.
-void LevelSearch::join_charts(Attempt& best) {
+void SeamRefinement::join_charts(Attempt& best) {
   LocalMaps maps;
   std::vector<Index> tried;
   for (int i = 0; i < effort_.joins && best.excess <= 1 && !work_.out_of_time();) {
-    search_.take(best.seams.seams, best.seams.anchors);
-    const CutSurface cut = cut_into_charts(level_.surface, search_.seams(), here());
+    tree_.take(best.seams.seams, best.seams.anchors);
+    const CutSurface cut = cut_into_charts(coarse_.surface, tree_.seams(), here());
     const double energy = aim(best.excess);
     bool gained = false;
-    for (const SeamSearch::Joint& joint : search_.joints(cut.chart_of_face, energy)) {
+    for (const SeamTree::Joint& joint : tree_.joints(cut.chart_of_face, energy)) {
       // What it takes away is not worth a map, and there may be thousands of such joints.
       if (joint.cost < best.cost * kWorthMapping) continue;
       if (std::find(tried.begin(), tried.end(), joint.middle()) != tried.end()) continue;
       tried.push_back(joint.middle());
-      search_.take(best.seams.seams, best.seams.anchors);
-      search_.join(joint);
-      search_.extend(energy, true);
+      tree_.take(best.seams.seams, best.seams.anchors);
+      tree_.join(joint);
+      tree_.extend(energy, true);
       shorten_seams(energy, true);
-      if (search_.cost() > best.cost * (1 - kWorthMapping)) continue;
+      if (tree_.cost() > best.cost * (1 - kWorthMapping)) continue;
       Attempt attempt;
       ++i;
       gained = judge(false, maps, attempt) && attempt.is_better_than(best);

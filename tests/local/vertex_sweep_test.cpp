@@ -1,5 +1,5 @@
 // Newton's method vertex by vertex: what it must never do, and what it is for.
-#include "descend/vertex_sweep.h"
+#include "local/vertex_sweep.h"
 
 #include <gtest/gtest.h>
 
