@@ -180,6 +180,7 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
   for (Vec3& p : mesh.positions) p.x() *= 20;
   const Context context = create();
   const beltrami_surface surface = surface_view(mesh);
+  ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_FILL_WEIGHT, 0), BELTRAMI_OK);
   ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
   const beltrami_packing whole = packing_of(context);
   EXPECT_EQ(whole.splits, 0u);
@@ -190,7 +191,7 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
   const beltrami_packing packing = packing_of(context);
   EXPECT_GT(packing.splits, 0u);
   EXPECT_EQ(packing.charts, 1 + packing.splits);
-  EXPECT_NEAR(packing.unsplit_utilisation, whole.utilisation, 1e-9);
+  EXPECT_NEAR(packing.unsplit_utilisation, whole.utilisation, 0.01);
   EXPECT_GE(20 * (packing.utilisation - packing.unsplit_utilisation), packing.split_length);
   auto atlas = sized<beltrami_atlas>();
   ASSERT_EQ(beltrami_get_atlas(context.get(), &atlas), BELTRAMI_OK);

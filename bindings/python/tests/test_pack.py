@@ -61,7 +61,7 @@ def test_splits_charts_at_a_price() -> None:
     vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
     low = np.arange(24)
     quads = np.column_stack([low, low + 1, low + 26, low + 25])
-    whole = beltrami.unwrap(vertices, quads)
+    whole = beltrami.unwrap(vertices, quads, fill_weight=0.0)
     assert whole.packing is not None
     assert whole.packing.splits == 0
     assert whole.packing.unsplit_utilisation == whole.utilisation
@@ -69,7 +69,7 @@ def test_splits_charts_at_a_price() -> None:
     assert atlas.injective
     assert atlas.packing is not None
     assert atlas.packing.splits == len(atlas.charts) - 1 > 0
-    assert atlas.packing.unsplit_utilisation == pytest.approx(whole.utilisation)
+    assert atlas.packing.unsplit_utilisation == pytest.approx(whole.utilisation, abs=0.01)
     gained = atlas.utilisation - whole.utilisation
     assert 20 * gained >= atlas.packing.split_length > 0
     given = beltrami.unwrap(vertices, quads, cut="given", seams=atlas.seams)

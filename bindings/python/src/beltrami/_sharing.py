@@ -18,8 +18,13 @@ from ._tables import UnwrapOptions
 #: Options of `beltrami.pack`: those of every call, and those of pages.
 _OF_CALLS = ("threads", "float32")
 _OF_PAGES = ("resolution", "margin", "texels_per_unit", "max_pages", "pack_turns", "pack_block")
-#: Options that say how the charts of one atlas lie to each other, and what they are without.
-_OF_ONE_ATLAS = {"pack": "pages", "fill_weight": 0, "stack": "none", "share_copies": False}
+#: Options that say how the charts of one atlas lie to each other, and what they may be here.
+_OF_ONE_ATLAS: dict[str, tuple[object, ...]] = {
+    "pack": ("pages",),
+    "fill_weight": (0, 10.0),  # its default, which has no say in pages that are shared
+    "stack": ("none",),
+    "share_copies": (False,),
+}
 
 
 def options(given: dict[str, object]) -> tuple[dict[str, object], dict[str, object]]:
@@ -27,11 +32,12 @@ def options(given: dict[str, object]) -> tuple[dict[str, object], dict[str, obje
 
     Raises ValueError for options that only one atlas on its own pages can have.
     """
-    for name, without in _OF_ONE_ATLAS.items():
-        if given[name] != without:
+    for name, possible in _OF_ONE_ATLAS.items():
+        if given[name] not in possible:
             raise ValueError(f"share_page does not go with {name}={given[name]!r}")
     of_pack = {name: given[name] for name in (*_OF_CALLS, *_OF_PAGES)}
-    of_each = {name: value for name, value in given.items() if name not in _OF_PAGES}
+    not_of_each = (*_OF_PAGES, "fill_weight")
+    of_each = {name: value for name, value in given.items() if name not in not_of_each}
     return of_pack, {**of_each, "pack": "none"}
 
 

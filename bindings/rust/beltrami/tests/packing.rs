@@ -95,7 +95,7 @@ fn charts_are_split_at_a_price() {
     let gained = summary.utilisation - summary.unsplit_utilisation;
     assert!(20.0 * gained >= summary.split_length && summary.split_length > 0.0);
 
-    unwrapper.set_options(&UnwrapOptions::new()).unwrap();
+    unwrapper.set_options(&UnwrapOptions::new().fill_weight(0.0)).unwrap();
     let whole = unwrapper.unwrap(&surface).unwrap().packing().unwrap().summary();
     assert_eq!((whole.splits, whole.unsplit_utilisation), (0, whole.utilisation));
     assert!((whole.utilisation - summary.unsplit_utilisation).abs() < 1e-9);
