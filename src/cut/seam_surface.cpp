@@ -11,6 +11,7 @@
 #include "base/vectors.h"
 #include "cut/seam_costs.h"
 #include "cut/straighten.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

@@ -11,7 +11,6 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
-#include "base/sort_unique.h"
 #include "descend/newton.h"
 #include "exact/certificate.h"
 #include "local/patch_work.h"

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
-#include "cut/search_seams.h"
+#include "cut/seam_target.h"
 #include "energy/measure.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 #include "support/atlases.h"
 #include "support/meshes.h"
 #include "support/solids.h"

@@ -5,13 +5,13 @@
 #include <numbers>
 #include <vector>
 
-#include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
-#include "cut/search_seams.h"
+#include "cut/seam_target.h"
 #include "cut/unfold.h"
 #include "mesh/surface.h"
 #include "support/atlases.h"
