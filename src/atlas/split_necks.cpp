@@ -36,10 +36,10 @@ constexpr double kLeastSaved = 0.005;
 constexpr double kHope = 1.5;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
-/// Charts of fewer faces were modelled one face after the other, and stay what is expected of them,
-/// a box a cross; but not what is longer than such a page.
+/// Charts of fewer faces were modelled one face after the other, and stay what is expected of them:
+/// a box a cross.
 constexpr Index kLeastFaces = 32;
-/// Of all charts: smaller ones are not split either.
+/// Of all charts: smaller ones are not split, unless they are longer than such a page.
 constexpr double kLeastPiece = 0.01;
 /// Necks of a chart that are looked at.
 constexpr int kNecks = 3;
@@ -209,10 +209,9 @@ class Splitter {
   void find_necks_of(Piece& piece) const {
     const AtlasChart& chart = piece.chart;
     const bool is_sound = !piece.map.error && piece.map.outcome < Outcome::kNotInjective;
-    const bool is_worth_it =
-        chart.real_faces >= kLeastFaces && piece.outline.area > kLeastPiece * covered_;
     const bool overlong = is_overlong(piece);
-    if (!is_sound || (!is_worth_it && !overlong)) return;
+    const bool is_worth_it = overlong || piece.outline.area > kLeastPiece * covered_;
+    if (!is_sound || !is_worth_it || chart.real_faces < kLeastFaces) return;
     // What is too long takes a page for itself: pages may be full once it is split.
     const double filled = overlong ? kFull : utilisation_;
     const NeckOptions options{.worth = kHope * worth(filled * filled / covered_),

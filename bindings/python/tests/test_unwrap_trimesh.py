@@ -166,7 +166,7 @@ def test_a_scene_comes_back_as_a_mesh_at_its_places(tmp_path):
 def test_meshes_of_a_scene_share_a_page():
     given = scene()
     seen = []
-    apart = beltrami.unwrap(given)
+    apart = beltrami.unwrap(given, fill_weight=0.0)
     result = beltrami.unwrap(
         given, share_page=True, resolution=512, progress=lambda *now: seen.append(now)
     )
