@@ -4,9 +4,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "process/failure.h"
+
 namespace beltrami::cli {
+
+/// The failure of a file that may have points, lines or curves, but nothing to unwrap.
+inline Failure without_faces(const std::string& path) {
+  return Failure(path + ": no faces: export the surface as triangles or polygons");
+}
 
 /// Corners of all polygons one after another, each the number of a vertex. Where all polygons are
 /// triangles, as they mostly are, nothing else is stored.

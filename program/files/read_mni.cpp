@@ -8,6 +8,7 @@
 
 #include "files/column.h"
 #include "files/mesh_file.h"
+#include "files/polygons.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 
@@ -35,7 +36,7 @@ class MniReader {
     skip_colours(points, polygons);
     read_polygons(polygons);
     if (mesh_.positions.empty()) throw Failure(path_ + ": no vertices");
-    if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
+    if (mesh_.polygons.empty()) throw without_faces(path_);
     return std::move(mesh_);
   }
 

@@ -8,6 +8,7 @@
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
 #include "files/notes.h"
+#include "files/polygons.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 
@@ -66,7 +67,7 @@ class ObjReader {
   MeshFile read() {
     while (!cursor_.at_end()) read_statement();
     if (mesh_.positions.empty()) throw Failure(path_ + ": no vertices: is this an OBJ file?");
-    if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
+    if (mesh_.polygons.empty()) throw without_faces(path_);
     require_forward_references();
     if (wants_uvs()) resolve_uvs();
     if (wants_attributes()) finish_attributes();

@@ -13,6 +13,7 @@
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
 #include "files/off_header.h"
+#include "files/polygons.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 
@@ -189,7 +190,7 @@ MeshFile read_off(std::string_view text, const std::string& path, Content conten
     throw Failure(path + ": this OFF file carries no texture coordinates: use OBJ or PLY");
   }
   if (header.vertices == 0) throw Failure(path + ": no vertices");
-  if (header.faces == 0) throw Failure(path + ": no faces");
+  if (header.faces == 0) throw without_faces(path);
   const bool lines = has_lines(cursor, header);
 
   MeshFile mesh;
@@ -200,7 +201,7 @@ MeshFile read_off(std::string_view text, const std::string& path, Content conten
   for (std::uint64_t i = 0; i < header.vertices; ++i) vertices.read(cursor, mesh);
   vertices.finish(mesh, wants_uvs);
   OffFaces(cursor, header, lines, mesh).read();
-  if (mesh.polygons.empty()) throw Failure(path + ": no faces");
+  if (mesh.polygons.empty()) throw without_faces(path);
   return mesh;
 }
 

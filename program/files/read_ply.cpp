@@ -11,6 +11,7 @@
 #include "files/mesh_file.h"
 #include "files/notes.h"
 #include "files/ply_header.h"
+#include "files/polygons.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -117,7 +118,7 @@ class PlyReader {
 
   MeshFile read() {
     if (count_of("vertex") == 0) throw Failure(path_ + ": no vertices");
-    if (count_of("face") + count_of("tristrips") == 0) throw Failure(path_ + ": no faces");
+    if (count_of("face") + count_of("tristrips") == 0) throw without_faces(path_);
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") {
         read_vertices(element);
@@ -130,7 +131,7 @@ class PlyReader {
         read_table(element);
       }
     }
-    if (mesh_.polygons.empty()) throw Failure(path_ + ": no faces");
+    if (mesh_.polygons.empty()) throw without_faces(path_);
     require_indices();
     if (!mesh_.corner_uvs.of_corner.empty()) unite_corner_uvs(mesh_);
     for (const std::string& keyword : header_.unknown) {

@@ -9,6 +9,7 @@
 #include "files/mesh_file.h"
 #include "files/notes.h"
 #include "files/point_numbers.h"
+#include "files/polygons.h"
 #include "files/text_cursor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -210,9 +211,8 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
                                     std::to_string(little_u32(text.data() + 80)) +
                                     " faces do not fit its size"));
   }
-  if (mesh.polygons.empty()) {
-    throw Failure(path + ": " + (mesh.truncated.empty() ? "no faces" : mesh.truncated));
-  }
+  if (mesh.polygons.empty() && mesh.truncated.empty()) throw without_faces(path);
+  if (mesh.polygons.empty()) throw Failure(path + ": " + mesh.truncated);
   return mesh;
 }
 

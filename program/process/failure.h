@@ -3,6 +3,7 @@
 
 #include <beltrami/beltrami.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <initializer_list>
 #include <stdexcept>
@@ -33,7 +34,7 @@ class Failure : public std::runtime_error {
   /// A file that cannot be read, understood or written.
   explicit Failure(const std::string& message, std::int32_t kind = BELTRAMI_ELEMENT_NONE,
                    std::uint64_t index = BELTRAMI_NO_ELEMENT)
-      : std::runtime_error(message),
+      : std::runtime_error(whole(message)),
         exit_code(kExitUnusable),
         status(kFileErrorStatus),
         element_kind(kind),
@@ -51,6 +52,13 @@ class Failure : public std::runtime_error {
   std::string status;
   std::int32_t element_kind;
   std::uint64_t element;
+
+ private:
+  /// what() would end at a byte of zero, which a damaged file has.
+  static std::string whole(std::string message) {
+    std::replace(message.begin(), message.end(), '\0', ' ');
+    return message;
+  }
 };
 
 /// `text` on one line, as a terminal may have it: control characters of all kinds become spaces,

@@ -96,7 +96,8 @@ TEST(ReadObj, RoundsCorrectly) {
 TEST(ReadObj, SaysWhere) {
   EXPECT_EQ(obj_error("v 0 0\n"), "a.obj: line 1: a coordinate is missing: the line ends early");
   EXPECT_EQ(obj_error(kThree + "\nv 1 x 0\n"), "a.obj: line 5: a coordinate is not a number: 'x'");
-  EXPECT_EQ(obj_error(kThree + "f 1 2\n"), "a.obj: no faces");
+  EXPECT_EQ(obj_error(kThree + "f 1 2\n"),
+            "a.obj: no faces: export the surface as triangles or polygons");
   EXPECT_EQ(obj_error(kThree + "f 1 2\nf 1 2 3\nf 2 3\n\nf 1 2 4\n"),
             "a.obj: line 8: face 1 (counted from 0) names vertex number 4, which the file does not "
             "have");
@@ -176,7 +177,8 @@ std::string off_error(const std::string& text) {
 }
 
 TEST(ReadOff, SaysWhere) {
-  EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "a.off: no faces");
+  EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
+            "a.off: no faces: export the surface as triangles or polygons");
   EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "a.off: line 6: face 0 (counted from 0) names vertex 3, but the file has 3");
   EXPECT_EQ(off_error("OFF\n3 1 0\n0 0 0\n1 0 0\n"),
@@ -307,7 +309,8 @@ TEST(ReadPly, TakesTriangleStrips) {
       << "repeated vertices are no faces, but they are counted";
   EXPECT_EQ(ply_error(header + "4 0 1 2 6\n0\n"),
             "a.ply: line 16: face 1 (counted from 0) names vertex 6, but the file has 6");
-  EXPECT_EQ(ply_error(header + "0\n2 1 2\n"), "a.ply: no faces");
+  EXPECT_EQ(ply_error(header + "0\n2 1 2\n"),
+            "a.ply: no faces: export the surface as triangles or polygons");
 }
 
 TEST(ReadPly, EveryTruncationIsAnError) {
@@ -325,7 +328,9 @@ TEST(ReadPly, SaysWhere) {
   EXPECT_EQ(ply_error(kPlyHeader + "0 9 0 0 0 0\n1 9 0 0 1 x\n"),
             "a.ply: line 19: a value is not a number: 'x'");
   EXPECT_EQ(ply_error(kPlyHeader + "0 9 0 0 0 0\n1 9 0 0 1 0\n0 9 1 0 0 1\n0\n5 2 0 1\n"),
-            "a.ply: no faces");
+            "a.ply: no faces: export the surface as triangles or polygons");
+  EXPECT_EQ(ply_error(std::string("ply\nformat ascii 1.0\nelement vertex 3\0\nproperty", 47)),
+            "a.ply: line 3: an element count is not a number: '3 '");
   EXPECT_EQ(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"),
             "a.ply: line 4: unknown property type 'quad'");
   EXPECT_EQ(ply_error("garbage"),
