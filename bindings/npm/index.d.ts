@@ -239,7 +239,7 @@ export interface UnwrapOptions extends Running {
   packTurns?: 'any' | 'quarter' | 'none';
   /** Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin. A number from 1 to 64. Default: 1. */
   packBlock?: number;
-  /** Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams. A number from 0 to 1,000,000,000. Default: 10. */
+  /** Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a seam stay whole. A number from 0 to 1,000,000,000. Default: 10. */
   fillWeight?: number;
   /** How much more seams may cost for being symmetric where the surface is: 0.5 for half as much again. They lie in the plane that it is mirrored by, or come in pairs, to within a few edges; 0 does not look for one. A number from 0 to 100. Default: 0. */
   symmetricSeams?: number;

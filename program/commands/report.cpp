@@ -103,9 +103,9 @@ void append_packing(const Report& report, std::string& text) {
            asked);
   }
   if (found.splits == 0) return;
-  append(text, "splits     %llu, of %.4g root areas, for %.1f%% more of the pages used\n",
+  append(text, "splits     %llu, of %.4g root areas: %.1f%% would be used without them\n",
          static_cast<unsigned long long>(found.splits), found.split_length,
-         100 * (found.utilisation - found.unsplit_utilisation));
+         100 * found.unsplit_utilisation);
 }
 
 /// "1001", "1001 to 1004" or "1001, 1003 and 12 more".

@@ -135,7 +135,8 @@ std::string written(const OptionEntry& option, const Options& options) {
 void refuse_if_set(const Options& options, std::int32_t key, const std::string& where,
                    const char* instead) {
   const OptionEntry& option = *find_option(key);
-  if (option.get(options) == option.get(Options{})) return;
+  const bool asks_for_nothing = key == BELTRAMI_OPTION_FILL_WEIGHT && options.fill_weight == 0;
+  if (option.get(options) == option.get(Options{}) || asks_for_nothing) return;
   throw Error(Fault::kInvalidArgument, "the option " + written(option, options) +
                                            " has no effect with " + where + ": leave it out, " +
                                            instead);
@@ -253,6 +254,13 @@ void require_effect_on_atlas(const Options& options, bool pins) {
       {options.weights.symmetry > 0, "symmetric seams"}};
   for (const auto& [is_asked, what] : of_the_whole) {
     if (is_asked) refuse_if_set(options, BELTRAMI_OPTION_STACK, what, "or do without them");
+  }
+  if (options.weights.symmetry > 0) {
+    refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT, "symmetric seams", "or do without them");
+  }
+  if (options.preset == BELTRAMI_PRESET_HARD_SURFACE) {
+    refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT,
+                  written(*find_option(BELTRAMI_OPTION_PRESET), options), "or take another");
   }
   if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
     if (options.texels_per_unit > 0) {

@@ -508,8 +508,8 @@ const OptionEntry kOptions[] = {
         .name = "fill-weight",
         .summary = "Length of seams, in roots of the area, that all of a page is worth to the "
                    "search for seams: at 10 a chart is split in two where a tenth of the root of "
-                   "the area lets a hundredth more of the pages be filled; 0 splits none. Boxes "
-                   "and the like stay whole, and so do symmetric and painted seams.",
+                   "the area lets a hundredth more of the pages be filled; 0 splits none. Charts "
+                   "of fewer than 32 triangles and those without a seam stay whole.",
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::fill_weight>,

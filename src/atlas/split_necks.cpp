@@ -36,9 +36,12 @@ constexpr double kLeastSaved = 0.005;
 constexpr double kHope = 1.5;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
-/// Charts of fewer faces were modelled one face after the other, and stay what is expected of them:
-/// a box a cross.
+/// Sides of such a page that what is too long for it has: its diagonal is shorter.
+constexpr double kOverlong = 1.5;
+/// Charts of fewer faces were modelled one face after the other, and stay what is expected of them,
+/// a box a cross; but not what is too long. The nets of a cube have 1.4 to 1.9 sides of such a page.
 constexpr Index kLeastFaces = 32;
+constexpr double kOverlongOfFew = 2;
 /// Of all charts: smaller ones are not split, unless they are longer than such a page.
 constexpr double kLeastPiece = 0.01;
 /// Necks of a chart that are looked at.
@@ -48,13 +51,16 @@ constexpr Index kTries = 3;
 /// Texels a side of the pages of these, and turns of their charts, at most: they are compared with
 /// one another alone.
 constexpr int kSketch = 256, kSketchTurns = 4;
+/// Of all charts: smaller ones are left out of these, for they fill gaps. Where they are more than
+/// half of all, pages are full as they are.
+constexpr double kCrumb = 1e-3;
 /// Borders in these are thinned by so many texels.
 constexpr double kThin = 0.25;
 /// Splits that may follow one another without a gain: one may pay only with the next.
 constexpr int kPatience = 2;
 constexpr Index kMostSplits = 64;
-/// Numbers of splits that are packed at the resolution asked for before none is made.
-constexpr std::size_t kWhole = 3;
+/// Numbers of splits that are packed as the charts whole are, before none is made.
+constexpr std::size_t kMostJudged = 3;
 
 /// A chart, or a part of one.
 struct Piece {
@@ -134,13 +140,19 @@ class Splitter {
   /// their price, and others that gain, the better first.
   std::vector<Index> find() {
     if (!(covered_ > 0)) return {};
-    for (Index p = 0; p < size_of(pieces_); ++p) alive_.push_back(p);
+    double large = 0;
+    for (Index p = 0; p < size_of(pieces_); ++p) {
+      if (is_crumb(pieces_[p])) continue;
+      alive_.push_back(p);
+      large += pieces_[p].outline.area;
+    }
+    if (large < covered_ / 2) return {};
     const double before = sketched(alive_, work_);
     utilisation_ = before;
     density_ = std::sqrt(before * options_.max_pages / covered_) * options_.resolution;
-    parallel_for(work_, size_of(pieces_), 1, [&](std::int64_t p, std::int64_t) {
-      find_necks_of(pieces_[p]);
-      thin(pieces_[p].outline, kThin / density_);
+    parallel_for(work_, size_of(alive_), 1, [&](std::int64_t i, std::int64_t) {
+      find_necks_of(pieces_[alive_[i]]);
+      thin(pieces_[alive_[i]].outline, kThin / density_);
     });
     std::vector<double> net{before};
     double cost = split_overlong();
@@ -159,6 +171,7 @@ class Splitter {
       cost += splits_.back().cost;
       net.push_back(*found - cost / worth(1));
       if (net.back() > net[best]) best = net.size() - 1;
+      utilisation_ = std::max(utilisation_, *found);
     }
     std::vector<Index> order;
     for (Index k = 1; k < size_of(net); ++k) {
@@ -200,7 +213,7 @@ class Splitter {
   };
 
   bool may_have_more() const {
-    return rules_.most_charts == 0 || size_of(alive_) < rules_.most_charts;
+    return rules_.most_charts == 0 || whole_ + size_of(splits_) < rules_.most_charts;
   }
 
   /// Of one that is well filled.
@@ -211,7 +224,8 @@ class Splitter {
     const bool is_sound = !piece.map.error && piece.map.outcome < Outcome::kNotInjective;
     const bool overlong = is_overlong(piece);
     const bool is_worth_it = overlong || piece.outline.area > kLeastPiece * covered_;
-    if (!is_sound || !is_worth_it || chart.real_faces < kLeastFaces) return;
+    const bool stays = !overlong && (chart.real_faces < kLeastFaces || !has_seam(chart));
+    if (!is_sound || !is_worth_it || stays) return;
     // What is too long takes a page for itself: pages may be full once it is split.
     const double filled = overlong ? kFull : utilisation_;
     const NeckOptions options{.worth = kHope * worth(filled * filled / covered_),
@@ -225,6 +239,17 @@ class Splitter {
     piece.is_used.assign(piece.necks.size(), false);
   }
 
+  /// Whether its border is another than the surface's: what lies flat without a seam stays whole.
+  bool has_seam(const AtlasChart& chart) const {
+    for (Index h = 0; h < 3 * chart.real_faces; ++h) {
+      const Index on_surface = 3 * chart.chart.input_face[h / 3] + h % 3;
+      if (chart.chart.mesh.twin[h] == kNone && admitted_.surface.twin[on_surface] != kNone) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// Whether a piece fits on no page that is well filled, however it is turned.
   bool is_overlong(const Piece& piece) const {
     const Vec2 along = turn_to_least_box(piece.outline.hull);
@@ -235,7 +260,8 @@ class Splitter {
       most = std::max(most, place);
     }
     const double length = most - least;
-    return length > 0 && length * length > 2 * page_area();
+    const bool is_few = piece.chart.real_faces < kLeastFaces;
+    return length > (is_few ? kOverlongOfFew : kOverlong) * std::sqrt(page_area());
   }
 
   /// Per half-edge the length of a seam there: what fills holes costs nothing.
@@ -258,11 +284,13 @@ class Splitter {
     return costs;
   }
 
+  bool is_crumb(const Piece& piece) const {
+    return piece.map.error || (piece.outline.area <= kCrumb * covered_ && !is_overlong(piece));
+  }
+
   double sketched(const std::vector<Index>& alive, const Work& work) const {
     std::vector<Outline> outlines;
-    for (const Index p : alive) {
-      if (!pieces_[p].map.error) outlines.push_back(pieces_[p].outline);
-    }
+    for (const Index p : alive) outlines.push_back(pieces_[p].outline);
     return pack_outlines(std::move(outlines), options_, work).utilisation;
   }
 
@@ -329,9 +357,7 @@ class Splitter {
       Trial& trial = trials[t];
       std::vector<Outline> outlines;
       for (const Index p : alive_) {
-        if (p != trial.candidate.piece && !pieces_[p].map.error) {
-          outlines.push_back(pieces_[p].outline);
-        }
+        if (p != trial.candidate.piece) outlines.push_back(pieces_[p].outline);
       }
       for (Piece& part : trial.parts) {
         thin(part.outline, kThin / density_);
@@ -403,7 +429,7 @@ class Splitter {
 
 Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
                       bool float32, SplitCharts charts, const Work& work) {
-  constexpr double kFound = 0.5, kChosen = 0.7;  // in the progress
+  constexpr double kFound = 0.5, kWholePacked = 0.7;  // in the progress
   struct Packed {
     std::vector<AtlasChart> charts;
     std::vector<MappedChart> maps;
@@ -412,37 +438,29 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
     double utilisation = 0;
     double length = 0;  // of seams
   };
-  PackOptions first_fit = options;
-  first_fit.effort = 0;
-  Splitter splitter(admitted, rules, first_fit, charts, work.part(0, kFound));
-  const auto packed = [&](Index count, const PackOptions& how, double from, double to) {
+  Splitter splitter(admitted, rules, options, charts, work.part(0, kFound));
+  const auto packed = [&](Index count, double from, double to) {
     Packed made;
     splitter.take(count, {made.charts, made.maps, made.scales});
     made.length = seam_length(made.charts, admitted.input_vertex);
-    made.pages = pack_maps(made.charts, how, float32, made.maps, work.part(from, to));
+    made.pages = pack_maps(made.charts, options, float32, made.maps, work.part(from, to));
     made.utilisation = utilisation_of(made.charts, made.maps, made.pages);
     return made;
   };
-  Packed best;
-  SplitFigures chosen;
   const std::vector<Index> counts = splitter.find();
-  if (!counts.empty()) {
-    best = packed(0, first_fit, kFound, kChosen);
-    chosen.before = best.utilisation;
-    for (const Index count : std::span(counts).first(std::min(counts.size(), kWhole))) {
-      if (work.out_of_time()) break;
-      Packed trial = packed(count, first_fit, kFound, kChosen);
-      const double gained = trial.utilisation - best.utilisation;
-      const double longer = trial.length - best.length;
-      if (gained <= 0 || splitter.worth(gained) < longer) continue;
-      chosen.count = count;
-      chosen.length = longer / splitter.root();
-      best = std::move(trial);
-      break;
-    }
+  Packed best = packed(0, kFound, kWholePacked);
+  SplitFigures chosen{best.utilisation, 0, 0};
+  for (const Index count : std::span(counts).first(std::min(counts.size(), kMostJudged))) {
+    if (work.out_of_time()) break;
+    Packed trial = packed(count, kWholePacked, 1);
+    const double gained = trial.utilisation - best.utilisation;
+    const double longer = trial.length - best.length;
+    if (gained <= 0 || splitter.worth(gained) < longer) continue;
+    chosen.count = count;
+    chosen.length = longer / splitter.root();
+    best = std::move(trial);
+    break;
   }
-  if (options.effort > 0 || counts.empty()) best = packed(chosen.count, options, kChosen, 1);
-  if (chosen.count == 0) chosen.before = best.utilisation;
   charts.charts = std::move(best.charts);
   charts.maps = std::move(best.maps);
   charts.scales = std::move(best.scales);

@@ -55,7 +55,7 @@ bool has_levels(Index faces, Index coarse, const ChartOptions& options) {
 
 PolishLength polish_length(Index faces, bool is_finest, Difficulty difficulty) {
   if (difficulty == Difficulty::kPressed) return PolishLength::kWhole;
-  if (!is_finest || faces < kManyFaces) return PolishLength::kMiddling;
+  if (!is_finest || faces < kManyFaces) return PolishLength::kLong;
   return difficulty == Difficulty::kHard ? PolishLength::kLong : PolishLength::kShort;
 }
 

@@ -58,9 +58,9 @@ bool has_levels(Index faces, Index coarse, const ChartOptions& options);
 
 /// How long a polish may get.
 enum class PolishLength {
-  kWhole,     ///< to a stationary point
-  kMiddling,  ///< of a map that a finer mesh starts from
-  kLong,      ///< of a map of the finest mesh where coarser ones were hard
+  kWhole,  ///< to a stationary point
+  kLong,   ///< of a map that a finer mesh starts from, of a small mesh, or where coarser ones were
+           ///< hard
   kShort,  ///< of a map that came from a polished one of a coarser mesh: ends where a step promises
            ///< little
 };

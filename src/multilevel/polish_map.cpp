@@ -9,7 +9,7 @@
 //   what it brings near to        where it has changed  of that; with contact the next row instead
 //   being singular
 // L-BFGS until it is stationary fitted to the map     rounds, to 30 steps in all, 8 on that level,
-//   or held up                  where it has changed  16 below it, 20 after hard ones, while a
+//   or held up                  where it has changed  20 below it and after hard ones, while a
 //                                                     round gains some ten thousandths of the
 //                                                     energy
 // Newton steps                  of their own          where much is left to gain: up to 10
@@ -70,26 +70,19 @@ constexpr int kRings = 8;
 /// Predicted relative decrease from which on Newton steps of their own are worth their cost.
 constexpr double kMuchLeft = 1e-2;
 constexpr int kNewtonSteps = 10;
-/// Relative decrease at which these end.
-constexpr double kNewtonTolerance = 1e-3;
 /// A map with no more times the distortion of the coarser mesh has lost nothing on the way.
 constexpr double kNothingLost = 1.002;
-/// A factor serves until the energy has fallen by so much of itself, the Hessian until it has by
-/// so much.
-constexpr double kAsFitted = 2e-3, kStale = 1e-3;
+/// Relative decrease of the energy that is worth something: another fit of a factor, a Hessian, the
+/// ways of a rough map, one more Newton step.
+constexpr double kWorthIt = 2e-3;
 /// Faces in the way, as a share of all and as a number, with more of which a map is rough: patches
 /// would hold each other up, and regions around the worst of them are relaxed instead.
-constexpr double kManyOf = 1e-4, kMany = 10;
-/// Predicted relative decrease without which that is not worth it.
-constexpr double kWorthIt = 1e-3;
+constexpr double kManyOf = 3e-4, kMany = 10;
 /// Share of the faces that regions are put around at once.
 constexpr double kMostRelaxed = 1e-2;
-/// Share of the faces near to being singular with more of which regions follow each step.
-constexpr double kNearOf = 3e-4;
-/// After so many of these steps the Hessian is worth its cost, where it is to be had...
+/// After so many steps that regions follow the Hessian may be worth its cost, where it is to be
+/// had.
 constexpr int kFirstSteps = 3;
-/// ... if the last one gained so much of the energy.
-constexpr double kFarFromRest = 2e-3;
 /// Where regions gain more of the energy, what is left of it is measured: a difference may be
 /// rounding.
 constexpr double kMostlyGained = 0.5;
@@ -113,12 +106,6 @@ constexpr Bounds kWholeBounds{.enough = 0,
                               .at_rest = 1e-4,
                               .newton = true,
                               .rough = true};
-constexpr Bounds kMiddlingBounds{.enough = 1e-4,
-                                 .little_gain = 1e-4,
-                                 .most_steps = 16,
-                                 .stationary = 3e-4,
-                                 .at_rest = 1e-4,
-                                 .rough = true};
 constexpr Bounds kLongBounds{.enough = 1e-4,
                              .little_gain = 1e-4,
                              .most_steps = 20,
@@ -142,8 +129,6 @@ const Bounds& bounds_of(PolishLength length, Index faces) {
   switch (length) {
     case PolishLength::kShort:
       return kShortBounds;
-    case PolishLength::kMiddling:
-      return kMiddlingBounds;
     case PolishLength::kLong:
       return faces <= kLargeMesh ? kLongBounds : kLongOnLargeBounds;
     default:
@@ -299,7 +284,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   state.energy = state.last.energies.back();
   state.iterations += state.last.iterations();
   if (state.last.iterations() > 0) state.clean = false;
-  state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kNearOf, mesh);
+  state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kManyOf, mesh);
   if (state.alternated && !state.last.converged) {
     state.energy = relax(setting, std::move(state.last.near), state);
   } else if (state.last.blocked) {
@@ -354,7 +339,7 @@ void take_rounds(const Setting& setting, State& state) {
       return;  // what a few faces held up at once has been cleaned
     }
     // Springs of the contact change with the gaps, whatever the energy.
-    if (setting.contact || state.energy < (1 - kAsFitted) * state.fitted_at) {
+    if (setting.contact || state.energy < (1 - kWorthIt) * state.fitted_at) {
       fit_factor(setting, state);
       state.fitted_at = state.energy;
     }
@@ -365,8 +350,8 @@ void take_rounds(const Setting& setting, State& state) {
     const double gained = (state.alternated ? first : start) - state.energy;
     start = first;
     if (state.alternated && state.iterations >= kFirstSteps &&
-        state.energy < (1 - kStale) * state.hessian_at &&
-        gained > kFarFromRest * setting.comparable(state.energy)) {
+        state.energy < (1 - kWorthIt) * state.hessian_at &&
+        gained > kWorthIt * setting.comparable(state.energy)) {
       const bool taken =
           setting.inverse.take_hessian(setting.options.energy, setting.fine.rest, state.uvs);
       state.hessian_at = taken ? state.energy : 0;  // or never again
@@ -385,7 +370,7 @@ void take_newton_steps(const Setting& setting, State& state) {
   newton.proxy_steps = 0;
   newton.contact = setting.contact;
   newton.max_iterations = kNewtonSteps;
-  newton.tolerance = std::max(newton.tolerance, kNewtonTolerance);
+  newton.tolerance = std::max(newton.tolerance, kWorthIt);
   const DiskMesh& mesh = *setting.fine.mesh;
   const NewtonResult ended =
       minimise_energy(mesh.faces, setting.fine.rest, only_first_of_boundary(mesh), state.uvs,

@@ -191,7 +191,7 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
   const beltrami_packing packing = packing_of(context);
   EXPECT_GT(packing.splits, 0u);
   EXPECT_EQ(packing.charts, 1 + packing.splits);
-  EXPECT_NEAR(packing.unsplit_utilisation, whole.utilisation, 0.01);
+  EXPECT_NEAR(packing.unsplit_utilisation, whole.utilisation, 1e-9);
   EXPECT_GE(20 * (packing.utilisation - packing.unsplit_utilisation), packing.split_length);
   auto atlas = sized<beltrami_atlas>();
   ASSERT_EQ(beltrami_get_atlas(context.get(), &atlas), BELTRAMI_OK);

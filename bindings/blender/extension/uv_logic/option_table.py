@@ -269,7 +269,7 @@ OPTIONS = (
     Option(
         "fill_weight", "float", 10.0, 0.0, 1000000000.0,
         (),
-        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams.",
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a seam stay whole.",
         True, False, False,
     ),
     Option(

@@ -333,9 +333,9 @@ namespace Beltrami
 
         /// <summary>Length of seams, in roots of the area, that all of a page is worth to the
         /// search for seams: at 10 a chart is split in two where a tenth of the root of the area
-        /// lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay
-        /// whole, and so do symmetric and painted seams. A number from 0 to 1,000,000,000. Default:
-        /// 10.0.</summary>
+        /// lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32
+        /// triangles and those without a seam stay whole. A number from 0 to 1,000,000,000.
+        /// Default: 10.0.</summary>
         public double FillWeight
         {
             get { return Get(Option.FillWeight); }

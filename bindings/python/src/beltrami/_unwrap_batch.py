@@ -255,8 +255,8 @@ def unwrap_batch(
     fill_weight : float, default 10.0
         Length of seams, in roots of the area, that all of a page is worth to the search for seams:
         at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
-        the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and
-        painted seams. A number from 0 to 1,000,000,000.
+        the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a
+        seam stay whole. A number from 0 to 1,000,000,000.
     symmetric_seams : float, default 0.0
         How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
         again. They lie in the plane that it is mirrored by, or come in pairs, to within a few

@@ -567,14 +567,14 @@ options! {
 
     /// Length of seams, in roots of the area, that all of a page is worth to the search for seams:
     /// at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
-    /// the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and
-    /// painted seams.
+    /// the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a
+    /// seam stay whole.
     ///
     /// From 0 to 1000000000.
     ///
     /// Default: 10.
     fill_weight(f64) of [UnwrapOptions] = 37 "fill-weight"
-        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Boxes and the like stay whole, and so do symmetric and painted seams."
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a seam stay whole."
         Float(&[]), 0..=1000000000, default 10, calls 2;
 
     /// How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
