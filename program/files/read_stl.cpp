@@ -204,6 +204,8 @@ MeshFile read_stl(std::string_view text, const std::string& path, Content conten
     mesh = read_binary(text, path);
   } else if (is_text(text, path)) {
     mesh = TextReader(text, path).read();
+  } else if (text.size() >= kHeaderBytes && counted_facets(text) == 0) {
+    throw without_faces(path);
   } else {
     throw Failure(path + (text.size() < kHeaderBytes
                               ? ": this is not an STL file, or it is truncated"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -39,7 +40,8 @@ constexpr double kFull = 0.75;
 /// Sides of such a page that what is too long for it has: its diagonal is shorter.
 constexpr double kOverlong = 1.5;
 /// Charts of fewer faces were modelled one face after the other, and stay what is expected of them,
-/// a box a cross; but not what is too long. The nets of a cube have 1.4 to 1.9 sides of such a page.
+/// a box a cross; but not what is too long. The nets of a cube have 1.4 to 1.9 sides of such a
+/// page.
 constexpr Index kLeastFaces = 32;
 constexpr double kOverlongOfFew = 2;
 /// Of all charts: smaller ones are not split, unless they are longer than such a page.
@@ -64,12 +66,13 @@ constexpr std::size_t kMostJudged = 3;
 
 /// A chart, or a part of one.
 struct Piece {
-  AtlasChart chart;
-  MappedChart map;
+  const AtlasChart* chart = nullptr;
+  const MappedChart* map = nullptr;
   double scale = 1;
-  Outline outline;
-  std::vector<Neck> necks;    // the best first
-  std::vector<bool> is_used;  // per neck
+  std::shared_ptr<const ChartPart> part = {};  // which these are of, if it is one
+  Outline outline = {};
+  std::vector<Neck> necks = {};    // the best first
+  std::vector<bool> is_used = {};  // per neck
 };
 
 /// A piece that gives way to two.
@@ -98,7 +101,7 @@ double utilisation_of(const std::vector<AtlasChart>& charts, const std::vector<M
   return area / pages.count;
 }
 
-/// A search for the splits that pay.
+/// A search for the splits that pay. Keeps references to the charts whole.
 class Splitter {
  public:
   Splitter(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
@@ -114,7 +117,7 @@ class Splitter {
     }
     double area = 0, covered = 0;
     for (std::size_t c = 0; c < whole.charts.size(); ++c) {
-      pieces_.push_back({whole.charts[c], whole.maps[c], whole.scales[c], {}, {}, {}});
+      pieces_.push_back({&whole.charts[c], &whole.maps[c], whole.scales[c]});
       const DiskMesh& mesh = whole.charts[c].chart.mesh;
       for (Index f = 0; f < whole.charts[c].real_faces; ++f) {
         const auto& [i, j, k] = mesh.faces[f];
@@ -127,9 +130,9 @@ class Splitter {
                 ? rules.seam_budget * root_ - seam_length(whole.charts, admitted.input_vertex)
                 : kFar;
     parallel_for(work_, size_of(pieces_), 1, [&](std::int64_t p, std::int64_t) {
-      pieces_[p].outline = outline_of(real_part(pieces_[p].chart, pieces_[p].map.uvs));
+      pieces_[p].outline = outline_of(real_part(*pieces_[p].chart, pieces_[p].map->uvs));
     });
-    for (const Piece& piece : pieces_) covered += piece.map.error ? 0 : piece.outline.area;
+    for (const Piece& piece : pieces_) covered += piece.map->error ? 0 : piece.outline.area;
     covered_ = covered;
   }
 
@@ -191,15 +194,15 @@ class Splitter {
     }
     std::vector<std::pair<Index, Index>> order;
     for (Index p = 0; p < size_of(pieces_); ++p) {
-      if (is_there[p]) order.emplace_back(first_input_face(pieces_[p].chart, admitted_), p);
+      if (is_there[p]) order.emplace_back(first_input_face(*pieces_[p].chart, admitted_), p);
     }
     std::sort(order.begin(), order.end());
     out.charts.clear();
     out.maps.clear();
     out.scales.clear();
     for (const auto& [face, p] : order) {
-      out.charts.push_back(pieces_[p].chart);
-      out.maps.push_back(pieces_[p].map);
+      out.charts.push_back(*pieces_[p].chart);
+      out.maps.push_back(*pieces_[p].map);
       out.scales.push_back(pieces_[p].scale);
     }
   }
@@ -220,8 +223,8 @@ class Splitter {
   double page_area() const { return covered_ / (kFull * options_.max_pages); }
 
   void find_necks_of(Piece& piece) const {
-    const AtlasChart& chart = piece.chart;
-    const bool is_sound = !piece.map.error && piece.map.outcome < Outcome::kNotInjective;
+    const AtlasChart& chart = *piece.chart;
+    const bool is_sound = !piece.map->error && piece.map->outcome < Outcome::kNotInjective;
     const bool overlong = is_overlong(piece);
     const bool is_worth_it = overlong || piece.outline.area > kLeastPiece * covered_;
     const bool stays = !overlong && (chart.real_faces < kLeastFaces || !has_seam(chart));
@@ -233,7 +236,7 @@ class Splitter {
                               .least_share = kLeastShare + kSpareShare,
                               .most = kNecks};
     piece.necks =
-        find_necks(chart.chart.mesh, piece.map.uvs, costs(chart), chart.real_faces, options);
+        find_necks(chart.chart.mesh, piece.map->uvs, costs(chart), chart.real_faces, options);
     std::erase_if(piece.necks,
                   [&](const Neck& neck) { return neck.saved < kLeastSaved * covered_; });
     piece.is_used.assign(piece.necks.size(), false);
@@ -260,7 +263,7 @@ class Splitter {
       most = std::max(most, place);
     }
     const double length = most - least;
-    const bool is_few = piece.chart.real_faces < kLeastFaces;
+    const bool is_few = piece.chart->real_faces < kLeastFaces;
     return length > (is_few ? kOverlongOfFew : kOverlong) * std::sqrt(page_area());
   }
 
@@ -285,7 +288,7 @@ class Splitter {
   }
 
   bool is_crumb(const Piece& piece) const {
-    return piece.map.error || (piece.outline.area <= kCrumb * covered_ && !is_overlong(piece));
+    return piece.map->error || (piece.outline.area <= kCrumb * covered_ && !is_overlong(piece));
   }
 
   double sketched(const std::vector<Index>& alive, const Work& work) const {
@@ -297,19 +300,20 @@ class Splitter {
   /// The two parts of a piece along one of its necks; none where they are no two connected disks of
   /// some size.
   std::vector<Piece> parts_of(const Piece& piece, const Neck& neck) const {
-    const DiskMesh& mesh = piece.chart.chart.mesh;
+    const DiskMesh& mesh = piece.chart->chart.mesh;
     EdgeMarks marks(mesh.twin.size(), false);
     for (const Index h : neck.halfedges) mark_edge(mesh, h, marks);
-    std::vector<ChartPart> found = parts_along(piece.chart, piece.map, marks, work_.aside());
+    std::vector<ChartPart> found = parts_along(*piece.chart, *piece.map, marks, work_.aside());
     if (found.size() != 2) return {};
     std::vector<Piece> parts;
     for (ChartPart& half : found) {
       Piece& part = parts.emplace_back();
-      part.chart = std::move(half.chart);
-      part.map = std::move(half.map);
+      part.part = std::make_shared<const ChartPart>(std::move(half));
+      part.chart = &part.part->chart;
+      part.map = &part.part->map;
       part.scale = piece.scale;
-      if (!is_connected(part.chart)) return {};
-      part.outline = outline_of(real_part(part.chart, part.map.uvs));
+      if (!is_connected(*part.chart)) return {};
+      part.outline = outline_of(real_part(*part.chart, part.map->uvs));
       if (part.outline.area < kLeastShare * piece.outline.area) return {};
     }
     return parts;
@@ -448,6 +452,11 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
     return made;
   };
   const std::vector<Index> counts = splitter.find();
+  if (counts.empty()) {
+    Pages pages = pack_maps(charts.charts, options, float32, charts.maps, work.part(kFound, 1));
+    pages.split = SplitFigures{utilisation_of(charts.charts, charts.maps, pages), 0, 0};
+    return pages;
+  }
   Packed best = packed(0, kFound, kWholePacked);
   SplitFigures chosen{best.utilisation, 0, 0};
   for (const Index count : std::span(counts).first(std::min(counts.size(), kMostJudged))) {

@@ -400,6 +400,8 @@ TEST(ReadStl, RefusesWhatIsIncomplete) {
   binary[0] = 'x';
   EXPECT_NE(stl_error(binary.substr(0, binary.size() - 1)).find("truncated"), std::string::npos);
   EXPECT_NE(stl_error("garbage").find("not an STL"), std::string::npos);
+  EXPECT_EQ(stl_error(std::string(84, char{0})),
+            "a.stl: no faces: export the surface as triangles or polygons");
 }
 
 TEST(ReadMesh, GoesByTheExtensionInAnyCase) {
