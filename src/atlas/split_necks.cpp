@@ -101,6 +101,13 @@ double utilisation_of(const std::vector<AtlasChart>& charts, const std::vector<M
   return area / pages.count;
 }
 
+/// Whether all can be delivered where they lie: others are mended whole.
+bool are_sound(const std::vector<MappedChart>& maps) {
+  return std::all_of(maps.begin(), maps.end(), [](const MappedChart& map) {
+    return map.outcome <= Outcome::kNotConverged && map.fits_single;
+  });
+}
+
 /// A search for the splits that pay. Keeps references to the charts whole.
 class Splitter {
  public:
@@ -464,7 +471,7 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
     Packed trial = packed(count, kWholePacked, 1);
     const double gained = trial.utilisation - best.utilisation;
     const double longer = trial.length - best.length;
-    if (gained <= 0 || splitter.worth(gained) < longer) continue;
+    if (gained <= 0 || splitter.worth(gained) < longer || !are_sound(trial.maps)) continue;
     chosen.count = count;
     chosen.length = longer / splitter.root();
     best = std::move(trial);

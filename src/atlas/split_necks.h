@@ -32,9 +32,10 @@ struct SplitCharts {
 /// disk with the map that it had, as long as the utilisation gained is worth the seams at the
 /// price: judged, one split after the other, by packings of little effort, and in the end on the
 /// pages that are delivered. Where it is not, charts stay as they are. Maps that failed or are not
-/// injective are not split. Charts come by their least face of the input again; a part has the
-/// scale of the whole. Time: some ten small packings, and two or three whole ones.
-/// Preconditions: a price above 0, and no texels per unit in `options`.
+/// injective are not split, and nothing is where a map would not be sound on its page. Charts come
+/// by their least face of the input again; a part has the scale of the whole. Time: some ten small
+/// packings, and two or three whole ones. Preconditions: a price above 0, and no texels per unit in
+/// `options`.
 Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
                       bool float32, SplitCharts charts, const Work& work);
 
