@@ -201,7 +201,7 @@ enum {
   BELTRAMI_OPTION_MAX_PAGES = 34,       /* int: 0: one, or with a density as many as it takes */
   BELTRAMI_OPTION_PACK_TURNS = 35,      /* choice: BELTRAMI_PACK_TURNS_ */
   BELTRAMI_OPTION_PACK_BLOCK = 36,      /* int: charts share no block of so many texels a side */
-  BELTRAMI_OPTION_FILL_WEIGHT = 37,     /* float: seam length that more utilisation is worth; 0 */
+  BELTRAMI_OPTION_FILL_WEIGHT = 37,     /* float: seam length that a full page is worth; 10 */
   /* Of the search, too. */
   BELTRAMI_OPTION_SYMMETRIC_SEAMS =
       38,                              /* float: share that symmetry may cost more; 0: not sought */

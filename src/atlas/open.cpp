@@ -155,8 +155,9 @@ OpenedSurface charts_of(const SurfacePiece& piece, CutSurface cut, const SeamSur
   }
   OpenedSurface opened;
   std::vector<std::vector<Index>> collapsed;
-  if (coarse != nullptr)
+  if (coarse != nullptr) {
     collapsed = inherited_collapses(piece.surface, cut.charts, coarse->history);
+  }
   for (std::size_t c = 0; c < cut.charts.size(); ++c) {
     Chart& chart = cut.charts[c];
     const auto first_virtual =

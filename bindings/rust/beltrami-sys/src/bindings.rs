@@ -202,7 +202,7 @@ pub const BELTRAMI_OPTION_MAX_PAGES: _bindgen_ty_3 = 34;
 pub const BELTRAMI_OPTION_PACK_TURNS: _bindgen_ty_3 = 35;
 /// int: charts share no block of so many texels a side
 pub const BELTRAMI_OPTION_PACK_BLOCK: _bindgen_ty_3 = 36;
-/// float: seam length that more utilisation is worth; 0
+/// float: seam length that a full page is worth; 10
 pub const BELTRAMI_OPTION_FILL_WEIGHT: _bindgen_ty_3 = 37;
 /// Of the search, too.
 pub const BELTRAMI_OPTION_SYMMETRIC_SEAMS: _bindgen_ty_3 = 38;
