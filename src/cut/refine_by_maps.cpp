@@ -476,11 +476,12 @@ void SeamRefinement::improve(int rounds, Attempt& best) {
   vary(rounds, best);
 }
 
-/// Charts that were parted are joined elsewhere on trial, where that makes it better.
+/// Charts that were parted are joined elsewhere on trial, where that makes it better: the joints
+/// that promise most come first, so trials that gain nothing tell of those that follow.
 void SeamRefinement::join_charts(Attempt& best) {
   LocalMaps maps;
   std::vector<Index> tried;
-  for (int i = 0; i < effort_.joins && best.excess <= 1 && !work_.out_of_time();) {
+  for (int idle = 0; idle < effort_.idle_joins && best.excess <= 1 && !work_.out_of_time();) {
     tree_.take(best.seams.seams, best.seams.anchors);
     const CutSurface cut = cut_into_charts(coarse_.surface, tree_.seams(), here());
     const double energy = aim(best.excess);
@@ -496,10 +497,10 @@ void SeamRefinement::join_charts(Attempt& best) {
       shorten_seams(energy, true);
       if (tree_.cost() > best.cost * (1 - kWorthMapping)) continue;
       Attempt attempt;
-      ++i;
       gained = judge(false, maps, attempt) && attempt.is_better_than(best);
       if (gained) best = std::move(attempt);
-      if (gained || i == effort_.joins) break;
+      idle = gained ? 0 : idle + 1;
+      if (gained || idle == effort_.idle_joins) break;
     }
     if (!gained) return;
   }

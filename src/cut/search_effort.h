@@ -21,7 +21,7 @@ struct SearchEffort {
   double tolerance;    ///< of the maps that judge, by the excess over 2 that is asked for: at 0.02
                        ///< theirs is within some 3%, at 0.002 within 1%
   bool improves;       ///< the best, by a model that has learnt from maps
-  int joins;           ///< charts are joined elsewhere on trial so often
+  int idle_joins;      ///< charts are joined elsewhere until so many trials in turn gain nothing
   Index varied_faces;  ///< what was found is varied in rounds over so many faces in all; 0: never
   int tries;           ///< at a target that finer maps miss
   Index rest_faces;    ///< from so many on, further tries where finer maps have excess to spare
