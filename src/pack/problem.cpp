@@ -27,10 +27,6 @@ constexpr Index kFew = 20;
 /// The share by which charts with their margins are to take less room on the finer grid.
 constexpr double kWorthFiner = 0.033;
 
-/// Up to so many charts each turn counts.
-constexpr Index kFewForTurns = 6;
-constexpr int kFinerTurns = 4;
-
 /// From so many charts on quarter turns are enough: there is always one that fits well.
 constexpr Index kManyForTurns = 500;
 
@@ -63,7 +59,6 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
   });
   turns_ = options.turns;
   if (size() >= kManyForTurns) turns_ = std::min(turns_, 4);
-  if (options.turns > 4 && size() <= kFewForTurns && options.effort > 0) turns_ *= kFinerTurns;
   if (options.block > 1) {
     cells_ = options.resolution / options.block;
     cell_ = options.block;
