@@ -523,6 +523,7 @@ int run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Print help, -h the most of it, and exit");
   app.set_version_flag("--version", beltrami_build_info());
   app.require_subcommand(1);
+  app.allow_windows_style_options(false);  // a path may begin with a slash there, too
   app.footer(kExitCodes);
   Options of_flatten(BELTRAMI_CALL_RUN), of_unwrap(BELTRAMI_CALL_UNWRAP),
       of_pack(BELTRAMI_CALL_PACK);
