@@ -65,11 +65,8 @@ set(CMAKE_SHARED_LINKER_FLAGS_INIT "-s")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-s")
 if(BELTRAMI_ZIG_TARGET MATCHES "wasi")
   file(READ ${BELTRAMI_RUNTIME}/flags flags)
-  # The vectors of SSE2 (tools/dist/wasm/include/xmmintrin.h); and Eigen has none of its ways around GCC's defects,
-  # which are in the assembler's language.
-  string(JOIN " " vectors -D__SSE__ -D__SSE2__ -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -DEIGEN_MAX_ALIGN_BYTES=16
-    -fgnuc-version=0 -I${BELTRAMI_DIST}/include)
-  set(CMAKE_CXX_FLAGS_INIT "-g0 ${flags} ${vectors}")
+  # Eigen has none of its ways around GCC's defects, which are in the assembler's language.
+  set(CMAKE_CXX_FLAGS_INIT "-g0 ${flags} -fgnuc-version=0 -I${BELTRAMI_DIST}/include")
   set(CMAKE_C_FLAGS_INIT "-g0 -mcpu=generic+exception_handling+simd128+bulk_memory")
   set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 endif()

@@ -69,6 +69,18 @@ AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
   return atlas;
 }
 
+double area_of(const std::vector<AtlasChart>& charts) {
+  double area = 0;
+  for (const AtlasChart& chart : charts) {
+    const DiskMesh& mesh = chart.chart.mesh;
+    for (Index f = 0; f < chart.real_faces; ++f) {
+      const auto& [i, j, k] = mesh.faces[f];
+      area += triangle_area(mesh.positions[i], mesh.positions[j], mesh.positions[k]);
+    }
+  }
+  return area;
+}
+
 double seam_length(const std::vector<AtlasChart>& charts, const std::vector<Index>& vertex) {
   struct Side {
     Index low, high;

@@ -18,6 +18,9 @@ AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
                            const std::vector<MappedChart>& maps, double scale,
                            std::vector<ChartInfo>& charts, const Work& work);
 
+/// Of the real faces of charts, on the surface.
+double area_of(const std::vector<AtlasChart>& charts);
+
 /// Length of the edges of the surface at which charts end on two sides or more, half of it for each
 /// side; virtual faces have none. `vertex`: per vertex of the surface, equal for those that are one
 /// in the input.

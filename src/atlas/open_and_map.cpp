@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "atlas/congruent.h"
 #include "atlas/halves.h"
 #include "atlas/map_piece.h"
+#include "atlas/measure.h"
 #include "atlas/open.h"
 #include "atlas/rescue.h"
 #include "atlas/seams.h"
@@ -122,11 +124,10 @@ void collect(const SurfacePiece& piece, const std::optional<SeamTarget>& target,
   }
 }
 
-}  // namespace
-
-MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
-                           const AtlasOptions& options, const Work& work,
-                           std::vector<StageStatistics>& stages) {
+/// As open_and_map, by one search within all bounds of the options.
+MappedSurface map_within(const AtlasInput& input, const Admitted& admitted, int exponent,
+                         const AtlasOptions& options, const Work& work,
+                         std::vector<StageStatistics>& stages) {
   Task task{input, admitted, options, exponent};
   MappedSurface all;
   std::vector<SurfacePiece> pieces;
@@ -176,6 +177,36 @@ MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, in
   }
   sort_by_first_face(admitted, all.charts, all.maps);
   return all;
+}
+
+/// Whether charts reach their target, and are within the number and the length that are asked for.
+bool is_within_bounds(const MappedSurface& mapped, const Admitted& admitted,
+                      const SeamTarget& target) {
+  if (!mapped.missed.empty()) return false;
+  const Index most = std::max(target.max_charts, admitted.counts.components);
+  if (target.max_charts > 0 && size_of(mapped.charts) > most) return false;
+  const double length = seam_length(mapped.charts, admitted.input_vertex);
+  return target.seam_budget == 0 ||
+         length <= target.seam_budget * std::sqrt(area_of(mapped.charts));
+}
+
+}  // namespace
+
+MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
+                           const AtlasOptions& options, const Work& work,
+                           std::vector<StageStatistics>& stages) {
+  AtlasOptions unbounded = options;
+  if (options.target) {
+    unbounded.target->max_charts = 0;
+    unbounded.target->seam_budget = 0;
+  }
+  if (is_asked_of_whole(input, options) == is_asked_of_whole(input, unbounded)) {
+    return map_within(input, admitted, exponent, options, work, stages);
+  }
+  // Each component by itself finds better seams than a search over all, and often within bounds.
+  MappedSurface free = map_within(input, admitted, exponent, unbounded, work.part(0, 0.5), stages);
+  if (is_within_bounds(free, admitted, *options.target)) return free;
+  return map_within(input, admitted, exponent, options, work.part(0.5, 1), stages);
 }
 
 }  // namespace beltrami

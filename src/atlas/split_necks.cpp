@@ -122,17 +122,12 @@ class Splitter {
       options_.resolution = kSketch;
       options_.block = 1;
     }
-    double area = 0, covered = 0;
+    double covered = 0;
     for (std::size_t c = 0; c < whole.charts.size(); ++c) {
       pieces_.push_back({&whole.charts[c], &whole.maps[c], whole.scales[c]});
-      const DiskMesh& mesh = whole.charts[c].chart.mesh;
-      for (Index f = 0; f < whole.charts[c].real_faces; ++f) {
-        const auto& [i, j, k] = mesh.faces[f];
-        area += triangle_area(mesh.positions[i], mesh.positions[j], mesh.positions[k]);
-      }
     }
     whole_ = size_of(pieces_);
-    root_ = std::sqrt(area);
+    root_ = std::sqrt(area_of(whole.charts));
     room_ = rules.seam_budget > 0
                 ? rules.seam_budget * root_ - seam_length(whole.charts, admitted.input_vertex)
                 : kFar;

@@ -2,14 +2,14 @@
 
 #include <cfenv>
 
-#if (defined(__SSE2__) && !defined(__wasm__)) || defined(_M_X64)
+#if defined(__SSE2__) || defined(_M_X64)
 #include <xmmintrin.h>
 #endif
 
 namespace beltrami {
 namespace {
 
-#if (defined(__SSE2__) && !defined(__wasm__)) || defined(_M_X64)
+#if defined(__SSE2__) || defined(_M_X64)
 constexpr unsigned kDefaultMxcsr = 0x1f80;  // all exceptions masked, nearest, no FTZ, no DAZ
 unsigned long long read_mode() {
   return _mm_getcsr();

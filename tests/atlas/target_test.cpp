@@ -94,6 +94,21 @@ TEST(UnwrapToATarget, AnythingIsUnwrapped) {
   }
 }
 
+// Each component has a search of its own where bounds on the whole do not bind: a search over all
+// at once missed the length that the others keep to.
+TEST(UnwrapToATarget, BoundsThatDoNotBindChangeNothing) {
+  const TriangleList mesh = zoo();
+  const Atlas free = unwrapped(mesh, aiming_at(2.05));
+  AtlasOptions bounded = aiming_at(2.05);
+  bounded.target->seam_budget = free.seam_over_root_area * (1 + 1e-9);
+  bounded.target->max_charts = size_of(free.charts);
+  expect_same_bits(free, unwrapped(mesh, bounded));
+  bounded.target->seam_budget = 0.9 * free.seam_over_root_area;
+  const Atlas shorter = unwrapped(mesh, bounded);
+  expect_sound(mesh, shorter);
+  EXPECT_LE(shorter.seam_over_root_area, free.seam_over_root_area);
+}
+
 TEST(UnwrapToATarget, LargeSurfacesHandTheirLevelsDown) {
   const TriangleList mesh = meshes::torus(210);
   const Atlas one = unwrapped(mesh, aiming_at(2.05)), two = unwrapped(mesh, aiming_at(2.05), 2);

@@ -12,7 +12,6 @@ HEADERS = {
     "CLI": "libcli11-dev",
     "nlohmann": "nlohmann-json3-dev",
     "stb": "libstb-dev",
-    "simde": "libsimde-dev",
 }
 #: Licences of what only other builds hold.
 NOT_HELD = {"GPL-3.0.txt", "LGPL-3.0.txt"}
@@ -47,7 +46,6 @@ PARTS = (
     ),
     Part("stb", "libstb-dev", "MIT OR Unlicense", "https://github.com/nothings/stb", "program"),
     Part("zlib", "zlib1g-dev", "Zlib", "https://zlib.net", "program"),
-    Part("SIMDe", "libsimde-dev", "MIT", "https://github.com/simd-everywhere/simde", "wasm"),
     Part(
         "LLVM libc++, libc++abi, libunwind and compiler-rt",
         "ziglang",
