@@ -58,12 +58,13 @@ if(BELTRAMI_BUILD_PROGRAM)
   beltrami_need(STB_INCLUDE_DIR "The image reader of stb" libstb-dev)
   find_package(ZLIB QUIET)
   beltrami_need(ZLIB_FOUND "zlib" zlib1g-dev)
-  # Formats of pictures that are read where their libraries are found, but not those of this machine for
-  # another one.
-  if(BELTRAMI_MORE_PICTURES AND NOT CMAKE_CROSSCOMPILING)
+  # Formats that are read where their libraries are found, but not those of this machine for another one.
+  if(BELTRAMI_MORE_FORMATS AND NOT CMAKE_CROSSCOMPILING)
     find_path(WEBP_INCLUDE_DIR webp/decode.h)
     find_library(WEBP_LIBRARY webp)
     find_package(OpenEXR 3 QUIET)
+    find_package(draco QUIET)
+    find_package(meshoptimizer QUIET)
   endif()
 endif()
 if(BELTRAMI_BUILD_TESTS)

@@ -23,15 +23,6 @@ constexpr std::array<Shape, 7> kShapes = {{{"SCALAR", 1, 1},
                                            {"MAT3", 3, 3},
                                            {"MAT4", 4, 4}}};
 
-Component component_of(const Item& item) {
-  const std::uint64_t number = item.required("componentType");
-  for (const Component known : {Component::kI8, Component::kU8, Component::kI16, Component::kU16,
-                                Component::kU32, Component::kF32}) {
-    if (number == static_cast<std::uint64_t>(known)) return known;
-  }
-  item.fail("componentType " + std::to_string(number) + " is none of glTF 2.0");
-}
-
 std::uint64_t element_size_of(const Item& item, const std::string& type, Component component) {
   const auto shape = std::find_if(kShapes.begin(), kShapes.end(),
                                   [&](const Shape& known) { return known.name == type; });
@@ -75,6 +66,15 @@ bool is_index(Component component) {
 
 }  // namespace
 
+Component component_of(const Item& item) {
+  const std::uint64_t number = item.required("componentType");
+  for (const Component known : {Component::kI8, Component::kU8, Component::kI16, Component::kU16,
+                                Component::kU32, Component::kF32}) {
+    if (number == static_cast<std::uint64_t>(known)) return known;
+  }
+  item.fail("componentType " + std::to_string(number) + " is none of glTF 2.0");
+}
+
 std::uint64_t size_of(Component component) {
   switch (component) {
     case Component::kI8:
@@ -103,8 +103,7 @@ Accessor::Accessor(const Document& document, std::uint64_t number,
   }
   if (!count && !item.find("bufferView")) {
     item.fail(
-        "positions and indices must have a bufferView: export the file without mesh "
-        "compression");
+        "it has no bufferView, so its values are all zero: that is no mesh, export the file again");
   }
   find_bytes(document, item);
   if (item.find("sparse")) put_sparse_values(document, item);

@@ -24,6 +24,9 @@ enum class Component : std::uint16_t {
 
 std::uint64_t size_of(Component component);
 
+/// Of an accessor or of its sparse indices. Throws Failure where it is none.
+Component component_of(const Item& item);
+
 /// Every element lies within the bytes.
 class Accessor {
  public:

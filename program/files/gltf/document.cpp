@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "files/gltf/decompress.h"
 #include "files/gltf/little.h"
 #include "files/gltf/uri.h"
 #include "process/descriptor.h"
@@ -91,20 +92,6 @@ void require_version(const Document& document) {
                 : "this is glTF " + one_line(version) + ": convert it to glTF 2.0 first");
 }
 
-/// Compressed data would have to be decoded here and compressed again.
-void refuse_compression(const Document& document) {
-  for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-    for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) {
-      const Item view = document.entry("bufferViews", i);
-      if (!view.has_extension(extension)) continue;
-      view.fail(std::string("its bytes are compressed by ") + extension +
-                ", which cannot be read: decompress the file first (gltf-transform copy IN.glb " +
-                "OUT.glb, or gltfpack -noq -i IN.glb -o OUT.glb), or export it without mesh " +
-                "compression");
-    }
-  }
-}
-
 /// Buffers may be of one file, which is read once: else a short document could ask for any amount.
 std::string bytes_of_file(Document& document, const Item& buffer, const std::string& uri,
                           Reach reach) {
@@ -123,6 +110,12 @@ void read_buffers(Document& document, const std::optional<std::string_view>& chu
     Storage storage = Storage::kEmbedded;
     std::string bytes;
     document.first_of_file.push_back(i);
+    if (is_fallback(buffer)) {
+      // Its views are decoded to another one; a buffer must be of something.
+      document.buffers.emplace_back(1, '\0');
+      document.json["buffers"][i] = {{"byteLength", 1}};
+      continue;
+    }
     if (uri.empty()) {
       storage = Storage::kChunk;
       if (i != 0 || !chunk) buffer.fail("it has no bytes: export the file again");
@@ -191,8 +184,8 @@ Document read_document(std::string_view bytes, const std::string& path, Reach re
   if (container.other_chunks) document.not_kept.emplace_back("chunks that are not of glTF 2.0");
   document.json = parse(container.json, path);
   require_version(document);
-  refuse_compression(document);
   read_buffers(document, container.chunk, reach);
+  decompress(document);
   for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) buffer_view(document, i);
   return document;
 }

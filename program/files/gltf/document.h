@@ -41,7 +41,7 @@ struct BufferView {
 
 /// Takes `bytes` apart, the whole file at `path`, and reads its buffers, files within `reach` among
 /// them. Throws Failure for what is
-/// not glTF 2.0 or is cut short, and for mesh data that an extension compresses.
+/// not glTF 2.0 or is cut short. What extensions compress is decoded.
 /// Every buffer view lies within its buffer.
 Document read_document(std::string_view bytes, const std::string& path, Reach reach);
 

@@ -110,12 +110,6 @@ class Reader {
     const std::uint64_t mode = item.whole("mode", kTriangles);
     if (mode > kFan) item.fail("mode " + std::to_string(mode) + " is none of glTF 2.0");
     if (mode < kTriangles) return;
-    if (item.has_extension("KHR_draco_mesh_compression")) {
-      item.fail(
-          "it is compressed by KHR_draco_mesh_compression, which cannot be read: decompress the "
-          "file first (gltf-transform copy IN.glb OUT.glb), or export it without mesh "
-          "compression");
-    }
     const std::optional<Item> attributes = item.object("attributes");
     if (!attributes) item.fail("it has no attributes");
     if (!attributes->find("POSITION")) return;  // is not drawn
