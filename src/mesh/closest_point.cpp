@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
+/// Of the distance to a box: what its rounding, and that of a point on a face within, may differ by.
+constexpr double kRounding = 1e-12;
+
 /// a / (a + b) for non-negative a and b, of which one at least should not be zero.
 double share(double a, double b) {
   return a + b > 0 ? a / (a + b) : 0.0;
@@ -83,7 +86,7 @@ SurfacePoint ClosestPoint::search(const Vec3& point, const Vec3* normal, double 
   while (top > 0) {
     const Entry entry = stack[--top];
     // Equal distances are visited too: the smaller face wins whatever the seed was.
-    if (entry.distance_sq > best.distance_sq) continue;
+    if ((1 - kRounding) * entry.distance_sq > best.distance_sq) continue;
     const FaceTree::Node& node = nodes[entry.node];
     if (node.count > 0) {
       for (Index i = node.first; i < node.first + node.count; ++i) {
