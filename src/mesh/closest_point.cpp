@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
-/// Of the distance to a box: what its rounding, and that of a point on a face within, may differ by.
+/// Of the distance to a box: what its rounding, and that of a point on a face within, may differ
+/// by.
 constexpr double kRounding = 1e-12;
 
 /// a / (a + b) for non-negative a and b, of which one at least should not be zero.

@@ -35,7 +35,8 @@ import numpy as np
 import beltrami
 rows = [line.split() for line in open(sys.argv[1])]
 points = np.array([[float(x) for x in row[1:4]] for row in rows if row and row[0] == "v"])
-faces = np.array([[int(x.split("/")[0]) - 1 for x in row[1:4]] for row in rows if row and row[0] == "f"])
+corners = [row[1:4] for row in rows if row and row[0] == "f"]
+faces = np.array([[int(corner.split("/")[0]) - 1 for corner in face] for face in corners])
 atlas = beltrami.unwrap(points, faces, effort="quick", threads=2)
 for u, v in atlas.uvs:
     print("uv", float(u).hex(), float(v).hex())

@@ -12,7 +12,6 @@
 
 #include "files/gltf/document.h"
 #include "files/gltf/model.h"
-#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
 #include "gltf_builder.h"

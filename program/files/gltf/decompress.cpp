@@ -94,7 +94,7 @@ class Decompressor {
     std::string plain(view.count * view.stride, '\0');
     if (!decode_meshopt(view, packed, plain)) refuse_damaged(item, extension);
     Json& json = document_.json["bufferViews"][number];
-    put(json, std::move(plain));
+    put(json, plain);
     drop_extension(json, extension);
   }
 
@@ -125,7 +125,7 @@ class Decompressor {
     if (!decoded || decoded->corners.empty()) refuse_damaged(item, kDraco);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       require_in_proportion(*own, decoded->points, wanted[k].stride(), packed.size());
-      put_values(accessors[k], decoded->points, wanted[k], std::move(decoded->values[k]));
+      put_values(accessors[k], decoded->points, wanted[k], decoded->values[k]);
     }
     require_in_proportion(*own, decoded->corners.size(), 4, packed.size());
     Json& json = document_.json["meshes"][mesh]["primitives"][number];
@@ -137,9 +137,9 @@ class Decompressor {
   /// The accessor's values are those of a new view. They have been rounded, and so are their
   /// bounds.
   void put_values(std::uint64_t accessor, std::uint64_t count, const DracoAttribute& attribute,
-                  DracoValues values) {
+                  const DracoValues& values) {
     Json& json = document_.json["accessors"][accessor];
-    json["bufferView"] = add_view(std::move(values.bytes), attribute.stride());
+    json["bufferView"] = add_view(values.bytes, attribute.stride());
     json["count"] = count;
     for (const char* key : {"byteOffset", "sparse"}) json.erase(key);
     for (const auto& [key, bounds] :
@@ -162,23 +162,23 @@ class Decompressor {
     }
     Json& accessors = document_.json["accessors"];
     primitive["indices"] = accessors.size();
-    accessors.push_back({{"bufferView", add_view(std::move(bytes), 0)},
+    accessors.push_back({{"bufferView", add_view(bytes, 0)},
                          {"componentType", static_cast<std::uint16_t>(Component::kU32)},
                          {"count", corners.size()},
                          {"type", "SCALAR"}});
   }
 
   /// Returns the number of a view of these bytes.
-  std::uint64_t add_view(std::string bytes, std::uint64_t stride) {
+  std::uint64_t add_view(const std::string& bytes, std::uint64_t stride) {
     Json& views = document_.json["bufferViews"];
     views.push_back(Json::object());
-    put(views.back(), std::move(bytes));
+    put(views.back(), bytes);
     if (stride != 0) views.back()["byteStride"] = stride;
     return views.size() - 1;
   }
 
   /// Has a view show these bytes.
-  void put(Json& view, std::string bytes) {
+  void put(Json& view, const std::string& bytes) {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
     view["buffer"] = buffer_;
     view["byteOffset"] = bytes_.size();
