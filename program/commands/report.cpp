@@ -102,6 +102,11 @@ void append_packing(const Report& report, std::string& text) {
            "--resolution or lower --margin\n",
            asked);
   }
+  if (report.tiny_charts > 0) {
+    append(text, "note       %llu %s less than %.4g texels: raise --resolution\n",
+           static_cast<unsigned long long>(report.tiny_charts),
+           report.tiny_charts == 1 ? "chart has" : "charts have", kFewTexels);
+  }
   if (found.splits == 0) return;
   append(text, "splits     %llu, of %.4g root areas: %.1f%% would be used without them\n",
          static_cast<unsigned long long>(found.splits), found.split_length,

@@ -22,6 +22,9 @@ namespace beltrami::cli {
 /// Raised when a key changes its meaning or goes away; new keys alone do not raise it.
 inline constexpr int kReportSchema = 1;
 
+/// Square texels of a chart below which nothing can be painted on it, and a user is told.
+inline constexpr double kFewTexels = 4;
+
 struct StageTime {
   std::string name;
   double seconds = 0;
@@ -81,6 +84,7 @@ struct Report {
   std::vector<std::string> unmet;    ///< check: what was asked for and is not so, in words
   std::optional<beltrami_atlas_certificate> atlas_certificate;
   std::vector<FailedChart> failed_charts;
+  std::uint64_t tiny_charts = 0;      ///< that have less than kFewTexels
   std::vector<std::string> not_kept;  ///< of the input, in words, by the output
   std::vector<std::string> notes;     ///< what else is to be known of the output, in sentences
   std::string advice;                 ///< for the summary: what else the user may want, or ""

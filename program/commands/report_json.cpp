@@ -170,6 +170,7 @@ Json packing_json(const Report& report) {
           {"utilisation", number(found.utilisation)},
           {"page_utilisations", report.page_utilisations},
           {"margin", number(found.margin)},
+          {"tiny_charts", report.atlas ? Json(report.tiny_charts) : Json(nullptr)},
           {"splits", found.splits},
           {"split_length", number(found.split_length)},
           {"unsplit_utilisation", number(found.unsplit_utilisation)}};

@@ -254,6 +254,8 @@ class Unwrapping {
       beltrami_chart chart{};
       chart.struct_size = sizeof chart;
       require(beltrami_get_chart(context, i, &chart));
+      const double side = report_.packing ? chart.density * report_.packing->texels_per_unit : 0;
+      if (report_.packing && chart.area * side * side < kFewTexels) ++report_.tiny_charts;
       if (chart.status <= BELTRAMI_NOT_CONVERGED) continue;
       if (report_.failed_charts.size() < kMostFailedCharts) {
         report_.failed_charts.push_back({i, chart});

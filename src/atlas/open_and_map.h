@@ -34,12 +34,12 @@ struct MappedSurface {
 
 /// Opens the surface, which was scaled by 2^exponent, and flattens its charts, as the stages "cut"
 /// and "flatten". With a target each component by itself and a few times, while the maps miss it or
-/// leave much of what it allows unused: as one where pins, a number of charts, a length of seams or
-/// symmetry is asked of the whole. No component ends worse than a short cut graph leaves it. The
-/// limit of time ends the search for seams; the maps along them are finished. Charts that cannot be
-/// mapped within reason are split until they can, unless there are pins or a number of charts is
-/// asked for. Components that are to be stacked on others have no charts. Throws Error PINS where
-/// pins cannot be met together.
+/// leave much of what it allows unused: as one where pins or symmetry are asked of the whole, or a
+/// number of charts or a length of seams that components by themselves do not keep. No component
+/// ends worse than a short cut graph leaves it. The limit of time ends the search for seams; the
+/// maps along them are finished. Charts that cannot be mapped within reason are split until they
+/// can, unless there are pins or a number of charts is asked for. Components that are to be stacked
+/// on others have no charts. Throws Error PINS where pins cannot be met together.
 MappedSurface open_and_map(const AtlasInput& input, const Admitted& admitted, int exponent,
                            const AtlasOptions& options, const Work& work,
                            std::vector<StageStatistics>& stages);

@@ -139,6 +139,21 @@ TEST(Unwrap, SeamsThatAreWrittenMakeTheSameCharts) {
   EXPECT_TRUE(second["target"].is_null());
 }
 
+TEST(Unwrap, NamesChartsOnWhichNothingCanBePainted) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2.0001 0 0\nv 2.0001 0.0001 0\n"
+      "f 1 2 3 4\nf 5 6 7\n");
+  const std::string report = directory.path("r.json");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.obj"), "--report", report});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\nnote       1 chart has less than 4 texels: raise --resolution\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["packing"]["tiny_charts"], 1);
+}
+
 TEST(Unwrap, SplitsChartsAtAPrice) {
   const TemporaryDirectory directory;
   std::string strip;
