@@ -53,6 +53,9 @@ constexpr double kMissed = 1e-6;
 constexpr double kMoreThanMissed = 1.1;
 /// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
 constexpr double kLeastAim = 0.3;
+/// Of the excess over 2 that a search aimed at: with more its coarse maps tell that it can do no
+/// more, and with less it has missed by a hair.
+constexpr double kNearlyMet = 1.1;
 /// Of the excess asked for, fine maps that use no more are worth a further try with shorter seams
 /// if coarse ones used more; which aims at so much of it, and at no more than so many times it.
 constexpr double kUnused = 0.96, kUsed = 0.9, kAim = 0.975, kMostAim = 2;
@@ -136,8 +139,12 @@ std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const SeamTarget
                                       const Mapped& mapped) {
   const double mean = mapped.energy.symmetric_dirichlet, p99 = mapped.energy.p99;
   const double predicted = mapped.opened.predicted_energy;
-  if (exceeds(predicted, aimed.energy)) return std::nullopt;  // the search has done what it can
   SeamTarget lower = target;
+  if (exceeds(predicted, aimed.energy)) {
+    if (predicted - 2 > kNearlyMet * (aimed.energy - 2)) return std::nullopt;  // it cannot do more
+    lower.energy -= kMoreThanMissed * (predicted - aimed.energy);
+    return lower.energy < aimed.energy ? std::optional(lower) : std::nullopt;
+  }
   if (exceeds(mean, target.energy)) lower.energy -= kMoreThanMissed * (mean - predicted);
   if (exceeds(p99, target.p99)) lower.p99 = aimed.p99 - kMoreThanMissed * (p99 - target.p99);
   const auto is_possible = [](double aim, double asked) {

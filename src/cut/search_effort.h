@@ -28,8 +28,8 @@ struct SearchEffort {
   double packing;      ///< as PackOptions has its effort
 };
 
-/// The settings of a level. Over 90 files of 12 to 20,000 faces, normal takes 2.3 times the CPU of
-/// quick for seams that are 2.8% shorter.
+/// The settings of a level. Over 102 files of 1 to 100,000 faces, normal takes 2.0 times the CPU of
+/// quick for seams that are 1.6% shorter.
 SearchEffort search_effort(Effort effort);
 
 }  // namespace beltrami
