@@ -245,7 +245,7 @@ export interface UnwrapOptions extends Running {
   symmetricSeams?: number;
   /** How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos t) times an edge there; 0 counts lengths alone. A number from 0 to 100. Default: 0. */
   straightSeams?: number;
-  /** How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 3% longer), normal or high (some three times the time of normal, seams some 2% shorter). Default: normal. */
+  /** How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 2% longer), normal or high (some three times the time of normal, seams some 2% shorter). Default: normal. */
   effort?: 'quick' | 'normal' | 'high';
   /** How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them. A number from 0 to 100. Default: 1.5, or as the preset has it. */
   flatSeams?: number;

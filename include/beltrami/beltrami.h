@@ -217,7 +217,7 @@ enum {
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
 enum {
   BELTRAMI_EFFORT_FORCE_SIGNED_ = -1,
-  /* Half the time of NORMAL, seams some 3% longer. */
+  /* Half the time of NORMAL, seams some 2% longer. */
   BELTRAMI_EFFORT_QUICK = 0,
   /* The default. */
   BELTRAMI_EFFORT_NORMAL = 1,

@@ -546,7 +546,7 @@ const OptionEntry kOptions[] = {
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "effort",
         .summary = "How long short seams are searched for, and a dense packing: quick (half the "
-                   "time of normal, seams some 3% longer), normal or high (some three times the "
+                   "time of normal, seams some 2% longer), normal or high (some three times the "
                    "time of normal, seams some 2% shorter).",
         .minimum = 0,
         .maximum = std::size(kEfforts) - 1,

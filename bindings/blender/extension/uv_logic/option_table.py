@@ -287,7 +287,7 @@ OPTIONS = (
     Option(
         "effort", "choice", "normal", 0.0, 2.0,
         ("quick", "normal", "high"),
-        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 3% longer), normal or high (some three times the time of normal, seams some 2% shorter).",
+        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 2% longer), normal or high (some three times the time of normal, seams some 2% shorter).",
         True, False, False,
     ),
     Option(

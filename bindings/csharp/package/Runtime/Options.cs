@@ -362,7 +362,7 @@ namespace Beltrami
         }
 
         /// <summary>How long short seams are searched for, and a dense packing: quick (half the
-        /// time of normal, seams some 3% longer), normal or high (some three times the time of
+        /// time of normal, seams some 2% longer), normal or high (some three times the time of
         /// normal, seams some 2% shorter). Default: Effort.Normal.</summary>
         public Effort Effort
         {

@@ -266,7 +266,7 @@ def unwrap_batch(
         t) times an edge there; 0 counts lengths alone. A number from 0 to 100.
     effort : {"quick", "normal", "high"}, default "normal"
         How long short seams are searched for, and a dense packing: quick (half the time of normal,
-        seams some 3% longer), normal or high (some three times the time of normal, seams some 2%
+        seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
         shorter).
     flat_seams : float, default 1.5, or as the preset has it
         How many times as long the seams of a part may be if it then unfolds without distortion, as

@@ -220,7 +220,7 @@ pub const BELTRAMI_OPTION_RECTIFY: _bindgen_ty_3 = 43;
 pub const BELTRAMI_OPTION_SNAP_TEXELS: _bindgen_ty_3 = 44;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
-/// Half the time of NORMAL, seams some 3% longer.
+/// Half the time of NORMAL, seams some 2% longer.
 pub const BELTRAMI_EFFORT_QUICK: _bindgen_ty_4 = 0;
 /// The default.
 pub const BELTRAMI_EFFORT_NORMAL: _bindgen_ty_4 = 1;

@@ -174,10 +174,10 @@ choice! {
 
 choice! {
     /// How long short seams are searched for, and a dense packing: quick (half the time of normal,
-    /// seams some 3% longer), normal or high (some three times the time of normal, seams some 2%
+    /// seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
     /// shorter). See [`UnwrapOptions::effort`].
     Effort {
-        /// Half the time of NORMAL, seams some 3% longer.
+        /// Half the time of NORMAL, seams some 2% longer.
         Quick = "quick",
         /// The default.
         Normal = "normal",
@@ -599,12 +599,12 @@ options! {
         Float(&[]), 0..=100, default 0, calls 2;
 
     /// How long short seams are searched for, and a dense packing: quick (half the time of normal,
-    /// seams some 3% longer), normal or high (some three times the time of normal, seams some 2%
+    /// seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
     /// shorter).
     ///
     /// Default: [`Normal`](Effort::Normal).
     effort(Effort) of [UnwrapOptions] = 40 "effort"
-        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 3% longer), normal or high (some three times the time of normal, seams some 2% shorter)."
+        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 2% longer), normal or high (some three times the time of normal, seams some 2% shorter)."
         Choice(Effort::NAMES), 0..=2, default 1, calls 2;
 
     /// How many times as long the seams of a part may be if it then unfolds without distortion, as
