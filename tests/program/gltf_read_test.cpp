@@ -194,6 +194,13 @@ void expect_refusal(const std::function<void(Json&)>& spoil, const std::string& 
   EXPECT_NE(said.find(words), std::string::npos) << said;
 }
 
+TEST(GltfRead, AnImageThatNothingUsesMayHaveAnyUri) {
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", square(builder)}}, builder.indices<std::uint8_t>({0, 1, 2}));
+  builder.json["images"] = {{{"uri", 7}}, 7};
+  EXPECT_EQ(gltf_sources(read_bytes(builder)), std::vector<std::string>{"a.gltf"});
+}
+
 TEST(GltfRead, WhatWouldGrowBeyondReasonIsRefusedBeforeItDoes) {
   // One strip over three vertices, by indices of a byte each, drawn by so many primitives.
   constexpr std::size_t kIndices = 60'000;

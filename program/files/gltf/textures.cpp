@@ -336,7 +336,10 @@ std::vector<std::string> gltf_sources(const MeshFile& file) {
   std::vector<std::string> found = {document.path};
   for (const auto& [path, buffer] : document.files) found.push_back(path);
   for (std::uint64_t i = 0; i < document.count("images"); ++i) {
-    const std::string uri = document.entry("images", i).text("uri");
+    const gltf::Item image = document.entry("images", i);
+    const gltf::Json* const named_uri = image.find("uri");
+    if (named_uri == nullptr || !named_uri->is_string()) continue;
+    const auto uri = named_uri->get<std::string>();
     if (uri.empty() || gltf::is_data(uri)) continue;
     NamedFile named = follow_uri(document.path, uri, file.reach);
     if (!named.path.empty()) found.push_back(std::move(named.path));
