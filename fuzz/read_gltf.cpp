@@ -30,10 +30,10 @@ void judge_textures(const MeshFile& file) {
       cli::gltf_faces_of(file, use.material);
       cli::gltf_image(file, use);
     }
+    cli::gltf_sources(file);
   } catch (const cli::Failure& failure) {
     promise(*failure.what() != '\0', "a refusal has a sentence");
   }
-  cli::gltf_sources(file);
   cli::gltf_attribute(file, "NORMAL", 3);
 }
 
