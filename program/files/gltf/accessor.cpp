@@ -66,6 +66,12 @@ bool is_index(Component component) {
 
 }  // namespace
 
+std::uint64_t width_of(const std::string& type) {
+  const auto shape = std::find_if(kShapes.begin(), kShapes.end(),
+                                  [&](const Shape& known) { return known.name == type; });
+  return shape != kShapes.end() && shape->columns == 1 ? shape->rows : 0;
+}
+
 Component component_of(const Item& item) {
   const std::uint64_t number = item.required("componentType");
   for (const Component known : {Component::kI8, Component::kU8, Component::kI16, Component::kU16,

@@ -24,6 +24,9 @@ enum class Component : std::uint16_t {
 
 std::uint64_t size_of(Component component);
 
+/// Numbers of a scalar or a vector of this type; 0 for a matrix and for what is none.
+std::uint64_t width_of(const std::string& type);
+
 /// Of an accessor or of its sparse indices. Throws Failure where it is none.
 Component component_of(const Item& item);
 

@@ -50,13 +50,6 @@ void drop_extension(Json& json, const char* extension) {
   if (json["extensions"].empty()) json.erase("extensions");
 }
 
-/// The width of a vector, 0 for what is none.
-std::uint64_t width_of(const std::string& type) {
-  const std::array<std::string_view, 4> names = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-  const auto found = std::find(names.begin(), names.end(), type);
-  return found == names.end() ? 0 : static_cast<std::uint64_t>(found - names.begin()) + 1;
-}
-
 class Decompressor {
  public:
   explicit Decompressor(Document& document)
@@ -87,7 +80,7 @@ class Decompressor {
     const std::optional<Item> own = extension_of(item, extension);
     if (!own) return;
     if (!reads_meshopt()) refuse(item, extension);
-    const std::string_view packed = stretch(*own);
+    const std::string_view packed = bytes_of(stretch_of(document_, *own));
     MeshoptView view{own->text("mode"), own->text("filter"), own->required("count"),
                      own->required("byteStride")};
     require_in_proportion(*own, view.count, view.stride, packed.size());
@@ -106,9 +99,7 @@ class Decompressor {
     if (!reads_draco()) refuse(item, kDraco);
     const std::uint64_t mode = item.whole("mode", kTriangles);
     if (mode != kTriangles && mode != kStrip) item.fail("Draco has triangles and strips alone");
-    const BufferView view = buffer_view(document_, own->required("bufferView"));
-    const std::string_view packed =
-        std::string_view(document_.buffers[view.buffer]).substr(view.offset, view.length);
+    const std::string_view packed = bytes_of(buffer_view(document_, own->required("bufferView")));
     std::vector<std::uint64_t> accessors;
     std::vector<DracoAttribute> wanted;
     const std::optional<Item> ids = own->object("attributes");
@@ -186,17 +177,8 @@ class Decompressor {
     bytes_ += bytes;
   }
 
-  /// What an extension of a view names, as a view does.
-  std::string_view stretch(const Item& item) const {
-    const std::uint64_t number = item.required("buffer");
-    const std::uint64_t size = document_.entry("buffers", number).required("byteLength");
-    const std::uint64_t offset = item.whole("byteOffset", 0), length = item.required("byteLength");
-    if (offset > size || length > size - offset) {
-      item.fail("it reaches beyond buffers[" + std::to_string(number) +
-                "]: the file is damaged, export it again");
-    }
-    return std::string_view(document_.buffers[document_.first_of_file[number]])
-        .substr(offset, length);
+  std::string_view bytes_of(const BufferView& view) const {
+    return std::string_view(document_.buffers[view.buffer]).substr(view.offset, view.length);
   }
 
   static void require_in_proportion(const Item& item, std::uint64_t count, std::uint64_t stride,

@@ -144,7 +144,10 @@ void read_buffers(Document& document, const std::optional<std::string_view>& chu
 }  // namespace
 
 BufferView buffer_view(const Document& document, std::uint64_t number) {
-  const Item item = document.entry("bufferViews", number);
+  return stretch_of(document, document.entry("bufferViews", number));
+}
+
+BufferView stretch_of(const Document& document, const Item& item) {
   BufferView view;
   view.buffer = item.required("buffer");
   view.offset = item.whole("byteOffset", 0);

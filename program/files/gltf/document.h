@@ -45,6 +45,10 @@ struct BufferView {
 /// Every buffer view lies within its buffer.
 Document read_document(std::string_view bytes, const std::string& path, Reach reach);
 
+/// What an object names by `buffer`, `byteOffset`, `byteLength` and `byteStride`, as views do.
+/// Throws Failure where that is not within the buffer.
+BufferView stretch_of(const Document& document, const Item& item);
+
 /// Throws Failure where there is none of this number.
 BufferView buffer_view(const Document& document, std::uint64_t number);
 
