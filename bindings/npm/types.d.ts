@@ -100,6 +100,91 @@ export interface Packing {
   readonly certificate: AtlasCertificate;
 }
 
+/** What a call of an editor moved. */
+export interface Changes {
+  /** "BELTRAMI_OK"; "BELTRAMI_NOT_CONVERGED" where the next update would go on; "BELTRAMI_NOT_INJECTIVE" where a
+   *  chart by itself is not. */
+  readonly status: Status;
+  /** Corners that moved, increasing. */
+  readonly corners: Uint32Array;
+  /** u, v of each of them. */
+  readonly uvs: Uvs;
+}
+
+/** How an editor stands. */
+export interface EditorReport {
+  /** The greatest reservation of all charts, each by itself. */
+  readonly status: Status;
+  readonly charts: number;
+  /** Charts that are to be mapped further. */
+  readonly due: number;
+  readonly corners: number;
+  /** Corners that the last update, pack or restore moved. */
+  readonly changes: number;
+  /** Edges cut beside the seams. */
+  readonly opened: number;
+  /** Mean over the area, each chart at its scale; NaN before the first update. */
+  readonly symmetricDirichlet: number;
+  /** Of the last update, pack or check. */
+  readonly seconds: number;
+  readonly cpuSeconds: number;
+}
+
+/** A chart of an editor. */
+export interface EditorChart {
+  /** Of this chart by itself. */
+  readonly status: Status;
+  readonly due: boolean;
+  readonly locked: boolean;
+  /** Its number: it stays while most of the chart does, and is given once. */
+  readonly id: number;
+  readonly triangles: number;
+  /** The least of its faces. */
+  readonly firstFace: number;
+  readonly symmetricDirichlet: number;
+  /** Lengths in the plane per length on the surface that it is to have. */
+  readonly scale: number;
+}
+
+/**
+ * A session of edits on one surface: seams and pins that move, and maps that follow. Edits are noted at once; `update`
+ * maps the charts that they concern, from the maps that they have. A call that throws leaves the maps as they were.
+ */
+export interface Editor {
+  /** Pairs of vertices. What meets no border and no other seam opens nothing yet. */
+  openSeams(edges: Uint32Array): void;
+  closeSeams(edges: Uint32Array): void;
+  /** Pins, in place of all before; `directions` are those of lines. */
+  setPins(corners: Uint32Array, uvs: Uvs, kinds?: ('point' | 'u' | 'v' | 'line')[], directions?: Uvs): void;
+  /** Only these faces may move; null: all. */
+  select(faces: Uint32Array | null): void;
+  /** Charts, by their numbers, stay whatever happens, or are let go. */
+  lock(charts: Uint32Array, locked?: boolean): void;
+  /** Charts are mapped anew by the next update; cold: from nothing. */
+  renew(charts: Uint32Array, cold?: boolean): void;
+  /** `steps`: Newton steps of a chart at most, 0: to its minimum; `seconds`: after which no step begins, 0: any. */
+  update(how?: { seconds?: number; steps?: number } & Running): Changes;
+  /** Packs charts among the others, which stay; null: all. */
+  pack(charts?: Uint32Array | null, how?: Running): Changes;
+  /** The exact verdict on all charts together. */
+  check(): AtlasCertificate;
+  /** Notes everything under a number, to which `restore` goes back, to the bit. */
+  save(): number;
+  restore(mark: number): Changes;
+  forget(mark: number): void;
+  /** Frees its memory; no other call serves then. */
+  close(): void;
+  /** u, v of each corner. Page p is the unit square at (p modulo 10, p / 10). */
+  readonly cornerUvs: Uvs;
+  /** The number of the chart of each face; 4294967295 for a face without area. */
+  readonly faceCharts: Uint32Array;
+  /** By their least faces. */
+  readonly charts: EditorChart[];
+  /** Edges cut beside the seams, where these leave what is no disk. */
+  readonly opened: Uint32Array;
+  readonly report: EditorReport;
+}
+
 /** A call without a result: the message says what to do. */
 export class BeltramiError extends Error {
   /** Such as "BELTRAMI_E_INDEX_OUT_OF_RANGE". */
@@ -124,6 +209,11 @@ export class Beltrami {
   check(surface: Surface, options?: { allowMirrored?: boolean }): AtlasCertificate;
   /** Packs the charts of meshes in the plane. Throws BeltramiError. */
   pack(meshes: UvMesh[], options?: PackOptions): Packing;
+  /**
+   * Begins to edit a surface, from its `cornerUvs` and `seams` if it has them. Options are those that concern
+   * flattening, welding, holes and packing. Throws BeltramiError, as its calls do.
+   */
+  edit(surface: Surface, options?: UnwrapOptions): Editor;
 }
 
 /**

@@ -12,7 +12,7 @@ if(BELTRAMI_ZIG_TARGET MATCHES "^([a-z0-9_]+)-([a-z]+)")
     set(CMAKE_SYSTEM_NAME Windows)
   elseif(CMAKE_MATCH_2 STREQUAL "macos")
     set(CMAKE_SYSTEM_NAME Darwin)
-    set(CMAKE_SYSTEM_VERSION 20)
+    set(CMAKE_SYSTEM_VERSION 20.0) # macOS 11: CMake reads a number with a point
   else()
     set(CMAKE_SYSTEM_NAME Generic) # wasi
   endif()

@@ -46,7 +46,7 @@ function firstsAtPlaces(positions) {
   return firsts;
 }
 
-/** The sides of triangles that no other triangle has: 3 f + k is the side from corner k of triangle f. */
+/** The sides of triangles that no other triangle has. */
 function borders(faces) {
   const table = tableFor(faces.length / 2), shared = new Uint8Array(faces.length);
   const end = (side) => faces[side % 3 === 2 ? side - 2 : side + 1];
@@ -78,13 +78,14 @@ export class Geometry {
   /**
    * `positions` and `uvs` (Float32Array) have three and two numbers for each vertex, `faces` (Uint32Array) three
    * vertices for each triangle; `energies` (Float32Array) and `charts` (Uint32Array) a number for each triangle.
+   * `marked` are sides that are drawn like borders: 3 f + k is the side from corner k of triangle f.
    */
-  constructor({ positions, uvs, faces, energies, charts }) {
+  constructor({ positions, uvs, faces, energies, charts, marked = [] }) {
     Object.assign(this, { positions, uvs, faces, energies, faceCharts: charts });
     this.triangles = faces.length / 3;
     this.top = topOf(energies);
     this.#measure();
-    const sides = borders(faces);
+    const sides = [...borders(faces), ...marked];
     this.corners = this.#cornerBuffer();
     this.lines = this.#lineBuffer(sides);
     this.lineCount = sides.length;

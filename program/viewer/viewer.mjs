@@ -41,6 +41,9 @@ function inksOf(root) {
 }
 
 export class Viewer {
+  /** What a page does with a click in a panel: it returns whether no chart is to be chosen. */
+  clicked = null;
+
   /** Fills `root`, an element of the page. */
   constructor(root) {
     this.root = root;
@@ -101,9 +104,9 @@ export class Viewer {
 
   /**
    * Shows triangles: see Geometry for `arrays`, and figures.mjs for `report`. `frame` is from where to look at the
-   * model: what is right, up, and toward the eye.
+   * model: what is right, up, and toward the eye. With `stays` the same model is looked at as before.
    */
-  show(arrays, report, { name = '', frame } = {}) {
+  show(arrays, report, { name = '', frame, stays = false } = {}) {
     this.report = report;
     this.title.textContent = name;
     const { good, words } = verdict(report);
@@ -117,8 +120,10 @@ export class Viewer {
     const { uvBox } = this.geometry, pages = report.packing?.pages ?? 0;
     const box = pages > 0 ? [Math.floor(uvBox[0]), Math.floor(uvBox[1]), Math.max(Math.ceil(uvBox[2]), 1), Math.max(Math.ceil(uvBox[3]), 1)] : uvBox;
     this.look.cell = (pages > 0 ? 1 : Math.max(uvBox[2] - uvBox[0], uvBox[3] - uvBox[1], 1e-30)) / CHECKER_CELLS;
-    this.panes[0].camera = new ModelCamera(this.geometry, frame);
-    this.panes[1].camera = new LayoutCamera(box);
+    if (!stays) {
+      this.panes[0].camera = new ModelCamera(this.geometry, frame);
+      this.panes[1].camera = new LayoutCamera(box);
+    }
     this.panes[1].label.textContent = pages > 1 ? `Layout, ${pages} pages` : 'Layout';
     const [least, , most] = this.legend.children;
     least.textContent = '2';
@@ -251,7 +256,7 @@ export class Viewer {
       const { box } = pane.camera, view = this.views[1];
       for (let v = box[1]; v < box[3]; ++v) {
         for (let u = box[0]; u < box[2]; ++u) {
-          const [left, bottom] = this.#onPane(projected(view.matrix, [u, v]), view), [right, top] = this.#onPane(projected(view.matrix, [u + 1, v + 1]), view);
+          const [left, bottom] = this.onPane(projected(view.matrix, [u, v]), view), [right, top] = this.onPane(projected(view.matrix, [u + 1, v + 1]), view);
           shown.push([left, top, right - left, bottom - top]);
         }
       }
@@ -265,7 +270,7 @@ export class Viewer {
   }
 
   /** Pixels from the upper left corner of a panel. */
-  #onPane([x, y], { width, height }) { return [(x + 1) / 2 * width, (1 - y) / 2 * height]; }
+  onPane([x, y], { width, height }) { return [(x + 1) / 2 * width, (1 - y) / 2 * height]; }
 
   #hideDots() { for (const { dot } of this.panes) dot.hidden = true; }
 
@@ -284,25 +289,26 @@ export class Viewer {
     other.dot.hidden = !(Math.abs(sum) > 0);
     if (other.dot.hidden) return;
     const shares = weights.map((weight) => Math.min(Math.max(weight / sum, 0), 1)), corners = placesOf(other.index);
-    const [x, y] = this.#onPane(projected(to.matrix, corners[0].map((_, d) => corners.reduce((total, corner, k) => total + shares[k] * corner[d], 0))), to);
+    const [x, y] = this.onPane(projected(to.matrix, corners[0].map((_, d) => corners.reduce((total, corner, k) => total + shares[k] * corner[d], 0))), to);
     other.dot.hidden = x < 0 || y < 0 || x > to.width || y > to.height;
     other.dot.style.translate = `${x}px ${y}px`;
   }
 
-  /** From an event to places of the panel, from -1 to 1. */
-  #place(pane, event) {
+  /** From an event to a place of the panel, from -1 to 1. */
+  place(pane, event) {
     const box = pane.box.getBoundingClientRect();
     return [2 * (event.clientX - box.left - pane.box.clientLeft) / pane.box.clientWidth - 1, 1 - 2 * (event.clientY - box.top - pane.box.clientTop) / pane.box.clientHeight];
   }
 
-  #faceAt(pane, place) {
+  /** The triangle at a place of a panel, or -1. */
+  faceAt(pane, place) {
     const view = this.views?.[pane.index];
     if (!view) return -1;
     return this.renderer.pick(this.views, view.left + (place[0] + 1) / 2 * view.width, view.bottom + (place[1] + 1) / 2 * view.height);
   }
 
   #hover(pane, event) {
-    const place = this.#place(pane, event), face = this.#faceAt(pane, place), before = this.hovered;
+    const place = this.place(pane, event), face = this.faceAt(pane, place), before = this.hovered;
     this.#hideDots();
     this.hovered = face < 0 ? NO_CHART : this.geometry.faceCharts[face];
     if (face >= 0) this.#mark(pane, face, place);
@@ -315,7 +321,7 @@ export class Viewer {
     box.addEventListener('pointerdown', (event) => {
       if (!this.geometry) return;
       box.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, { at: this.#place(pane, event), start: [event.clientX, event.clientY], still: pointers.size === 0 });
+      pointers.set(event.pointerId, { at: this.place(pane, event), start: [event.clientX, event.clientY], still: pointers.size === 0 });
     });
     box.addEventListener('pointermove', (event) => {
       if (!this.geometry) return;
@@ -325,8 +331,8 @@ export class Viewer {
     const up = (event) => {
       const pointer = pointers.get(event.pointerId);
       pointers.delete(event.pointerId);
-      if (!pointer?.still || event.type !== 'pointerup') return;
-      const face = this.#faceAt(pane, this.#place(pane, event));
+      if (!pointer?.still || event.type !== 'pointerup' || this.clicked?.(pane, event)) return;
+      const face = this.faceAt(pane, this.place(pane, event));
       const chart = face < 0 ? NO_CHART : this.geometry.faceCharts[face];
       this.choose(chart === this.chosen ? NO_CHART : chart);
     };
@@ -342,7 +348,7 @@ export class Viewer {
     box.addEventListener('wheel', (event) => {
       if (!this.geometry) return;
       event.preventDefault();
-      pane.camera.magnify(2 ** (-event.deltaY * (event.deltaMode === 1 ? 20 : 1) / 400), this.#place(pane, event));
+      pane.camera.magnify(2 ** (-event.deltaY * (event.deltaMode === 1 ? 20 : 1) / 400), this.place(pane, event));
       this.#moved();
     }, { passive: false });
     box.addEventListener('dblclick', () => this.geometry && this.frameChart());
@@ -350,7 +356,7 @@ export class Viewer {
   }
 
   #drag(pane, event) {
-    const { pointers, camera, box } = pane, pointer = pointers.get(event.pointerId), place = this.#place(pane, event);
+    const { pointers, camera, box } = pane, pointer = pointers.get(event.pointerId), place = this.place(pane, event);
     if (pointer.still && Math.hypot(event.clientX - pointer.start[0], event.clientY - pointer.start[1]) <= CLICK) return;
     for (const one of pointers.values()) one.still = false;
     const step = place.map((value, k) => value - pointer.at[k]);

@@ -16,10 +16,14 @@ export function launch() {
   return driver.launch({ executablePath: chromium, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
 }
 
+/** Where the folder is served: pages are to work below any. */
+const BELOW = '/some/where/';
+
 /** Serves a folder on a free port of this machine; returns its address, and how to end it. */
 export async function serve(folder) {
   const server = createServer((request, response) => {
-    const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname)), file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
+    const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
+    const inside = path.startsWith(BELOW) ? path.slice(BELOW.length) : 'none', file = join(folder, inside === '' || inside.endsWith('/') ? `${inside}index.html` : inside);
     if (!existsSync(file) || !statSync(file).isFile()) {
       response.writeHead(404).end();
       return;
@@ -28,7 +32,7 @@ export async function serve(folder) {
     createReadStream(file).pipe(response);
   });
   await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
-  return { address: `http://127.0.0.1:${server.address().port}/`, end: () => server.close() };
+  return { address: `http://127.0.0.1:${server.address().port}${BELOW}`, end: () => server.close() };
 }
 
 /** A page that fails the test for anything that goes wrong in it. */

@@ -118,6 +118,86 @@ test('a run is cancelled, and the next one goes', { skip }, async () => {
   assert.deepEqual(faults, []);
 });
 
+/** The middle of an edge on the layout, in pixels of the page: of the first of which the sides are apart, or are not. */
+const middleOf = (page, isCut) => page.evaluate(async (wanted) => {
+  const { projected } = await import('./viewer/cameras.mjs'), { seams, viewer, atlas } = document.getElementById('viewer').page;
+  const { edges } = seams, { uvs, faces } = viewer.geometry, box = viewer.panes[1].box.getBoundingClientRect();
+  for (let t = 0; t < faces.length / 3; ++t) {
+    for (const [k, corner] of edges.sidesOf(t).entries()) {
+      if (corner === null || edges.isBorder(edges.numberOf(corner)) || edges.isCut(edges.numberOf(corner), atlas.cornerUvs) !== wanted) continue;
+      const [a, b] = [faces[3 * t + k], faces[3 * t + (k + 1) % 3]], at = projected(viewer.views[1].matrix, [0, 1].map((d) => (uvs[2 * a + d] + uvs[2 * b + d]) / 2));
+      const c = faces[3 * t + (k + 2) % 3], inside = projected(viewer.views[1].matrix, [uvs[2 * c], uvs[2 * c + 1]]);
+      const [x, y] = [0, 1].map((d) => 0.97 * at[d] + 0.03 * inside[d]); // of this triangle, not of the next
+      return [box.left + (x + 1) / 2 * box.width, box.top + (1 - y) / 2 * box.height];
+    }
+  }
+  return null;
+}, isCut);
+
+test('seams open and close by clicks, by keys, and are taken back', { skip }, async () => {
+  const { page, faults } = await open(browser, server.address), state = () => page.evaluate(() => {
+    const { report, atlas } = document.getElementById('viewer').page;
+    return { charts: report.charts, proven: report.injective.result, seams: report.seam_over_root_area, uvs: Array.from(atlas.cornerUvs) };
+  });
+  await drop(page, 'cube.obj', cube);
+  await shown(page, 1);
+  const unwrapped = await state();
+  await page.click('text=Edit seams');
+  await shown(page, 2);
+  const first = await state();
+  assert.deepEqual(first.uvs, unwrapped.uvs);
+  assert.ok(Math.abs(first.seams - unwrapped.seams) < 1e-6, `${first.seams} ${unwrapped.seams}`);
+  await page.mouse.move(...await middleOf(page, false));
+  assert.equal(await page.locator('.page-edge:visible').count(), 2);
+  await keep(page, 'page-seams');
+  await page.mouse.click(...await middleOf(page, false));
+  await shown(page, 3);
+  const opened = await state();
+  assert.equal(opened.charts, first.charts + 1);
+  assert.ok(opened.proven && opened.seams > first.seams);
+  await page.keyboard.press('Control+z');
+  await shown(page, 4);
+  assert.deepEqual((await state()).uvs, first.uvs);
+  assert.ok(await page.isDisabled('text=Undo'));
+  await page.mouse.click(...await middleOf(page, true)); // a seam of the atlas closes: what is no disk then is opened elsewhere
+  await shown(page, 5);
+  assert.ok((await state()).proven);
+  const { bytes } = await downloaded(page, 'OBJ');
+  assert.equal(bytes.toString().split('\n').filter((line) => line.startsWith('f ')).length, 6);
+  const [x, y] = await middleOf(page, false); // Enter is a click in the middle of a panel
+  await page.evaluate(([left, top]) => {
+    const { viewer } = document.getElementById('viewer').page, pane = viewer.panes[1];
+    const place = viewer.place(pane, { clientX: left, clientY: top });
+    pane.camera.move(-place[0], -place[1]);
+    viewer.renderer.moved();
+    viewer.redraw();
+  }, [x, y]);
+  const before = await state();
+  await page.waitForTimeout(100);
+  await page.locator('.bv-pane').nth(1).focus();
+  await page.keyboard.press('Enter');
+  await shown(page, 6);
+  assert.notDeepEqual((await state()).uvs, before.uvs);
+  await page.click('text=Edit seams');
+  assert.equal(await page.getAttribute('text=Edit seams', 'aria-pressed'), 'false');
+  await page.locator('input[type=range]').fill('0.5'); // and the search goes on as before
+  await shown(page, 7);
+  assert.deepEqual(faults, []);
+});
+
+test('paths are the shortest ones', { skip }, async () => {
+  const { page } = await open(browser, server.address);
+  const path = await page.evaluate(async () => {
+    const { Edges } = await import('./edges.mjs'), positions = [], indices = [];
+    for (let i = 0; i <= 4; ++i) for (let j = 0; j <= 4; ++j) positions.push(i, j, 0);
+    for (let i = 0; i < 4; ++i) for (let j = 0; j < 4; ++j) indices.push(5 * i + j, 5 * i + j + 5, 5 * i + j + 6, 5 * i + j + 1);
+    const mesh = { positions: new Float64Array(positions), indices: new Uint32Array(indices), faceSizes: new Uint32Array(16).fill(4) };
+    const edges = new Edges(mesh, new Uint32Array()), number = (a, b) => Math.min(a, b) * 2 ** 26 + Math.max(a, b);
+    return Array.from(edges.pairsOf(edges.path(number(5, 6), number(8, 9)))).sort((a, b) => a - b);
+  });
+  assert.deepEqual(path, [5, 6, 6, 7, 7, 8, 8, 9]);
+});
+
 test('bad files get a sentence', { skip }, async () => {
   const { page } = await open(browser, server.address);
   for (const [name, bytes, words] of [

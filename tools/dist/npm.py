@@ -16,7 +16,7 @@ from wasm import runtime
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "bindings" / "npm"
-FILES = ["index.mjs", "index.d.ts", "tables.mjs", "README.md"]
+SUFFIXES = {".mjs", ".ts", ".md"}  # of what the package has; types.d.ts is the beginning of index.d.ts
 VIEWER = ROOT / "program" / "viewer"
 STACK = 8 << 20  # bytes: as threads of Linux have
 MOST_BYTES = 1_500_000  # of the package
@@ -44,8 +44,9 @@ def pack(build: Path, dist: Path, out: Path, version: str) -> Path:
     shutil.rmtree(stage, ignore_errors=True)
     stage.mkdir(parents=True)
     link(build, dist / "runtime" / "libc++.a", stage / "beltrami.wasm")
-    for name in FILES:
-        shutil.copy(PACKAGE / name, stage / name)
+    for path in sorted(PACKAGE.iterdir()):
+        if path.suffix in SUFFIXES and path.name != "types.d.ts":
+            shutil.copy(path, stage)
     shutil.copy(ROOT / "LICENSE", stage / "LICENSE")
     for licence in inputs.licences():
         shutil.copy(licence, stage / licence.name)

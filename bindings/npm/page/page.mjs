@@ -1,13 +1,15 @@
 // The page: a mesh goes in, is unwrapped by a worker, is looked at, and comes out with UVs.
 import { Viewer } from './viewer/viewer.mjs';
 import { FileError, readMesh } from './read.mjs';
-import { arraysOf, example, reportOf, writeReport } from './shown.mjs';
+import { SeamEditor } from './seams.mjs';
+import { arraysOf, editedAtlas, example, reportOf, writeReport } from './shown.mjs';
 import { writeGlb, writeObj } from './write.mjs';
 
 /** Milliseconds that the slider rests before a run begins. */
 const REST = 300;
 /** The slider goes by the logarithm of the energy above 2, which no map is below. */
 const LEAST_EXCESS = 0.01, MOST_EXCESS = 0.6;
+const EDITING = 'Click an edge, or press Enter, to open or close a seam there. With Shift the shortest path from the last one opens.';
 
 const make = (name, attributes = {}, ...children) => {
   const made = document.createElement(name);
@@ -35,10 +37,12 @@ class Page {
     this.running = make('div', { class: 'page-run', hidden: true }, this.progress, this.stage, button('Cancel', () => this.cancel()));
     this.fault = make('div', { class: 'page-fault', role: 'alert', hidden: true });
     this.downloads = ['OBJ', 'GLB', 'Report'].map((kind) => button(kind, () => this.download(kind), { disabled: true, 'aria-label': `Download ${kind}` }));
+    this.edit = button('Edit seams', () => this.editSeams(), { disabled: true, 'aria-pressed': 'false' });
+    this.undo = button('Undo', () => this.takeBack(), { disabled: true });
     const bar = make('div', { class: 'page-bar' },
       button('Open…', () => this.file.click(), { class: 'main' }), this.file,
       make('label', {}, 'Distortion', this.slider, this.aimed), make('label', {}, 'Effort', this.effort), make('label', {}, 'Texture', this.size),
-      make('span', { class: 'page-gap' }), this.running, make('label', {}, 'Download', ...this.downloads));
+      make('span', { class: 'page-gap' }), this.running, this.edit, this.undo, make('label', {}, 'Download', ...this.downloads));
     this.drop = make('div', { class: 'page-drop' }, make('h2', {}, 'Drop a mesh here'),
       make('p', {}, 'OBJ, STL, PLY or GLB. It is cut, flattened and packed in this browser: nothing is sent anywhere.'),
       make('div', {}, button('Choose a file…', () => this.file.click(), { class: 'main' }), button('Try an example', () => this.take('knot', example()))));
@@ -50,6 +54,11 @@ class Page {
   }
 
   #listen() {
+    addEventListener('keydown', (event) => {
+      if (event.key !== 'z' || !(event.ctrlKey || event.metaKey) || this.undo.disabled) return;
+      event.preventDefault();
+      this.takeBack();
+    });
     const over = (on) => (event) => {
       event.preventDefault();
       this.root.classList.toggle('page-over', on);
@@ -102,9 +111,18 @@ class Page {
     this.worker = null;
     clearTimeout(this.waiting);
     this.running.hidden = true;
+    this.#endEditing();
   }
 
-  unwrap() {
+  #endEditing() {
+    this.seams?.end();
+    this.seams = null;
+    this.edit.setAttribute('aria-pressed', 'false');
+    this.undo.disabled = true;
+  }
+
+  /** Has a new worker do something; its answers come to `answer`. */
+  #start(what, options, cornerUvs) {
     this.cancel();
     this.#fail('');
     this.running.hidden = false;
@@ -117,31 +135,84 @@ class Page {
       this.cancel();
       this.#fail(`This browser cannot run the library: ${event.message || 'it wants WebAssembly with SIMD and exceptions'}.`);
     };
-    this.worker.postMessage({
-      surface: { positions, indices, ...(faceSizes ? { faceSizes } : {}) },
-      options: { targetEnergy: this.target, effort: this.effort.value, resolution: Number(this.size.value), float32: true },
-    });
+    this.worker.postMessage({ what, surface: { positions, indices, ...(faceSizes ? { faceSizes } : {}), ...(cornerUvs ? { cornerUvs } : {}) }, options });
   }
 
-  #answer({ fraction, stage, atlas, failure }) {
+  unwrap() {
+    this.#start('unwrap', { targetEnergy: this.target, effort: this.effort.value, resolution: Number(this.size.value), float32: true });
+  }
+
+  /** Begins to edit what is shown, or ends it; what was edited stays. */
+  editSeams() {
+    if (this.seams) {
+      this.cancel();
+      return;
+    }
+    const { atlas } = this, onPlane = atlas.cornerUvs.slice();
+    atlas.cornerPages.forEach((page, corner) => {
+      onPlane[2 * corner] += page % 10;
+      onPlane[2 * corner + 1] += Math.floor(page / 10);
+    });
+    this.#start('begin', { effort: 'quick', resolution: Number(this.size.value), float32: true }, onPlane);
+    this.seams = new SeamEditor(this.viewer, this.mesh, atlas.triangles, (edit) => this.#askWorker({ what: 'seams', ...edit }));
+    this.edit.setAttribute('aria-pressed', 'true');
+  }
+
+  takeBack() {
+    this.seams.takeBack();
+    this.#askWorker({ what: 'undo' });
+  }
+
+  #askWorker(message) {
+    this.#fail('');
+    this.undo.disabled = true;
+    this.worker.postMessage(message);
+  }
+
+  #answer({ fraction, stage, atlas, edited, failure }) {
     if (stage !== undefined) {
       this.progress.value = fraction;
       this.stage.textContent = stage;
       return;
     }
-    this.cancel();
+    if (edited !== undefined) {
+      this.#showEdited(edited);
+      return;
+    }
     if (failure !== undefined) {
+      if (this.seams) {
+        this.seams.takeBack();
+        this.#showEdited(this.edited);
+      } else {
+        this.cancel();
+      }
       this.#fail(`${this.name}: ${failure}`);
       return;
     }
-    this.atlas = atlas;
+    this.cancel();
     this.unwrapped = { name: this.name, mesh: this.mesh };
-    this.arrays = arraysOf(this.mesh, atlas);
-    this.report = reportOf(this.name, atlas);
     this.drop.remove();
-    this.viewer.show(this.arrays, this.report, { name: this.name });
-    for (const one of this.downloads) one.disabled = false;
+    this.#show(atlas, arraysOf(this.mesh, atlas), false);
+    for (const one of [...this.downloads, this.edit]) one.disabled = false;
+  }
+
+  #show(atlas, arrays, stays) {
+    this.atlas = atlas;
+    this.arrays = arrays;
+    this.report = reportOf(this.name, atlas);
+    this.viewer.show(arrays, this.report, { name: this.name, stays });
     this.root.dataset.shown = String(Number(this.root.dataset.shown ?? 0) + 1);
+  }
+
+  #showEdited(edited) {
+    const { seams } = this, { cornerUvs } = edited;
+    this.running.hidden = true;
+    this.edited = edited;
+    const { atlas, arrays } = editedAtlas(this.atlas, edited, this.mesh, seams.edges.vertices, seams.seamLength(cornerUvs));
+    seams.hide();
+    this.#show(atlas, { ...arrays, marked: seams.marked(cornerUvs) }, true);
+    this.viewer.about.textContent = EDITING;
+    this.undo.disabled = edited.undos === 0;
   }
 
   async download(kind) {

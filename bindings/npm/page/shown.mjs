@@ -58,6 +58,60 @@ export function arraysOf(mesh, atlas) {
   return arrays;
 }
 
+/** Of an edited atlas the energy of which so much of the area is below, weighed by areas on the surface. */
+function percentile(energies, areas, share) {
+  const order = Array.from(energies.keys()).sort((a, b) => energies[a] - energies[b]), all = areas.reduce((sum, area) => sum + area, 0);
+  let sum = 0;
+  for (const i of order) if ((sum += areas[i]) >= share * all) return energies[i];
+  return energies[order.at(-1)];
+}
+
+/**
+ * What a session of edits has made of an atlas, as `unwrap` would say it: pages are parted, corners of one vertex at one
+ * place share a UV vertex. `vertices`: of each corner, those at one place being one.
+ */
+export function editedAtlas(atlas, { cornerUvs, faceCharts, charts, report, certificate }, mesh, vertices, seamLength) {
+  const count = vertices.length, known = new Map(), uvs = [], cornerUvVertices = new Uint32Array(count), cornerPages = new Uint32Array(count);
+  const own = new cornerUvs.constructor(cornerUvs), boxes = new Map();
+  const chartOf = new Uint32Array(count);
+  for (let f = 0, corner = 0; corner < count; ++f) {
+    for (const end = corner + (mesh.faceSizes?.[f] ?? 3); corner < end; ++corner) {
+      chartOf[corner] = faceCharts[f];
+      const box = boxes.get(faceCharts[f]) ?? [Infinity, Infinity];
+      boxes.set(faceCharts[f], [Math.min(box[0], cornerUvs[2 * corner]), Math.min(box[1], cornerUvs[2 * corner + 1])]);
+    }
+  }
+  for (let corner = 0; corner < count; ++corner) {
+    const [column, row] = boxes.get(chartOf[corner]).map((least) => Math.max(Math.floor(least), 0));
+    cornerPages[corner] = column + 10 * row;
+    own[2 * corner] -= column;
+    own[2 * corner + 1] -= row;
+    const key = `${vertices[corner]} ${chartOf[corner]} ${own[2 * corner]} ${own[2 * corner + 1]}`;
+    if (!known.has(key)) {
+      known.set(key, known.size);
+      uvs.push(own[2 * corner], own[2 * corner + 1]);
+    }
+    cornerUvVertices[corner] = known.get(key);
+  }
+  const scale = charts.reduce((sum, chart) => sum + chart.scale * chart.triangles, 0) / charts.reduce((sum, { triangles }) => sum + triangles, 0);
+  const pages = cornerPages.reduce((most, page) => Math.max(most, page), 0) + 1;
+  const packing = atlas.packing && { ...atlas.packing, pages, margin: null, texelsPerUnit: scale * atlas.packing.resolution };
+  const changed = { ...atlas, status: report.status, cornerUvs: own, cornerUvVertices, cornerPages, uvVertices: Float64Array.from(uvs), faceCharts, certificate, packing };
+  const arrays = arraysOf(mesh, changed), areas = new Float64Array(arrays.energies.length);
+  let covered = 0, whole = 0;
+  for (let t = 0; t < areas.length; ++t) {
+    const [a, b, c] = arrays.faces.subarray(3 * t, 3 * t + 3), at = (v, k) => arrays.positions[3 * v + k];
+    const e = [0, 1, 2].map((k) => at(b, k) - at(a, k)), f = [0, 1, 2].map((k) => at(c, k) - at(a, k));
+    areas[t] = Math.hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]) / 2;
+    whole += areas[t];
+    const uv = (v, k) => arrays.uvs[2 * v + k];
+    covered += Math.abs((uv(b, 0) - uv(a, 0)) * (uv(c, 1) - uv(a, 1)) - (uv(b, 1) - uv(a, 1)) * (uv(c, 0) - uv(a, 0))) / 2;
+  }
+  const counts = { charts: charts.length, seamLength, area: whole, utilisation: covered / pages, seconds: report.seconds };
+  const energy = { symmetricDirichlet: report.symmetricDirichlet, p99: percentile(arrays.energies, areas, 0.99), max: arrays.energies.reduce((most, one) => Math.max(most, one), 2) };
+  return { atlas: { ...changed, report: { ...atlas.report, ...counts, ...energy } }, arrays };
+}
+
 /** The keys of the program's report that the viewer reads. */
 export function reportOf(name, atlas) {
   const { report, certificate, packing } = atlas;

@@ -1,21 +1,82 @@
-// Unwraps beside the page, which stays quick, and may end this worker to cancel.
-import { load } from '../beltrami/index.mjs';
+// Unwraps and edits beside the page, which stays quick, and may end this worker to cancel.
+import { load } from './beltrami/index.mjs';
 
 const loading = load();
 /** Milliseconds between two messages of progress. */
 const BETWEEN = 50;
+let editor = null;
+/** What `undo` goes back to, the latest last. */
+const marks = [];
 
-onmessage = async ({ data: { surface, options } }) => {
+function reported() {
+  let last = 0;
+  return (fraction, stage) => {
+    if (performance.now() - last < BETWEEN) return;
+    last = performance.now();
+    postMessage({ fraction, stage });
+  };
+}
+
+function edited() {
+  const { cornerUvs, faceCharts, charts, report } = editor;
+  postMessage({ edited: { cornerUvs, faceCharts, charts, report, certificate: editor.check(), undos: marks.length } });
+}
+
+/** Maps what an edit concerns, and lays it out among the rest; everything, where that has no room. */
+function follow() {
+  const before = new Set(editor.charts.map(({ id }) => id)), { corners } = editor.update();
+  if (corners.length === 0) return;
+  const { faceCharts } = editor, moved = new Set(editor.charts.map(({ id }) => id).filter((id) => !before.has(id)));
+  for (const face of facesOf(corners)) if (faceCharts[face] !== 0xffffffff) moved.add(faceCharts[face]);
   try {
-    const beltrami = await loading;
-    let last = 0;
-    const progress = (fraction, stage) => {
-      if (performance.now() - last < BETWEEN) return;
-      last = performance.now();
-      postMessage({ fraction, stage });
-    };
-    const atlas = beltrami.unwrap(surface, { ...options, progress });
+    editor.pack(Uint32Array.from(moved));
+  } catch (error) {
+    if (error.status !== 'BELTRAMI_E_NO_ROOM' && error.status !== 'BELTRAMI_E_INVALID_ARGUMENT') throw error;
+    editor.pack();
+  }
+}
+
+let facesOf = null;
+
+const actions = {
+  unwrap(beltrami, { surface, options }) {
+    const atlas = beltrami.unwrap(surface, { ...options, progress: reported() });
     postMessage({ atlas, version: beltrami.version });
+  },
+  begin(beltrami, { surface, options }) {
+    const corners = surface.indices.length, face = new Uint32Array(corners);
+    if (surface.faceSizes) surface.faceSizes.reduce((at, size, f) => { face.fill(f, at, at + size); return at + size; }, 0);
+    else for (let corner = 0; corner < corners; ++corner) face[corner] = Math.floor(corner / 3);
+    facesOf = (some) => some.map((corner) => face[corner]);
+    editor = beltrami.edit(surface, options);
+    editor.update();
+    edited();
+  },
+  seams(_, { open, close }) {
+    const mark = editor.save();
+    try {
+      if (open.length > 0) editor.openSeams(open);
+      if (close.length > 0) editor.closeSeams(close);
+      follow();
+    } catch (error) {
+      editor.restore(mark);
+      editor.forget(mark);
+      throw error;
+    }
+    marks.push(mark);
+    edited();
+  },
+  undo() {
+    const mark = marks.pop();
+    editor.restore(mark);
+    editor.forget(mark);
+    edited();
+  },
+};
+
+onmessage = async ({ data: { what, ...given } }) => {
+  try {
+    actions[what](await loading, given);
   } catch (error) {
     postMessage({ failure: error.message, status: error.status ?? '' });
   }

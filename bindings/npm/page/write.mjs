@@ -1,4 +1,5 @@
 // Meshes with their new UVs, for downloads.
+import { splitVertices } from './beltrami/split.mjs';
 import { accessorBytes, objLines, WIDTHS } from './read.mjs';
 
 const FLOAT = 5126, UNSIGNED_INT = 5125, VERTICES = 34962, INDICES = 34963;
@@ -82,21 +83,6 @@ class Document {
   }
 }
 
-/** Which vertex each corner gets: one for each pair of an old vertex and a UV. */
-function splitCorners(corners, vertexOf, uvOf) {
-  const known = new Map(), origins = [], firsts = [];
-  const indices = Uint32Array.from(corners, (corner) => {
-    const key = vertexOf(corner) * 2 ** 26 + uvOf(corner);
-    if (!known.has(key)) {
-      known.set(key, origins.length);
-      origins.push(vertexOf(corner));
-      firsts.push(corner);
-    }
-    return known.get(key);
-  });
-  return { indices, origins, firsts };
-}
-
 /** u, v of corners as glTF has them: its V axis points down. */
 function gltfUvs(atlas, corners) {
   const uvs = new Float32Array(2 * corners.length);
@@ -128,14 +114,13 @@ function intoGlb({ source }, atlas) {
   const olds = source.json.meshes.flatMap((mesh) => mesh.primitives);
   for (const { primitive, indices, corner } of source.primitives) {
     const made = primitives[olds.indexOf(primitive)], count = indices.length - indices.length % 3;
-    const corners = Array.from({ length: count }, (_, i) => corner + i);
-    const split = splitCorners(corners, (c) => indices[c - corner], (c) => atlas.cornerUvVertices[c]);
+    const split = splitVertices(indices.slice(0, count), atlas.cornerUvVertices.subarray(corner, corner + count));
     const copy = (attributes) => Object.fromEntries(Object.entries(attributes).map(([name, index]) => [name, gathered(document, source, index, split.origins)]));
     const { TANGENT, TEXCOORD_0, ...others } = primitive.attributes; // these belonged to the old UVs
     made.attributes = copy(others);
-    made.attributes.TEXCOORD_0 = document.accessor(gltfUvs(atlas, split.firsts), VERTICES, { componentType: FLOAT, type: 'VEC2', count: split.firsts.length });
+    made.attributes.TEXCOORD_0 = document.accessor(gltfUvs(atlas, split.firsts.map((first) => corner + first)), VERTICES, { componentType: FLOAT, type: 'VEC2', count: split.firsts.length });
     if (primitive.targets) made.targets = primitive.targets.map(({ TANGENT: old, ...target }) => copy(target));
-    made.indices = document.accessor(split.indices, INDICES, { componentType: UNSIGNED_INT, type: 'SCALAR', count: split.indices.length });
+    made.indices = document.accessor(split.corners, INDICES, { componentType: UNSIGNED_INT, type: 'SCALAR', count: split.corners.length });
   }
   return document.glb;
 }
@@ -143,8 +128,8 @@ function intoGlb({ source }, atlas) {
 /** GLB. A GLB file keeps its materials, nodes, skins and animations; of others a new one is made, of triangles. */
 export function writeGlb(mesh, atlas) {
   if (mesh.source.format === 'glb') return intoGlb(mesh, atlas);
-  const corners = Array.from(atlas.triangles);
-  const split = splitCorners(corners, (corner) => mesh.indices[corner], (corner) => atlas.cornerUvVertices[corner]);
+  const { triangles } = atlas; // of corners
+  const split = splitVertices(triangles.map((corner) => mesh.indices[corner]), triangles.map((corner) => atlas.cornerUvVertices[corner]));
   const positions = Float32Array.from({ length: 3 * split.origins.length }, (_, i) => mesh.positions[3 * split.origins[Math.floor(i / 3)] + i % 3]);
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   positions.forEach((value, i) => {
@@ -156,9 +141,9 @@ export function writeGlb(mesh, atlas) {
   document.json.meshes = [{ primitives: [{
     attributes: {
       POSITION: document.accessor(positions, VERTICES, { componentType: FLOAT, type: 'VEC3', count, min: low, max: high }),
-      TEXCOORD_0: document.accessor(gltfUvs(atlas, split.firsts), VERTICES, { componentType: FLOAT, type: 'VEC2', count }),
+      TEXCOORD_0: document.accessor(gltfUvs(atlas, split.firsts.map((first) => triangles[first])), VERTICES, { componentType: FLOAT, type: 'VEC2', count }),
     },
-    indices: document.accessor(split.indices, INDICES, { componentType: UNSIGNED_INT, type: 'SCALAR', count: split.indices.length }),
+    indices: document.accessor(split.corners, INDICES, { componentType: UNSIGNED_INT, type: 'SCALAR', count: split.corners.length }),
   }] }];
   return document.glb;
 }

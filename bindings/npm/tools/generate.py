@@ -34,6 +34,8 @@ STRUCTS = [
     "beltrami_surface",
     "beltrami_uv_mesh",
     *python.CLASSES,
+    "beltrami_session",
+    "beltrami_session_chart",
 ]
 STRUCTS.remove("beltrami_stage")
 # As TypeScript has them.
@@ -47,7 +49,7 @@ RESULTS = {
     "beltrami_packing": "PackingReport",
 }
 LEFT_OUT = {"threads"}  # there is one
-BOOLEANS = {"injective", "searched", "reached"}
+BOOLEANS = {"injective", "searched", "reached", "due", "locked"}
 HIDDEN = {"struct_size", "reserved", "status", "error_element", "error_element_kind"}
 
 
@@ -72,7 +74,7 @@ def layout(declaration: str) -> dict[str, Any]:
         else:
             size = align = SIZES[c_type]
             kind = KINDS.get(c_type, {"uint64_t": "u64", "double": "f64"}.get(c_type, ""))
-            kind = "bool" if name in BOOLEANS else kind
+            kind = "bool" if name in BOOLEANS and c_type == "int32_t" else kind
         at = -(-at // align) * align
         members[name] = [at, kind] if count == 1 else [at, kind, count]
         at += size * count
