@@ -26,7 +26,9 @@ function(beltrami_limit_exports target folder)
     return()
   endif()
   if(APPLE AND BELTRAMI_ZIG)
-    return() # its linker takes no such list, and its C++ library is hidden; tools/dist/checks.py looks
+    # Its linker takes no such list, and its C++ library is hidden but for these; tools/dist/checks.py looks.
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/toolchains/macos_operators.cpp)
+    return()
   endif()
   if(APPLE)
     set(file ${folder}/beltrami.exports)

@@ -12,7 +12,7 @@ if(BELTRAMI_ZIG_TARGET MATCHES "^([a-z0-9_]+)-([a-z]+)")
     set(CMAKE_SYSTEM_NAME Windows)
   elseif(CMAKE_MATCH_2 STREQUAL "macos")
     set(CMAKE_SYSTEM_NAME Darwin)
-    set(CMAKE_SYSTEM_VERSION 20.0) # macOS 11: CMake reads a number with a point
+    set(CMAKE_SYSTEM_VERSION 20)
   else()
     set(CMAKE_SYSTEM_NAME Generic) # wasi
   endif()
@@ -42,6 +42,7 @@ set(CMAKE_DLLTOOL ${tools}/dlltool CACHE FILEPATH "")
 # CMake asks Xcode for these; zig brings its own.
 set(CMAKE_OSX_SYSROOT "" CACHE STRING "")
 set(CMAKE_OSX_DEPLOYMENT_TARGET "" CACHE STRING "")
+set(CMAKE_USER_MAKE_RULES_OVERRIDE ${CMAKE_CURRENT_LIST_DIR}/macos_rules.cmake)
 set(CMAKE_INSTALL_NAME_TOOL "/bin/true" CACHE FILEPATH "")
 # An installed file is as it was linked: the linker strips, and leaves no path of this machine.
 set(CMAKE_STRIP "/bin/true" CACHE FILEPATH "")

@@ -370,8 +370,8 @@ enum {
   /* (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0. */
   BELTRAMI_ENERGY_SYMMETRIC_ARAP = 1,
   /* 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most counts
-   * most, so that the worst faces are less so, at a mean that is a little higher. From D = 14 on
-   * a parabola instead of the exponential. */
+   * most. The worst faces are better for it, at a mean that is a little higher. From D = 14 on a
+   * parabola instead of the exponential. */
   BELTRAMI_ENERGY_EXPONENTIAL_DIRICHLET = 2
 };
 
@@ -429,8 +429,8 @@ BELTRAMI_API beltrami_status beltrami_set_float(beltrami_context* context, int32
 typedef void (*beltrami_job)(void* data, int32_t index);
 
 /* A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
- * all calls have returned. They may come from any threads, several at a time or one after the
- * other, and from the thread of the loop itself; a thread wants a stack of 512 KiB. Neither the
+ * all calls have returned. They may come from any threads, also that of the loop itself, several at
+ * a time or one after the other. A thread wants a stack of 512 KiB. Neither the
  * loop nor the threads may leave a job by an exception. */
 typedef void (*beltrami_parallel_for)(void* user, int32_t count, beltrami_job job, void* data);
 
@@ -482,7 +482,7 @@ typedef struct beltrami_mesh {
   uint64_t face_count;       /* at most 700,000,000 */
   beltrami_buffer positions; /* vertex_count items of 3: F32 or F64, in any unit of length */
   beltrami_buffer indices;   /* face_count items of 3: U32 or U64, counter-clockwise */
-  /* NULL, or where the caller asks for an end: the function that this mesh is given to looks there
+  /* NULL, or where the caller asks for an end. The function that this mesh is given to looks there
    * every few milliseconds, and returns CANCELLED if the number is not 0. Any thread and any signal
    * handler may set it. */
   const int32_t* cancel;
@@ -503,25 +503,28 @@ BELTRAMI_API beltrami_status beltrami_set_mesh(beltrami_context* context,
 typedef int32_t (*beltrami_progress)(void* user, double fraction, const char* stage);
 
 /* Estimates how many bytes of memory the library will hold at the peak of the next beltrami_run,
- * with the mesh and the options as they are set: the stored mesh and the results of the last run
- * included, arrays of the caller and other contexts not. It is told from counts of the mesh (of
- * the vertices, faces, boundary edges and regular vertices, and for GIF and FLIM of the boundary's
- * bridges), from the method, flatten, refine, delaunay, injectivity, coarse-faces and threads; it
- * is at least 40 MiB. Valid for solver:native. It is the least memory-limit that the run can do
- * with. Without a limit a run may take several times as much on hard meshes, where Newton steps end
- * a blocked polish, the repair embeds the whole layout anew, or noise takes a factor of the whole
- * mesh (of ten million faces ten times): with one it does without these, or ends.
- * Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
+ * with the mesh and the options as they are set. The stored mesh and the results of the last run
+ * count, arrays of the caller and other contexts do not. Valid for solver:native. It is told from
+ * the options and from counts of vertices, faces and boundary edges, and is at least 40 MiB.
+ *
+ * It is the least memory-limit that the run can do with. Without a limit a run of a hard mesh may
+ * take several times as much, of ten million noisy faces ten times: Newton steps end a blocked
+ * polish, the repair embeds the whole layout anew, or noise takes a factor of the whole mesh. With
+ * a limit it does without these, or ends. Errors: INVALID_STATE (no mesh), INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_estimate_memory(beltrami_context* context, uint64_t* bytes);
 
 /* Flattens the mesh. `progress` may be NULL. The context's earlier results are kept if it fails.
- * Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32; errors:
- * INVALID_STATE (no mesh), INVALID_ARGUMENT (an option that another one leaves without effect is
- * not at its default: flatten with another method than beltrami, delaunay with cm, tutte or
- * uv-prolongation, injectivity with tutte, gif or bff unless refined, refine-iterations without
- * refine), CANCELLED, OUT_OF_MEMORY (also before any work, if the estimate exceeds
- * the option memory-limit, and later, if it has no room for what noise takes), SOLVER,
- * INTERNAL (also if `progress` throws a C++ exception). */
+ * Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, or an error:
+ *
+ *   INVALID_STATE     there is no mesh
+ *   INVALID_ARGUMENT  an option that another one leaves without effect is not at its default:
+ *                     flatten with another method than beltrami; delaunay with cm, tutte or
+ *                     uv-prolongation; injectivity with tutte, or with gif or bff unless refined;
+ *                     refine-iterations without refine
+ *   OUT_OF_MEMORY     also before any work, if the estimate exceeds the option memory-limit, and
+ *                     later, if it has no room for what noise takes
+ *   INTERNAL          also if `progress` throws a C++ exception
+ *   CANCELLED, SOLVER */
 BELTRAMI_API beltrami_status beltrami_run(beltrami_context* context, beltrami_progress progress,
                                           void* user);
 
@@ -540,9 +543,9 @@ typedef struct beltrami_certificate {
   uint64_t positive; /* faces of positive, negative, zero area in UV */
   uint64_t negative;
   uint64_t degenerate;
-  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not: all of
-                                * them while they are few, else at least so many (it takes and
-                                * lists no more than about n log n of n edges) */
+  uint64_t boundary_crossings; /* pairs of boundary edges that meet where they should not: of n
+                                * edges all pairs while they are fewer than about n log n, else
+                                * at least so many */
   uint64_t first_bad_face;     /* a face that is not positive, or BELTRAMI_NO_ELEMENT */
   uint64_t first_crossing[2];  /* a vertex of each of two crossing edges, or BELTRAMI_NO_ELEMENT */
   uint64_t error_element;      /* the element of an error status, or BELTRAMI_NO_ELEMENT */
@@ -550,8 +553,8 @@ typedef struct beltrami_certificate {
   int32_t reserved;            /* 0 */
 } beltrami_certificate;
 
-/* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given
- * (NaN where no face is left to count).
+/* Distortion energies: means over the faces weighted by 3D area, at the scale of the UVs as given.
+ * NaN where no face is left to count.
  * s1 >= s2 are the singular values of the map of a face. Faces without 3D area, or whose map has no
  * finite energy (flipped or degenerate), are left out and counted. */
 typedef struct beltrami_energy {
@@ -599,7 +602,8 @@ typedef struct beltrami_stage {
 } beltrami_stage;
 
 /* The functions below that return a status fail with INVALID_STATE before the first run with a
- * result, and with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride. */
+ * result. They fail with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride.
+ */
 
 /* Counts, area and cost of the last run with a result; the counts are those of the try whose map
  * was kept. Errors: INVALID_STATE, INVALID_ARGUMENT. */
@@ -650,7 +654,7 @@ BELTRAMI_API beltrami_status beltrami_get_stage(beltrami_context* context, int32
 
 /* Polygons in the caller's memory: any number of components, with holes and handles or without,
  * closed or open, of any quality. Nothing is refused but indices out of range, numbers that are not
- * finite, and surfaces without any area: what is not manifold is parted, faces that disagree are
+ * finite, and surfaces without any area. What is not manifold is parted, faces that disagree are
  * turned, and every corner gets its UV. A corner is one vertex of one face; corners are counted
  * from 0, face after face. Buffers said to be optional are left out by data NULL. */
 typedef struct beltrami_surface {
@@ -725,43 +729,46 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
                                                   uint64_t* repeating);
 
 /* Cuts a surface into charts that are disks, flattens each with the options of beltrami_run (but
- * for delaunay), packs them onto pages (or with the option pack at NONE lays them out side by side
- * at the surface's own scale), and judges the whole. The surface is read, not kept. The context's
- * mesh and the results of beltrami_run stay; those of an earlier beltrami_unwrap are kept if it
- * fails. Returns OK, or with a result NOT_CONVERGED, NOT_INJECTIVE (a chart has no map, or one that
- * is not injective: beltrami_get_chart says which; or charts with pins lie on each other: the
- * certificate says where) or NOT_INJECTIVE_FLOAT32; errors: INVALID_ARGUMENT, EMPTY,
- * INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, NO_ROOM, CANCELLED, OUT_OF_MEMORY (also before
- * any chart is flattened, if one of the largest is estimated to need more than the option
- * memory-limit), INVALID_STATE (during a run), INTERNAL.
+ * for delaunay), packs them onto pages, and judges the whole. With the option pack at NONE they lie
+ * side by side at the surface's own scale. The surface is read, not kept. The context's mesh and
+ * the results of beltrami_run stay; those of an earlier beltrami_unwrap are kept if it fails.
+ * Returns OK, or with a result one of these:
+ *
+ *   NOT_CONVERGED, NOT_INJECTIVE_FLOAT32
+ *   NOT_INJECTIVE     a chart has no map, or one that is not injective, as beltrami_get_chart says;
+ *                     or charts with pins lie on each other, as the certificate says
+ *
+ * or an error: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE, ZERO_AREA, PINS, NO_ROOM,
+ * CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. OUT_OF_MEMORY also comes before
+ * any chart is flattened, if a large one is estimated to need more than the option memory-limit.
  *
  * Charts with pins stay where the pins put them, and the others lie above their box. With one pin
- * the free map is moved there, with two it is turned and scaled as well; with more its energy is
+ * the free map is moved there, with two it is turned and scaled as well. With more its energy is
  * minimised with the pins held, at the scale of the similarity that fits them best, which is the
- * chart's density then: never mirrored. The certificate judges pins like all else; where the
+ * chart's density then. It is never mirrored. The certificate judges pins like all else; where the
  * boundary of a chart is pinned so that it touches itself, that is no overlap. Where pins cannot be
- * met the call fails with PINS and the corner of the first pin that cannot be met together with
- * those before it: what is proven before the flattening first (two UV vertices at one place, a face
- * turned over, boundary edges that cross, a boundary that runs clockwise), else after every attempt
- * to reach them without folding a face. Pins go with neither densities nor the option unit-square,
- * nor with those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone.
- * Pins of kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale
- * open, a chart keeps its own.
+ * met the call fails with PINS and the first corner that cannot be met together with those before
+ * it. Proven before the flattening: two UV vertices at one place, a face turned over, boundary
+ * edges that cross, a boundary that runs clockwise. Else every attempt to reach the pins without
+ * folding a face has failed. Pins go with neither densities nor the option unit-square, nor with
+ * those of pages: INVALID_ARGUMENT. Pins of faces without area set their corners alone. Pins of
+ * kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale open, a
+ * chart keeps its own.
  *
  * Charts with straight borders are turned by quarters alone, and what is straight keeps one number
  * to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
- * rectangle without given corners that is rows and columns of quads becomes a grid. Where an edge
- * cuts off a part of a chart whose border is all on one line, that part of the border is left out
- * of it, for its faces would have no area. Where no injective map is found the call fails with PINS
- * and the face of the rectangle, or a vertex of the straight edges; edges that are none, branch or
- * form a loop, and charts with pins, are INVALID_ARGUMENT. */
+ * rectangle without given corners that is rows and columns of quads becomes a grid. An edge may cut
+ * off a part of a chart whose border is all on one line: that part is left out, for its
+ * faces would have no area. Where no injective map is found the call fails with PINS and
+ * the face of the rectangle, or a vertex of the straight edges. Edges that are none, branch or form
+ * a loop, and charts with pins, are INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);
 
 /* The same for several surfaces at once: their charts share pages, at one scale, and one verdict.
  * Vertices, faces, corners and triangles count through all of them, one surface after another, in
- * results and in errors; so do UV vertices, of which those of a surface are consecutive, too.
+ * results and in errors. So do UV vertices: those of a surface are consecutive, too.
  * Vertices of two surfaces are never welded. What is left out of some has no effect on those:
  * densities of 1, no labels, no paint. `cancel` of the first counts. Errors: as above, and
  * INVALID_ARGUMENT for NULL, EMPTY for no surfaces at all. */
@@ -863,9 +870,9 @@ typedef struct beltrami_atlas_certificate {
   int32_t reserved;           /* 0 */
 } beltrami_atlas_certificate;
 
-/* The functions below fail with INVALID_STATE before the first beltrami_unwrap with a result, and
- * with INVALID_ARGUMENT for NULL, an unset struct_size, an index out of range, or an odd type or
- * stride. */
+/* The functions below fail with INVALID_STATE before the first beltrami_unwrap with a result. They
+ * fail with INVALID_ARGUMENT for NULL, an unset struct_size, an index out of range, or an odd type
+ * or stride. */
 
 /* Counts, energy and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_atlas(beltrami_context* context, beltrami_atlas* out);
@@ -1015,8 +1022,8 @@ BELTRAMI_API beltrami_status beltrami_get_page_utilisations(beltrami_context* co
                                                             int32_t type, uint64_t stride);
 
 /* Writes the page of each chart, counted from 0: `type` U32 or U64. As tiles (UDIM) page k is
- * 1001 + k: there u is greater by k mod 10, and v by k div 10, and no rounding to the type of the
- * UVs folds what the certificate found whole. Errors: INVALID_STATE, INVALID_ARGUMENT. */
+ * 1001 + k: there u is greater by k mod 10, and v by k div 10. No rounding to the type of the UVs
+ * folds what the certificate found whole. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_chart_pages(beltrami_context* context, void* out,
                                                       int32_t type, uint64_t stride);
 
@@ -1034,9 +1041,9 @@ enum {
   BELTRAMI_TEXEL_COVERED = 2 /* a face has a point in common with it */
 };
 
-/* Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number: rows from the top (v = 1)
- * down, `stride` bytes from one to the next (0: as many as the resolution). Errors: INVALID_STATE,
- * INVALID_ARGUMENT, OUT_OF_MEMORY. */
+/* Writes one byte for each texel of a page, a BELTRAMI_TEXEL_ number, in rows from the top (v = 1)
+ * down. From one row to the next are `stride` bytes (0: as many as the resolution). Errors:
+ * INVALID_STATE, INVALID_ARGUMENT, OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_get_page_mask(beltrami_context* context, uint64_t page,
                                                     uint8_t* out, uint64_t stride);
 
@@ -1056,8 +1063,8 @@ BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* contex
 
 /* A host with a user in front of it begins a session over one surface, notes edits in it, and asks
  * for an update after each. An update maps the charts that the edits concern and no others, from
- * the maps that they have: a seam that opens leaves its chart as it lies, sides that are closed are
- * aligned by a similarity, and a pin that moves draws its chart along. What cannot start so is
+ * the maps that they have. A seam that opens leaves its chart as it lies. Sides that are closed are
+ * aligned by a similarity. A pin that moves draws its chart along. What cannot start so is
  * mapped anew, near its old place. Each chart's map is judged exactly at once, the atlas by
  * beltrami_session_check. A context holds one session. Its flattening is that of the options when
  * it began; those of packing and the number of threads count at each call.
@@ -1096,10 +1103,10 @@ BELTRAMI_API beltrami_status beltrami_session_set_pins(beltrami_context* context
                                                        const beltrami_buffer* corners,
                                                        const beltrami_buffer* uvs, uint64_t count);
 
-/* Says what is held of the pins that are set, which all are POINT at first: `count` items of 1, U32
- * or U64, BELTRAMI_PIN_ numbers in the order of the pins, and as many of 2, F32 or F64, directions
- * of those of kind LINE, or NULL without any. A chart slides and turns as its pins let it. Errors:
- * INVALID_ARGUMENT (also for another count than that of the pins). */
+/* Says what is held of the pins that are set, which all are POINT at first. `kinds` are `count`
+ * items of 1, U32 or U64: BELTRAMI_PIN_ numbers in the order of the pins. `directions` are as many
+ * of 2, F32 or F64, of those of kind LINE, or NULL without any. A chart slides and turns as its
+ * pins let it. Errors: INVALID_ARGUMENT (also for another count than that of the pins). */
 BELTRAMI_API beltrami_status beltrami_session_set_pin_kinds(beltrami_context* context,
                                                             const beltrami_buffer* kinds,
                                                             const beltrami_buffer* directions,
@@ -1124,7 +1131,7 @@ BELTRAMI_API beltrami_status beltrami_session_renew(beltrami_context* context,
                                                     int32_t cold);
 
 /* Cuts and maps what is due. A chart takes at most `steps` Newton steps from the map that it has
- * (0: to its minimum), and none where `seconds` of wall time are up (0: those of the option
+ * (0: to its minimum). It takes none where `seconds` of wall time are up (0: those of the option
  * time-limit). Then the call returns NOT_CONVERGED: maps are injective and better than before, and
  * the next call goes on with them. Charts without a map are mapped whatever the time. With 1 or 2
  * steps an update takes some milliseconds for each five thousand faces of a chart that is due.
@@ -1136,9 +1143,9 @@ BELTRAMI_API beltrami_status beltrami_session_update(beltrami_context* context, 
                                                      void* user);
 
 /* Packs charts onto pages by the options of beltrami_pack and effort, of which QUICK takes the
- * first layout that fits: those of the numbers given, as for beltrami_session_lock, among the
- * others, which stay; or with a count of 0 all. Locked charts and those with pins stay as well.
- * Charts keep their sizes to each other, and where some stay to these. Where there is no room
+ * first layout that fits. Charts of the numbers given, as for beltrami_session_lock, go among the
+ * others, which stay; with a count of 0 all are packed. Locked charts and those with pins stay as
+ * well. Charts keep their sizes to each other, and where some stay to these. Where there is no room
  * elsewhere charts stay where they are, if that is on the pages and injective. Page p is the unit
  * square at (p modulo 10, p / 10). Returns OK or NOT_INJECTIVE; errors: NO_ROOM, INVALID_ARGUMENT
  * (also where a chart that stays lies on no page, with a face), INVALID_STATE (also before the
@@ -1244,9 +1251,9 @@ enum {
   BELTRAMI_PIXELS_LINEAR = 0, /* as they are: roughness, heights, linear light */
   BELTRAMI_PIXELS_SRGB = 1,   /* colours, in linear light; a second or fourth channel is linear */
   BELTRAMI_PIXELS_SRGB_ALPHA = 2, /* the same, and a colour counts by that channel, its alpha */
-  BELTRAMI_PIXELS_NORMALS = 3,    /* of tangent space, with 3 or 4 channels: x and y of normals,
-                                   * 0 at the middle of the type's range (F32: 0.5), are turned from
-                                   * the axes of the old UVs to those of the new ones */
+  BELTRAMI_PIXELS_NORMALS = 3,    /* of tangent space, with 3 or 4 channels: x and y of normals
+                                   * are turned from the axes of the old UVs to those of the new
+                                   * ones. 0 is the middle of the type's range (F32: 0.5) */
   BELTRAMI_PIXELS_OCCLUSION = 4   /* none are read: the share of a grey sky that a face sees, from
                                    * 0 to 1, is written to all channels */
 };
@@ -1291,10 +1298,10 @@ typedef struct beltrami_bake_job {
                                * out: as MikkTSpace has them */
   uint64_t source_face_count; /* with source_positions */
   beltrami_buffer source_positions; /* optional: an item of 3 per corner of another surface of the
-                                     * same shape in the same place, F32 or F64. old_uvs and
-                                     * old_pages are then of its source_face_count faces, and each
-                                     * texel shows the nearest place of it, of a face that looks the
-                                     * same way. Not for NORMALS */
+                                     * same shape in the same place, F32 or F64. Then old_uvs and
+                                     * old_pages are of its source_face_count faces. Each texel
+                                     * shows the nearest place of it, of a face that looks the same
+                                     * way. Not for NORMALS */
   uint64_t resolution;              /* texels to the side of a new page, 1 to 32768 */
   uint64_t gutter;       /* texels around charts that continue them; all bits set: the whole
                           * page */
@@ -1327,13 +1334,19 @@ typedef struct beltrami_baked {
   double cpu_seconds;      /* of the whole process during the call */
 } beltrami_baked;
 
-/* Reads images through the old UVs of faces, and writes them for the new ones: one bilinear reading
- * where densities agree, else the mean of up to 4 x 4 places of a texel, of a smaller image where
- * these are too few. Where faces overlap the first is shown. It takes the option threads, on which
- * the bits do not depend; the context's mesh and results stay. Returns OK, or errors:
- * INVALID_ARGUMENT, also where most texels have no source (`out` has all numbers then, and the
- * pixels), EMPTY (no faces), NON_FINITE (corner: a new UV or a position), CANCELLED, OUT_OF_MEMORY,
- * INVALID_STATE (during a run). After an error pixels and masks hold anything. */
+/* Reads images through the old UVs of faces, and writes them for the new ones. Where densities
+ * agree that is one bilinear reading, else the mean of up to 4 x 4 places of a texel, of a smaller
+ * image where these are too few. Where faces overlap the first is shown. It takes the option
+ * threads, on which the bits do not depend; the context's mesh and results stay. Returns OK, or an
+ * error:
+ *
+ *   INVALID_ARGUMENT  also where most texels have no source; `out` has all numbers then, and the
+ *                     pixels are written
+ *   EMPTY             there are no faces
+ *   NON_FINITE        with the corner: a new UV or a position
+ *   CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a run)
+ *
+ * After another error pixels and masks hold anything. */
 BELTRAMI_API beltrami_status beltrami_bake(beltrami_context* context, const beltrami_bake_job* job,
                                            beltrami_baked* out, beltrami_progress progress,
                                            void* user);
@@ -1369,10 +1382,10 @@ BELTRAMI_API beltrami_status beltrami_measure(const beltrami_mesh* mesh, const b
                                               beltrami_energy* out, double* face_energies);
 
 /* Distortion of every face of any UVs, in the positions' unit of length: face_count items of 4
- * doubles, `stride` bytes from one face to the next (0: packed): the singular values s1 >= |s2| of
- * the map of the face (s2 < 0 where it is flipped), its symmetric Dirichlet and its symmetric ARAP
- * energy (infinite where it is flipped or degenerate in the plane). All four are NaN where a face
- * has no 3D area. Needs no topology. Errors: as of beltrami_measure. */
+ * doubles, `stride` bytes from one face to the next (0: packed). They are the singular values
+ * s1 >= |s2| of its map, its symmetric Dirichlet and its symmetric ARAP energy. Where it is flipped
+ * s2 is negative; there, and where it has no area in the plane, both energies are infinite. All
+ * four are NaN where a face has no 3D area. Needs no topology. Errors: as of beltrami_measure. */
 BELTRAMI_API beltrami_status beltrami_measure_faces(const beltrami_mesh* mesh,
                                                     const beltrami_buffer* uvs, void* out,
                                                     uint64_t stride);

@@ -47,11 +47,11 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_METHOD,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "method",
-        .summary = "How the map is computed: beltrami (fast and low in distortion), cm (composite "
-                   "majorization on the full mesh, the slow reference), tutte (into a circle, "
-                   "highly distorted), or a baseline to compare with: gif and bff on the "
-                   "surface's own metric, uv-prolongation of the coarse UVs (bff and "
-                   "uv-prolongation may flip).",
+        .summary =
+            "How the map is computed: beltrami (fast and low in distortion), cm (composite "
+            "majorization on the full mesh, the slow reference) or tutte (into a circle, highly "
+            "distorted). Baselines to compare with are gif and bff on the surface's own metric, "
+            "and uv-prolongation of the coarse UVs; bff and uv-prolongation may flip.",
         .minimum = 0,
         .maximum = std::size(kMethods) - 1,
         .choices = kMethods,
@@ -74,9 +74,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_COARSE_FACES,
         .type = BELTRAMI_TYPE_INT,
         .name = "coarse-faces",
-        .summary = "Faces of the simplified mesh that composite majorization runs on; 0 chooses "
-                   "1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 "
-                   "faces on go through levels.",
+        .summary = "Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% "
+                   "of the faces, at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces "
+                   "on go through levels.",
         .minimum = 0,
         .maximum = 700e6,
         .get = get<&Options::coarse_faces>,
@@ -130,11 +130,11 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_FLATTEN,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "flatten",
-        .summary = "How the method beltrami flattens the fine mesh: metric (Poisson solve with a "
-                   "free boundary and a polish), dirichlet (harmonic, boundary from the coarse "
-                   "map: faster, energy a little higher), gif (harmonic subspace of a few "
-                   "boundary vertices with a scaffold), flim (the same, local injectivity only) "
-                   "or bff (conformal, may flip).",
+        .summary =
+            "How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free "
+            "boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, "
+            "energy a little higher. gif: a harmonic subspace of a few boundary vertices with a "
+            "scaffold. flim: the same, local injectivity only. bff: conformal, may flip.",
         .minimum = 0,
         .maximum = std::size(kFlattens) - 1,
         .choices = kFlattens,
@@ -145,9 +145,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_INJECTIVITY,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "injectivity",
-        .summary = "What the optimisation sees to: global (no flips, no boundary crossings), "
-                   "local (no flips: parts may overlap, at a slightly lower energy) or auto "
-                   "(global, but for the method cm, which is left as the literature has it).",
+        .summary = "What the optimisation sees to: global (no flips, no boundary crossings), local "
+                   "(no flips: parts may overlap, at a slightly lower energy) or auto. That is "
+                   "global, but for the method cm, which is left as the literature has it.",
         .minimum = 0,
         .maximum = std::size(kInjectivities) - 1,
         .choices = kInjectivities,
@@ -217,10 +217,10 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_MEMORY_LIMIT,
         .type = BELTRAMI_TYPE_INT,
         .name = "memory-limit",
-        .summary = "Bytes of memory that a run is to stay within by its estimate: one that needs "
-                   "more ends before it starts, and steps that only hard meshes need are left out "
-                   "where they would exceed it, or end it if there is no map without them; 0 sets "
-                   "no limit.",
+        .summary =
+            "Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run "
+            "that needs more ends before it starts. Steps that only hard meshes need are left out "
+            "where they would exceed it, or end the run if there is no map without them.",
         .minimum = 0,
         .maximum = 1e14,
         .get = get<&Options::memory_limit>,
@@ -230,11 +230,11 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_CUT,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "cut",
-        .summary = "Where seams go beside those that are given: auto (short ones that are searched "
-                   "for, along which the atlas has the target-energy), minimal (a short cut graph "
-                   "where a piece is no disk), islands (the charts of the UVs that the mesh has; "
-                   "what is no disk of them is opened) or given (nowhere: those that are given are "
-                   "used as they are; what is no disk then is opened as by minimal).",
+        .summary =
+            "Where seams go beside those that are given. auto: short ones are searched for, along "
+            "which the atlas has the target-energy. minimal: a short cut graph where a piece is no "
+            "disk. islands: around the charts of the UVs that the mesh has, of which what is no "
+            "disk is opened. given: nowhere, and what is no disk is opened as by minimal.",
         .minimum = 0,
         .maximum = std::size(kCuts) - 1,
         .choices = kCuts,
@@ -309,11 +309,10 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_PRESET,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "preset",
-        .summary =
-            "What the seams are for: sets the options of the search that are not set otherwise: "
-            "none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, "
-            "flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts "
-            "1) or hard-surface (hard-seams 0.5, flat-seams 6).",
+        .summary = "What the seams are for: sets options of the search that are not set otherwise. "
+                   "none: their defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams "
+                   "0.5, flat-seams 2. texturing: concave-seams 0.6, hidden-seams 2. one-chart: "
+                   "max-charts 1. hard-surface: hard-seams 0.5, flat-seams 6.",
         .minimum = 0,
         .maximum = std::size(kPresets) - 1,
         .choices = kPresets,
@@ -372,9 +371,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_CONCAVE_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "concave-seams",
-        .summary = "How far seams seek concave edges and avoid convex ones: at a weight a one "
-                   "costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 "
-                   "does not tell them apart.",
+        .summary = "How far seams seek concave edges and avoid convex ones; 0 does not tell them "
+                   "apart. At a weight a one costs exp(-a c) of its length, where c goes from -1, "
+                   "convex, to 1, concave.",
         .minimum = 0,
         .maximum = 10,
         .get = get<&Options::weights, &SeamWeights::concavity>,
@@ -385,8 +384,8 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_HIDDEN_SEAMS,
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "hidden-seams",
-        .summary = "How far seams hide: at a weight b one costs 1 + b v times its length, where v "
-                   "goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not.",
+        .summary = "How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times "
+                   "its length, where v goes from 0, seen from nowhere, to 1, seen from all sides.",
         .minimum = 0,
         .maximum = 100,
         .get = get<&Options::weights, &SeamWeights::visibility>,
@@ -421,9 +420,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_PACK,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "pack",
-        .summary = "Where charts lie: pages (packed onto square pages of a texture, all at one "
-                   "scale, UVs in the unit square) or none (side by side in the unit of length of "
-                   "the mesh; so are charts with pins in any case).",
+        .summary = "Where charts lie: pages (on square pages of a texture, all at one scale, UVs "
+                   "in the unit square) or none (side by side, in the mesh's unit of length). "
+                   "Charts with pins always lie as for none.",
         .minimum = 0,
         .maximum = std::size(kPacks) - 1,
         .choices = kPacks,
@@ -507,9 +506,9 @@ const OptionEntry kOptions[] = {
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "fill-weight",
         .summary = "Length of seams, in roots of the area, that all of a page is worth to the "
-                   "search for seams: at 10 a chart is split in two where a tenth of the root of "
-                   "the area lets a hundredth more of the pages be filled; 0 splits none. Charts "
-                   "of fewer than 32 triangles and those without a seam stay whole.",
+                   "search for seams; 0 splits no chart. At 10 a chart is split in two where a "
+                   "tenth of the root of the area lets a hundredth more of the pages be filled. "
+                   "Charts of fewer than 32 triangles and those without a seam stay whole.",
         .minimum = 0,
         .maximum = 1e9,
         .get = get<&Options::fill_weight>,
@@ -545,9 +544,9 @@ const OptionEntry kOptions[] = {
         .key = BELTRAMI_OPTION_EFFORT,
         .type = BELTRAMI_TYPE_CHOICE,
         .name = "effort",
-        .summary = "How long short seams are searched for, and a dense packing: quick (half the "
-                   "time of normal, seams some 2% longer), normal or high (some three times the "
-                   "time of normal, seams some 2% shorter).",
+        .summary = "How long short seams are searched for, and a dense packing: quick, normal or "
+                   "high. quick takes half the time of normal, for seams some 2% longer. high "
+                   "takes some three times the time of normal, for seams some 2% shorter.",
         .minimum = 0,
         .maximum = std::size(kEfforts) - 1,
         .choices = kEfforts,
@@ -560,7 +559,7 @@ const OptionEntry kOptions[] = {
         .type = BELTRAMI_TYPE_FLOAT,
         .name = "flat-seams",
         .summary = "How many times as long the seams of a part may be if it then unfolds without "
-                   "distortion, as boxes and machined parts do along their edges; 0 spends all of "
+                   "distortion, as boxes and machined parts do along their edges. 0 spends all of "
                    "target-energy. Setting that or target-p99 sets this to 0: set it after them.",
         .minimum = 0,
         .maximum = 100,

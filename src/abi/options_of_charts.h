@@ -18,11 +18,10 @@ inline constexpr OptionEntry kStack = {
     .type = BELTRAMI_TYPE_CHOICE,
     .name = "stack",
     .summary =
-        "Whether components of one shape share texels: none, copies (those that a "
-        "rigid motion carries onto one before them lie on its charts), mirrored "
-        "(mirror images do, too) or halves (what is symmetric is cut along its plane, where "
-        "edges lie in that, and one half lies on the other). Not with pins, max-charts, "
-        "seam-budget or symmetric-seams.",
+        "Whether components of one shape share texels. none: no. copies: those that a rigid motion "
+        "carries onto one before them lie on its charts. mirrored: mirror images do, too. halves: "
+        "what is symmetric is cut along its plane, where edges lie in that, and one half lies on "
+        "the other. Not with pins, max-charts, seam-budget or symmetric-seams.",
     .minimum = 0,
     .maximum = std::size(kStacks) - 1,
     .choices = kStacks,
@@ -38,9 +37,9 @@ inline constexpr OptionEntry kRectify = {
     .type = BELTRAMI_TYPE_CHOICE,
     .name = "rectify",
     .summary =
-        "Which charts become rectangles along the axes: none, or grids (those that are rows "
-        "and columns of quads, as roads, tubes and cloths are: each column gets one width "
-        "and each row one height).",
+        "Which charts become rectangles along the axes: none, or grids. These are rows and columns "
+        "of quads, as roads, tubes and cloths have: each column gets one width and each row one "
+        "height.",
     .minimum = 0,
     .maximum = std::size(kRectifies) - 1,
     .choices = kRectifies,
@@ -54,10 +53,9 @@ inline constexpr OptionEntry kSnapTexels = {
     .type = BELTRAMI_TYPE_INT,
     .name = "snap-texels",
     .summary =
-        "1 turns each chart to the most of its border that is straight, then by quarters "
-        "alone, and moves its straight borders onto the edges of texels, as lightmaps and "
-        "pixel art want it: nothing by more than half a texel. Charts then keep a texel more "
-        "room.",
+        "1 turns each chart to the most of its border that is straight, then by quarters alone, "
+        "and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. "
+        "Nothing moves by more than half a texel, and charts keep a texel more room.",
     .minimum = 0,
     .maximum = 1,
     .get = get<&Options::snap_texels>,

@@ -52,6 +52,7 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
   state_.opened.assign(state_.seams.size(), false);
   state_.locked.assign(faces, false);
   state_.chart_of_face.assign(faces, kNone);
+  state_.place_in_chart.assign(faces, kNone);
   state_.pins = std::move(input.pins);
   std::vector<Index> all(faces);
   std::iota(all.begin(), all.end(), 0);
@@ -63,9 +64,6 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
     own.scale = std::ldexp(1.0, -ground_.exponent);
     own.first = first_input_face(part, ground_.admitted);
     own.part = std::make_shared<const AtlasChart>(std::move(part));
-    for (Index f = 0; f < own.faces(); ++f) {
-      state_.chart_of_face[own.part->chart.input_face[f]] = size_of(state_.charts);
-    }
     std::vector<Vec2> uvs(own.mesh().positions.size(), Vec2::Zero());
     if (!input.corner_uvs.empty()) {
       for (Index f = 0; f < own.faces(); ++f) {
@@ -84,6 +82,7 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
     }
     own.uvs = std::make_shared<const std::vector<Vec2>>(std::move(uvs));
     state_.charts.push_back(std::move(own));
+    state_.own_faces(size_of(state_.charts) - 1);
   }
 }
 
@@ -205,8 +204,7 @@ void Session::commit(SessionState next) {
 
 const Vec2& Session::uv(Index corner) const {
   const SessionChart& chart = state_.charts[state_.chart_of_face[corner / 3]];
-  const Index f = chart.local_face(corner / 3);
-  return (*chart.uvs)[chart.mesh().faces[f][corner % 3]];
+  return (*chart.uvs)[state_.vertices_in_chart(corner / 3)[corner % 3]];
 }
 
 double Session::energy() const {

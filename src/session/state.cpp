@@ -1,15 +1,16 @@
 #include "session/state.h"
 
-#include <algorithm>
-
 #include "mesh/chart.h"
 
 namespace beltrami {
 
-Index SessionChart::local_face(Index face) const {
-  const std::vector<Index>& faces = part->chart.input_face;
-  return static_cast<Index>(
-      std::lower_bound(faces.begin(), faces.begin() + part->real_faces, face) - faces.begin());
+void SessionState::own_faces(Index c) {
+  const SessionChart& chart = charts[c];
+  for (Index f = 0; f < chart.faces(); ++f) {
+    const Index face = chart.part->chart.input_face[f];
+    chart_of_face[face] = c;
+    place_in_chart[face] = f;
+  }
 }
 
 void CornerUvs::read(const SessionChart& chart) {

@@ -50,8 +50,6 @@ struct SessionChart {
 
   Index faces() const { return part->real_faces; }
   const DiskMesh& mesh() const { return part->chart.mesh; }
-  /// Its place among the chart's faces of a face of the ground that is one of them.
-  Index local_face(Index face) const;
 };
 
 struct SessionState {
@@ -59,11 +57,19 @@ struct SessionState {
   EdgeMarks opened;            ///< further edges that had to be cut to make disks
   std::vector<Index> toggled;  ///< half-edges whose seams have changed since the charts were cut
   std::vector<Pin> pins;
-  std::vector<bool> locked;          ///< per face of the ground
-  std::vector<bool> selected;        ///< likewise; none: all are
-  std::vector<SessionChart> charts;  ///< by their least face of the input
-  std::vector<Index> chart_of_face;  ///< per face of the ground
+  std::vector<bool> locked;           ///< per face of the ground
+  std::vector<bool> selected;         ///< likewise; none: all are
+  std::vector<SessionChart> charts;   ///< by their least face of the input
+  std::vector<Index> chart_of_face;   ///< per face of the ground
+  std::vector<Index> place_in_chart;  ///< likewise, among the faces of its chart
   Index next_id = 0;
+
+  /// Notes of the faces of chart `c` that they are its own.
+  void own_faces(Index c);
+  /// The vertices in its chart of a face of the ground.
+  const Triangle& vertices_in_chart(Index face) const {
+    return charts[chart_of_face[face]].mesh().faces[place_in_chart[face]];
+  }
 
   bool may_move(Index face) const { return !locked[face] && (selected.empty() || selected[face]); }
 };

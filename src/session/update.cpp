@@ -74,8 +74,7 @@ EdgeMarks Updater::standing(const std::vector<Index>& faces) const {
   const Surface& surface = session_.ground_.admitted.surface;
   std::vector<Index> vertex(surface.twin.size(), kNone);  // per corner that of its chart
   for (const Index f : faces) {
-    const SessionChart& chart = next_.charts[next_.chart_of_face[f]];
-    const Triangle& face = chart.mesh().faces[chart.local_face(f)];
+    const Triangle& face = next_.vertices_in_chart(f);
     for (int k = 0; k < 3; ++k) vertex[3 * f + k] = face[k];
   }
   EdgeMarks standing(surface.twin.size(), false);
@@ -162,12 +161,8 @@ void Updater::replace(const std::vector<bool>& affected, std::vector<SessionChar
   }
   std::sort(charts.begin(), charts.end(),
             [](const SessionChart& a, const SessionChart& b) { return a.first < b.first; });
-  for (Index c = 0; c < size_of(charts); ++c) {
-    for (Index f = 0; f < charts[c].faces(); ++f) {
-      next_.chart_of_face[charts[c].part->chart.input_face[f]] = c;
-    }
-  }
   next_.charts = std::move(charts);
+  for (Index c = 0; c < size_of(next_.charts); ++c) next_.own_faces(c);
 }
 
 /// The pins of each chart. Throws Error PINS where two of one vertex lie apart.
@@ -179,8 +174,7 @@ std::vector<Updater::Pins> Updater::pins_of_charts() const {
     const Index corner = session_.ground_.own_corner(pin.face, pin.corner);
     if (corner == kNone) continue;  // of a face that is in no chart
     const Index c = next_.chart_of_face[corner / 3];
-    const SessionChart& chart = next_.charts[c];
-    const Index vertex = chart.mesh().faces[chart.local_face(corner / 3)][corner % 3];
+    const Index vertex = next_.vertices_in_chart(corner / 3)[corner % 3];
     const auto [at, is_first] = first_at.try_emplace({c, vertex}, i);
     if (is_first) {
       pins[c].push_back({vertex, pin.uv, i, pin.kind, pin.along});

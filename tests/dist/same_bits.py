@@ -21,6 +21,10 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools" / "dist"))
+import inputs  # noqa: E402
+from targets import TARGETS  # noqa: E402
+
 COW, BUST = ROOT / "examples/data/spot.obj", ROOT / "examples/data/nefertiti_disk.obj"
 WINE = ["wine64", "/usr/lib/wine/wine64"]
 # A box without a lid, in polygons, with a name that is not ASCII.
@@ -28,10 +32,20 @@ BOX = """v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1
 f 1 2 3 4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
 
 
+def wine() -> str | None:
+    """Return what runs programs of Windows here, if there is something."""
+    return next((name for name in WINE if shutil.which(name)), None)
+
+
+def environment() -> dict[str, str]:
+    """Return that of what is run, for wine with a folder of its own."""
+    return os.environ | {"WINEDEBUG": "-all", "WINEPREFIX": str(ROOT / "build" / "dist" / "wine")}
+
+
 def runner(program: Path) -> list[str] | None:
     """Return what runs a program here; None where there is nothing."""
     if program.suffix == ".exe":
-        found = next((name for name in WINE if shutil.which(name)), None)
+        found = wine()
         return [found] if found else None
     machine = program.read_bytes()[18]
     names = {0x3E: "x86_64", 0xB7: "aarch64"}
@@ -46,14 +60,11 @@ def call(
     words: list[str], place: Path, *arguments: str | Path
 ) -> subprocess.CompletedProcess[bytes]:
     """Run a program in a folder, with nothing to read."""
-    command = [*words, *arguments]
-    prefix = ROOT / "build" / "dist" / "wine"
-    environment = os.environ | {"WINEDEBUG": "-all", "WINEPREFIX": str(prefix)}
     return subprocess.run(
-        command,
+        [*words, *arguments],
         stdin=subprocess.DEVNULL,
         capture_output=True,
-        env=environment,
+        env=environment(),
         cwd=place,
         check=False,
     )
@@ -92,6 +103,21 @@ def compare(native: Path, words: list[str], place: Path, quick: bool) -> None:
     print(f"same_bits: {told}")
 
 
+def link(stage: Path, place: Path) -> Path:
+    """Build the example in C as one who has nothing but the archive; return the program."""
+    name = "flatten.exe" if (stage / "bin" / "beltrami.dll").exists() else "flatten"
+    target = ["-target", TARGETS[stage.name].zig, f"-I{stage / 'include'}", f"-L{stage / 'lib'}"]
+    words = [inputs.zig_path(), "cc", *target, ROOT / "examples/c/flatten.c", "-lbeltrami", "-lm"]
+    folder = stage / ("bin" if name.endswith(".exe") else "lib")  # where the shared library is
+    words += ["-Wl,-rpath," + str(folder), "-o", place / name]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"{stage.name}: the example in C: {done.stderr[-2000:]}")
+    for library in folder.glob("*.dll"):
+        shutil.copy(library, place)
+    return place / name
+
+
 def main() -> None:
     """Compare, where there is something that runs the program."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -107,6 +133,12 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory() as place:
         compare(arguments.native.resolve(), [*words, str(program)], Path(place), arguments.quick)
+        linked = link(arguments.stage.resolve(), Path(place))
+        done = call([*words, str(linked)], Path(place))
+        said = [line for line in done.stdout.decode().splitlines() if "injective" in line]
+        if done.returncode or "NOT" in "".join(said):
+            sys.exit(f"the example in C ends with {done.returncode}: {done.stderr.decode()}")
+        print(f"same_bits: a program in C: {said[0]}")
 
 
 if __name__ == "__main__":

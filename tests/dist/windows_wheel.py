@@ -12,7 +12,6 @@ shell nor signals.
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import shutil
 import subprocess
@@ -23,10 +22,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools" / "dist"))
 import inputs  # noqa: E402
+import same_bits  # noqa: E402
 
 COW = ROOT / "examples" / "data" / "spot.obj"
 TESTS = ROOT / "bindings" / "python" / "tests"
-WINE = ["wine64", "/usr/lib/wine/wine64"]
 #: Of the package's tests: what a host calls. Others compile, or speak to a shell.
 FILES = ["bake", "checks", "editor", "input", "pack", "seams", "straight", "unwrap", "xatlas"]
 PROGRAM = """
@@ -75,11 +74,7 @@ def write_forwarder(home: Path) -> None:
 
 def call(wine: str, home: Path, *words: str) -> str:
     """Run Python under wine; return what it prints. Ends this process where it fails."""
-    environment = os.environ | {
-        "WINEDEBUG": "-all",
-        "WINEPREFIX": str(ROOT / "build" / "dist" / "wine"),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
+    environment = same_bits.environment() | {"PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
         [wine, home / "python.exe", *words],
         stdin=subprocess.DEVNULL,
@@ -110,7 +105,7 @@ def main() -> None:
     for name in ("native", "wheel", "python", "packages", "place"):
         parser.add_argument(f"--{name}", type=Path, required=True)
     arguments = parser.parse_args()
-    wine = next((name for name in WINE if shutil.which(name)), None)
+    wine = same_bits.wine()
     if wine is None:
         print("windows_wheel: nothing here runs programs of Windows: skipped")
         return

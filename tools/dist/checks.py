@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ELF_NEEDS = re.compile(r"lib(c|m|pthread|dl|beltrami)\.so\.\d+|ld-linux-\S+")
 #: Windows 10 and later have the universal C library.
 PE_NEEDS = re.compile(r"KERNEL32\.dll|ntdll\.dll|api-ms-win-crt-\S+\.dll|beltrami\.dll", re.I)
+OF_EVERY_DYLIB = {"__dso_handle", "_mh_dylib_header"}
 MACHO_NEEDS = re.compile(r"/usr/lib/libSystem\.B\.dylib|@rpath/libbeltrami\.\S+")
 OLDEST_GLIBC = (2, 17)
 
@@ -90,4 +91,4 @@ def _of_macho(path: Path) -> tuple[list[str], set[str]]:
                     begin = text + name
                     exports.add(data[begin + 1 : data.index(b"\0", begin)].decode())
         at += size
-    return needs, exports
+    return needs, exports - OF_EVERY_DYLIB

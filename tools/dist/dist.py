@@ -117,7 +117,7 @@ def main() -> None:
             f"dist: there is no target '{unknown[0]}': choose of {', '.join([*TARGETS, *EXTRAS])}"
         )
     # What nobody has built or run is made on request alone.
-    wanted = arguments.what or [*(name for name in TARGETS if "macos" not in name), *EXTRAS]
+    wanted = arguments.what or [*TARGETS, *EXTRAS]
     os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(DIST / "zig-cache")
     OUT.mkdir(parents=True, exist_ok=True)
     made: list[Path] = []

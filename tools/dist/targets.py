@@ -23,6 +23,11 @@ class Target:
         return "windows" in self.zig
 
     @property
+    def macos(self) -> bool:
+        """Whether it has dylibs."""
+        return "macos" in self.zig
+
+    @property
     def linux(self) -> bool:
         """Whether it has ELF files."""
         return "linux" in self.zig
@@ -51,7 +56,7 @@ TARGETS = {
         Target("x86_64-windows", "x86_64-windows-gnu", "win_amd64", ".zip"),
         Target(WASM, "wasm32-wasi", "", ".tgz"),
         Target("aarch64-linux", "aarch64-linux-gnu.2.17", "manylinux_2_17_aarch64", static=True),
-        Target("aarch64-macos", "aarch64-macos.11.0"),
-        Target("x86_64-macos", "x86_64-macos.11.0"),
+        Target("aarch64-macos", "aarch64-macos.11.0", "macosx_11_0_arm64"),
+        Target("x86_64-macos", "x86_64-macos.11.0", "macosx_11_0_x86_64"),
     )
 }

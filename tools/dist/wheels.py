@@ -54,18 +54,19 @@ def pack(target: Target, dist: Path, out: Path, version: str) -> Path:
     page = dist / target.name / "program" / "viewer" / "report.html"
     files[f"beltrami/{page.name}"] = (page.read_bytes(), 0o644)
     if target.windows:
-        module = _module(target, work, stage / "lib" / "libbeltrami.dll.a", dist)
+        module = _module(target, work, stage / "lib" / "beltrami.lib", dist)
         compiled = {
             "_native.pyd": module,
             "beltrami.dll": stage / "bin" / "beltrami.dll",
             "beltrami.exe": stage / "bin" / "beltrami.exe",
         }
     else:
-        library = next(stage.glob("lib*/libbeltrami.so.1"))
+        shared = "libbeltrami.1.dylib" if target.macos else "libbeltrami.so.1"
+        library = next(stage.glob(f"lib*/{shared}"))
         module = _module(target, work, library, dist)
         compiled = {
             "_native.abi3.so": module,
-            "libbeltrami.so.1": library,
+            shared: library,
             "bin/beltrami": stage / "bin" / "beltrami",
         }
     for name, path in compiled.items():
@@ -77,7 +78,7 @@ def pack(target: Target, dist: Path, out: Path, version: str) -> Path:
     _describe(files, info, version, target.wheel)
     name = f"beltrami-{version}-{OLDEST}-abi3-{target.wheel}.whl"
     wheel = archive.write_zip(out / name, files)
-    if target.wheel.endswith("x86_64"):
+    if target.wheel.startswith("manylinux") and target.wheel.endswith("x86_64"):
         _audit(wheel, target.wheel)
     return wheel
 
@@ -116,11 +117,12 @@ def _module(target: Target, work: Path, library: Path, dist: Path) -> Path:
     subprocess.run(compiling, check=True)
     if target.windows:
         module, extra = work / "_native.pyd", [str(_python_library(zig, compiled, work))]
+    elif target.macos:
+        module = work / "_native.abi3.so"
+        extra = ["-Wl,-rpath,@loader_path", "-Wl,-undefined,dynamic_lookup"]
     else:
-        module, extra = (
-            work / "_native.abi3.so",
-            ["-Wl,-rpath,$ORIGIN", "-Wl,-soname,_native.abi3.so"],
-        )
+        module = work / "_native.abi3.so"
+        extra = ["-Wl,-rpath,$ORIGIN", "-Wl,-soname,_native.abi3.so"]
     linking = [*common, "-shared", "-s", str(compiled), str(library), *extra, "-o", str(module)]
     subprocess.run(linking, check=True)
     return module

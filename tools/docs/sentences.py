@@ -3,7 +3,8 @@
     sentences.py PAGE ...
 
 Prose is what is left of a page of Markdown without code, tables, pictures and headings. A sentence
-has at most MOST words, and those of a page at most MEAN in the mean.
+has at most MOST words, and those of a page at most MEAN in the mean. Of a source in C or C++ it is
+the comments of a header, without what is set in like a table, and the summaries of options.
 """
 
 from __future__ import annotations
@@ -52,6 +53,21 @@ def paragraphs(text: str) -> list[tuple[int, str]]:
     return found
 
 
+def comments(text: str) -> list[tuple[int, str]]:
+    """Return the paragraphs of a header's comments and the summaries of options, with lines."""
+    found = []
+    for match in re.finditer(r"/\*(.*?)\*/|\.summary =\s*((?:\"[^\"]*\"\s*)+)", text, re.S):
+        number = text.count("\n", 0, match.start()) + 1
+        if match[2]:
+            found.append((number, "".join(re.findall(r"\"([^\"]*)\"", match[2]))))
+            continue
+        lines = [re.sub(r"^\s*\* ?", "", line) for line in match[1].strip().split("\n")]
+        lines = ["" if line.startswith("  ") else line for line in lines]
+        for paragraph in re.split(r"\n\s*\n", "\n".join(lines)):
+            found.append((number, " ".join(paragraph.split())))
+    return found
+
+
 def sentences(paragraph: str) -> list[list[str]]:
     """Return the words of each sentence. Code counts as one word, a link as its text."""
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", paragraph)
@@ -59,23 +75,25 @@ def sentences(paragraph: str) -> list[list[str]]:
     text = re.sub(r"`[^`]*`", "CODE", text)
     text = re.sub(r"\$[^$]*\$", "FORMULA", text)
     text = re.sub(r"\b(e\.g|i\.e|cf|vs|et al|Fig|Sec|No)\.", r"\1", text)
-    parts = re.split(r"(?<=[.!?:])[\"')*_]*\s+(?=[\"'(*_]*[A-Z0-9])", text)
+    parts = re.split(r"(?<=[.!?])[\"')*_]*\s+|(?<=:)[\"')*_]*\s+(?=[\"'(*_]*[A-Z0-9])", text)
     return [words for part in parts if (words := re.findall(r"[^\s]*\w[^\s]*", part))]
 
 
 def problems(page: Path) -> list[str]:
     """Return a line for each thing that is wrong with a page."""
     wrong, lengths = [], []
-    for number, paragraph in paragraphs(page.read_text()):
+    is_page = page.suffix == ".md"
+    find = paragraphs if is_page else comments
+    for number, paragraph in find(page.read_text()):
         for words in sentences(paragraph):
             lengths.append(len(words))
             if len(words) > MOST:
                 start = " ".join(words[:8])
                 wrong.append(f"{page}:{number}: {len(words)} words, at most {MOST}: {start} ...")
-        if match := DIARY.search(paragraph):
+        if is_page and (match := DIARY.search(paragraph)):
             wrong.append(f"{page}:{number}: '{match[0]}' is of a diary; say what is so today")
     mean = sum(lengths) / len(lengths) if lengths else 0
-    if mean > MEAN:
+    if is_page and mean > MEAN:
         wrong.append(f"{page}: {mean:.1f} words a sentence in the mean, at most {MEAN}")
     return wrong
 

@@ -53,7 +53,7 @@ OPTIONS = (
     Option(
         "method", "choice", "beltrami", 0.0, 5.0,
         ("beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"),
-        "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs (bff and uv-prolongation may flip).",
+        "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines to compare with are gif and bff on the surface's own metric, and uv-prolongation of the coarse UVs; bff and uv-prolongation may flip.",
         True, False, False,
     ),
     Option(
@@ -65,7 +65,7 @@ OPTIONS = (
     Option(
         "coarse_faces", "int", 0, 0.0, 700000000.0,
         (),
-        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels.",
+        "Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces, at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels.",
         True, False, False,
     ),
     Option(
@@ -95,13 +95,13 @@ OPTIONS = (
     Option(
         "flatten", "choice", "metric", 0.0, 4.0,
         ("metric", "dirichlet", "gif", "flim", "bff"),
-        "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local injectivity only) or bff (conformal, may flip).",
+        "How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim: the same, local injectivity only. bff: conformal, may flip.",
         True, False, False,
     ),
     Option(
         "injectivity", "choice", "auto", 0.0, 2.0,
         ("auto", "global", "local"),
-        "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which is left as the literature has it).",
+        "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto. That is global, but for the method cm, which is left as the literature has it.",
         True, False, False,
     ),
     Option(
@@ -131,13 +131,13 @@ OPTIONS = (
     Option(
         "memory_limit", "int", 0, 0.0, 100000000000000.0,
         (),
-        "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it, or end it if there is no map without them; 0 sets no limit.",
+        "Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that needs more ends before it starts. Steps that only hard meshes need are left out where they would exceed it, or end the run if there is no map without them.",
         True, False, False,
     ),
     Option(
         "cut", "choice", "auto", 0.0, 3.0,
         ("minimal", "islands", "auto", "given"),
-        "Where seams go beside those that are given: auto (short ones that are searched for, along which the atlas has the target-energy), minimal (a short cut graph where a piece is no disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened) or given (nowhere: those that are given are used as they are; what is no disk then is opened as by minimal).",
+        "Where seams go beside those that are given. auto: short ones are searched for, along which the atlas has the target-energy. minimal: a short cut graph where a piece is no disk. islands: around the charts of the UVs that the mesh has, of which what is no disk is opened. given: nowhere, and what is no disk is opened as by minimal.",
         True, False, False,
     ),
     Option(
@@ -173,7 +173,7 @@ OPTIONS = (
     Option(
         "preset", "choice", "none", 0.0, 4.0,
         ("none", "lightmap", "texturing", "one-chart", "hard-surface"),
-        "What the seams are for: sets the options of the search that are not set otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface (hard-seams 0.5, flat-seams 6).",
+        "What the seams are for: sets options of the search that are not set otherwise. none: their defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2. texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1. hard-surface: hard-seams 0.5, flat-seams 6.",
         True, False, False,
     ),
     Option(
@@ -203,13 +203,13 @@ OPTIONS = (
     Option(
         "concave_seams", "float", 0.15, 0.0, 10.0,
         (),
-        "How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart.",
+        "How far seams seek concave edges and avoid convex ones; 0 does not tell them apart. At a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave.",
         True, False, True,
     ),
     Option(
         "hidden_seams", "float", 0.2, 0.0, 100.0,
         (),
-        "How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not.",
+        "How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides.",
         True, False, True,
     ),
     Option(
@@ -227,7 +227,7 @@ OPTIONS = (
     Option(
         "pack", "choice", "pages", 0.0, 1.0,
         ("pages", "none"),
-        "Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the unit square) or none (side by side in the unit of length of the mesh; so are charts with pins in any case).",
+        "Where charts lie: pages (on square pages of a texture, all at one scale, UVs in the unit square) or none (side by side, in the mesh's unit of length). Charts with pins always lie as for none.",
         True, False, False,
     ),
     Option(
@@ -269,7 +269,7 @@ OPTIONS = (
     Option(
         "fill_weight", "float", 10.0, 0.0, 1000000000.0,
         (),
-        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a seam stay whole.",
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams; 0 splits no chart. At 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled. Charts of fewer than 32 triangles and those without a seam stay whole.",
         True, False, False,
     ),
     Option(
@@ -287,31 +287,31 @@ OPTIONS = (
     Option(
         "effort", "choice", "normal", 0.0, 2.0,
         ("quick", "normal", "high"),
-        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 2% longer), normal or high (some three times the time of normal, seams some 2% shorter).",
+        "How long short seams are searched for, and a dense packing: quick, normal or high. quick takes half the time of normal, for seams some 2% longer. high takes some three times the time of normal, for seams some 2% shorter.",
         True, False, False,
     ),
     Option(
         "flat_seams", "float", 1.5, 0.0, 100.0,
         (),
-        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them.",
+        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges. 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them.",
         True, False, True,
     ),
     Option(
         "stack", "choice", "none", 0.0, 3.0,
         ("none", "copies", "mirrored", "halves"),
-        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams.",
+        "Whether components of one shape share texels. none: no. copies: those that a rigid motion carries onto one before them lie on its charts. mirrored: mirror images do, too. halves: what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other. Not with pins, max-charts, seam-budget or symmetric-seams.",
         True, False, False,
     ),
     Option(
         "rectify", "choice", "none", 0.0, 1.0,
         ("none", "grids"),
-        "Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height).",
+        "Which charts become rectangles along the axes: none, or grids. These are rows and columns of quads, as roads, tubes and cloths have: each column gets one width and each row one height.",
         True, False, False,
     ),
     Option(
         "snap_texels", "bool", False, 0.0, 1.0,
         (),
-        "True turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room.",
+        "True turns each chart to the most of its border that is straight, then by quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. Nothing moves by more than half a texel, and charts keep a texel more room.",
         True, False, False,
     ),
 )

@@ -256,9 +256,9 @@ namespace Beltrami
     public delegate void Job(IntPtr data, int index);
 
     /// <summary>A host's loop: calls `job(data, index)` once for each index from 0 to count - 1,
-    /// and returns when all calls have returned. They may come from any threads, several at a time
-    /// or one after the other, and from the thread of the loop itself; a thread wants a stack of
-    /// 512 KiB. Neither the loop nor the threads may leave a job by an exception.</summary>
+    /// and returns when all calls have returned. They may come from any threads, also that of the
+    /// loop itself, several at a time or one after the other. A thread wants a stack of 512 KiB.
+    /// Neither the loop nor the threads may leave a job by an exception.</summary>
     [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
     public delegate void ParallelFor(IntPtr user, int count, Job job, IntPtr data);
 
@@ -327,9 +327,8 @@ namespace Beltrami
         public ulong Positive;
         public ulong Negative;
         public ulong Degenerate;
-        /// <summary>Pairs of boundary edges that meet where they should not: all of them while they
-        /// are few, else at least so many (it takes and lists no more than about n log n of n
-        /// edges).</summary>
+        /// <summary>Pairs of boundary edges that meet where they should not: of n edges all pairs
+        /// while they are fewer than about n log n, else at least so many.</summary>
         public ulong BoundaryCrossings;
         /// <summary>A face that is not positive, or BELTRAMI_NO_ELEMENT.</summary>
         public ulong FirstBadFace;
@@ -344,8 +343,8 @@ namespace Beltrami
     }
 
     /// <summary>Distortion energies: means over the faces weighted by 3D area, at the scale of the
-    /// UVs as given (NaN where no face is left to count). s1 &gt;= s2 are the singular values of
-    /// the map of a face. Faces without 3D area, or whose map has no finite energy (flipped or
+    /// UVs as given. NaN where no face is left to count. s1 &gt;= s2 are the singular values of the
+    /// map of a face. Faces without 3D area, or whose map has no finite energy (flipped or
     /// degenerate), are left out and counted.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct EnergyReport
@@ -429,7 +428,7 @@ namespace Beltrami
 
     /// <summary>Polygons in the caller's memory: any number of components, with holes and handles
     /// or without, closed or open, of any quality. Nothing is refused but indices out of range,
-    /// numbers that are not finite, and surfaces without any area: what is not manifold is parted,
+    /// numbers that are not finite, and surfaces without any area. What is not manifold is parted,
     /// faces that disagree are turned, and every corner gets its UV. A corner is one vertex of one
     /// face; corners are counted from 0, face after face. Buffers said to be optional are left out
     /// by data NULL.</summary>
@@ -871,8 +870,8 @@ namespace Beltrami
         /// <summary>With source_positions.</summary>
         public ulong SourceFaceCount;
         /// <summary>Optional: an item of 3 per corner of another surface of the same shape in the
-        /// same place, F32 or F64. old_uvs and old_pages are then of its source_face_count faces,
-        /// and each texel shows the nearest place of it, of a face that looks the same way. Not for
+        /// same place, F32 or F64. Then old_uvs and old_pages are of its source_face_count faces.
+        /// Each texel shows the nearest place of it, of a face that looks the same way. Not for
         /// NORMALS.</summary>
         public NativeBuffer SourcePositions;
         /// <summary>Texels to the side of a new page, 1 to 32768.</summary>

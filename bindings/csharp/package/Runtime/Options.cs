@@ -7,9 +7,9 @@ namespace Beltrami
     public sealed partial class Options
     {
         /// <summary>How the map is computed: beltrami (fast and low in distortion), cm (composite
-        /// majorization on the full mesh, the slow reference), tutte (into a circle, highly
-        /// distorted), or a baseline to compare with: gif and bff on the surface's own metric,
-        /// uv-prolongation of the coarse UVs (bff and uv-prolongation may flip). Default:
+        /// majorization on the full mesh, the slow reference) or tutte (into a circle, highly
+        /// distorted). Baselines to compare with are gif and bff on the surface's own metric, and
+        /// uv-prolongation of the coarse UVs; bff and uv-prolongation may flip. Default:
         /// Method.Beltrami.</summary>
         public Method Method
         {
@@ -26,8 +26,8 @@ namespace Beltrami
             set { SetInt(Option.Energy, (long)value); }
         }
 
-        /// <summary>Faces of the simplified mesh that composite majorization runs on; 0 chooses 1%
-        /// of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go
+        /// <summary>Faces of the simplified mesh that composite majorization runs on. 0 chooses 1%
+        /// of the faces, at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go
         /// through levels. A number from 0 to 700,000,000. Default: 0.</summary>
         public long CoarseFaces
         {
@@ -67,11 +67,11 @@ namespace Beltrami
             set { SetInt(Option.UnitSquare, value ? 1 : 0); }
         }
 
-        /// <summary>How the method beltrami flattens the fine mesh: metric (Poisson solve with a
-        /// free boundary and a polish), dirichlet (harmonic, boundary from the coarse map: faster,
-        /// energy a little higher), gif (harmonic subspace of a few boundary vertices with a
-        /// scaffold), flim (the same, local injectivity only) or bff (conformal, may flip).
-        /// Default: Flatten.Metric.</summary>
+        /// <summary>How the method beltrami flattens the fine mesh. metric: a Poisson solve with a
+        /// free boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster,
+        /// energy a little higher. gif: a harmonic subspace of a few boundary vertices with a
+        /// scaffold. flim: the same, local injectivity only. bff: conformal, may flip. Default:
+        /// Flatten.Metric.</summary>
         public Flatten Flatten
         {
             get { return (Flatten)(int)Get(Option.Flatten); }
@@ -79,8 +79,9 @@ namespace Beltrami
         }
 
         /// <summary>What the optimisation sees to: global (no flips, no boundary crossings), local
-        /// (no flips: parts may overlap, at a slightly lower energy) or auto (global, but for the
-        /// method cm, which is left as the literature has it). Default: Injectivity.Auto.</summary>
+        /// (no flips: parts may overlap, at a slightly lower energy) or auto. That is global, but
+        /// for the method cm, which is left as the literature has it. Default:
+        /// Injectivity.Auto.</summary>
         public Injectivity Injectivity
         {
             get { return (Injectivity)(int)Get(Option.Injectivity); }
@@ -128,9 +129,9 @@ namespace Beltrami
             set { SetInt(Option.Delaunay, value ? 1 : 0); }
         }
 
-        /// <summary>Bytes of memory that a run is to stay within by its estimate: one that needs
-        /// more ends before it starts, and steps that only hard meshes need are left out where they
-        /// would exceed it, or end it if there is no map without them; 0 sets no limit. A number
+        /// <summary>Bytes of memory that a run is to stay within by its estimate; 0 sets no limit.
+        /// A run that needs more ends before it starts. Steps that only hard meshes need are left
+        /// out where they would exceed it, or end the run if there is no map without them. A number
         /// from 0 to 1e+14. Default: 0.</summary>
         public long MemoryLimit
         {
@@ -138,11 +139,11 @@ namespace Beltrami
             set { SetInt(Option.MemoryLimit, value); }
         }
 
-        /// <summary>Where seams go beside those that are given: auto (short ones that are searched
-        /// for, along which the atlas has the target-energy), minimal (a short cut graph where a
-        /// piece is no disk), islands (the charts of the UVs that the mesh has; what is no disk of
-        /// them is opened) or given (nowhere: those that are given are used as they are; what is no
-        /// disk then is opened as by minimal). Default: Cut.Auto.</summary>
+        /// <summary>Where seams go beside those that are given. auto: short ones are searched for,
+        /// along which the atlas has the target-energy. minimal: a short cut graph where a piece is
+        /// no disk. islands: around the charts of the UVs that the mesh has, of which what is no
+        /// disk is opened. given: nowhere, and what is no disk is opened as by minimal. Default:
+        /// Cut.Auto.</summary>
         public Cut Cut
         {
             get { return (Cut)(int)Get(Option.Cut); }
@@ -191,11 +192,10 @@ namespace Beltrami
             set { SetInt(Option.ShareCopies, value ? 1 : 0); }
         }
 
-        /// <summary>What the seams are for: sets the options of the search that are not set
-        /// otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0,
-        /// hard-seams 0.5, flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart
-        /// (max-charts 1) or hard-surface (hard-seams 0.5, flat-seams 6). Default:
-        /// Preset.None.</summary>
+        /// <summary>What the seams are for: sets options of the search that are not set otherwise.
+        /// none: their defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5,
+        /// flat-seams 2. texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1.
+        /// hard-surface: hard-seams 0.5, flat-seams 6. Default: Preset.None.</summary>
         public Preset Preset
         {
             get { return (Preset)(int)Get(Option.Preset); }
@@ -236,18 +236,18 @@ namespace Beltrami
             set { SetFloat(Option.SeamBudget, value); }
         }
 
-        /// <summary>How far seams seek concave edges and avoid convex ones: at a weight a one costs
-        /// exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 does not tell
-        /// them apart. A number from 0 to 10. Default: 0.15, or as the preset has it.</summary>
+        /// <summary>How far seams seek concave edges and avoid convex ones; 0 does not tell them
+        /// apart. At a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to
+        /// 1, concave. A number from 0 to 10. Default: 0.15, or as the preset has it.</summary>
         public double ConcaveSeams
         {
             get { return Get(Option.ConcaveSeams); }
             set { SetFloat(Option.ConcaveSeams, value); }
         }
 
-        /// <summary>How far seams hide: at a weight b one costs 1 + b v times its length, where v
-        /// goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not. A number from 0
-        /// to 100. Default: 0.2, or as the preset has it.</summary>
+        /// <summary>How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times its
+        /// length, where v goes from 0, seen from nowhere, to 1, seen from all sides. A number from
+        /// 0 to 100. Default: 0.2, or as the preset has it.</summary>
         public double HiddenSeams
         {
             get { return Get(Option.HiddenSeams); }
@@ -272,9 +272,9 @@ namespace Beltrami
             set { SetFloat(Option.MaterialSeams, value); }
         }
 
-        /// <summary>Where charts lie: pages (packed onto square pages of a texture, all at one
-        /// scale, UVs in the unit square) or none (side by side in the unit of length of the mesh;
-        /// so are charts with pins in any case). Default: Pack.Pages.</summary>
+        /// <summary>Where charts lie: pages (on square pages of a texture, all at one scale, UVs in
+        /// the unit square) or none (side by side, in the mesh's unit of length). Charts with pins
+        /// always lie as for none. Default: Pack.Pages.</summary>
         public Pack Pack
         {
             get { return (Pack)(int)Get(Option.Pack); }
@@ -332,8 +332,8 @@ namespace Beltrami
         }
 
         /// <summary>Length of seams, in roots of the area, that all of a page is worth to the
-        /// search for seams: at 10 a chart is split in two where a tenth of the root of the area
-        /// lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32
+        /// search for seams; 0 splits no chart. At 10 a chart is split in two where a tenth of the
+        /// root of the area lets a hundredth more of the pages be filled. Charts of fewer than 32
         /// triangles and those without a seam stay whole. A number from 0 to 1,000,000,000.
         /// Default: 10.0.</summary>
         public double FillWeight
@@ -361,9 +361,10 @@ namespace Beltrami
             set { SetFloat(Option.StraightSeams, value); }
         }
 
-        /// <summary>How long short seams are searched for, and a dense packing: quick (half the
-        /// time of normal, seams some 2% longer), normal or high (some three times the time of
-        /// normal, seams some 2% shorter). Default: Effort.Normal.</summary>
+        /// <summary>How long short seams are searched for, and a dense packing: quick, normal or
+        /// high. quick takes half the time of normal, for seams some 2% longer. high takes some
+        /// three times the time of normal, for seams some 2% shorter. Default:
+        /// Effort.Normal.</summary>
         public Effort Effort
         {
             get { return (Effort)(int)Get(Option.Effort); }
@@ -371,7 +372,7 @@ namespace Beltrami
         }
 
         /// <summary>How many times as long the seams of a part may be if it then unfolds without
-        /// distortion, as boxes and machined parts do along their edges; 0 spends all of
+        /// distortion, as boxes and machined parts do along their edges. 0 spends all of
         /// target-energy. Setting that or target-p99 sets this to 0: set it after them. A number
         /// from 0 to 100. Default: 1.5, or as the preset has it.</summary>
         public double FlatSeams
@@ -380,10 +381,10 @@ namespace Beltrami
             set { SetFloat(Option.FlatSeams, value); }
         }
 
-        /// <summary>Whether components of one shape share texels: none, copies (those that a rigid
-        /// motion carries onto one before them lie on its charts), mirrored (mirror images do, too)
-        /// or halves (what is symmetric is cut along its plane, where edges lie in that, and one
-        /// half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams.
+        /// <summary>Whether components of one shape share texels. none: no. copies: those that a
+        /// rigid motion carries onto one before them lie on its charts. mirrored: mirror images do,
+        /// too. halves: what is symmetric is cut along its plane, where edges lie in that, and one
+        /// half lies on the other. Not with pins, max-charts, seam-budget or symmetric-seams.
         /// Default: Stack.None.</summary>
         public Stack Stack
         {
@@ -391,9 +392,9 @@ namespace Beltrami
             set { SetInt(Option.Stack, (long)value); }
         }
 
-        /// <summary>Which charts become rectangles along the axes: none, or grids (those that are
-        /// rows and columns of quads, as roads, tubes and cloths are: each column gets one width
-        /// and each row one height). Default: Rectify.None.</summary>
+        /// <summary>Which charts become rectangles along the axes: none, or grids. These are rows
+        /// and columns of quads, as roads, tubes and cloths have: each column gets one width and
+        /// each row one height. Default: Rectify.None.</summary>
         public Rectify Rectify
         {
             get { return (Rectify)(int)Get(Option.Rectify); }
@@ -401,8 +402,8 @@ namespace Beltrami
         }
 
         /// <summary>True turns each chart to the most of its border that is straight, then by
-        /// quarters alone, and moves its straight borders onto the edges of texels, as lightmaps
-        /// and pixel art want it: nothing by more than half a texel. Charts then keep a texel more
+        /// quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel
+        /// art want that. Nothing moves by more than half a texel, and charts keep a texel more
         /// room. Default: false.</summary>
         public bool SnapTexels
         {

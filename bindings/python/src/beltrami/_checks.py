@@ -121,8 +121,8 @@ class Distortion:
     energy : Energy
         Means weighted by area in space, the greatest energy, and how many faces have none.
     singular_values : (m, 2) array of float64
-        s1 >= abs(s2) of the map from the surface to the plane, in UV units per unit of length. s2
-        is negative where a face is flipped; both are NaN where it has no area in space.
+        s1 >= abs(s2) of the map from the surface to the plane, in UV units per unit of length. The
+        latter is negative where a face is flipped; both are NaN where it has no area in space.
     symmetric_dirichlet : (m,) array of float64
         1/2 (s1^2 + s2^2 + s1^-2 + s2^-2), at least 2; infinite for flipped and degenerate faces,
         NaN where a face has no area in space.

@@ -36,16 +36,16 @@ class Flattener:
     -------
     method : {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"}, default "beltrami"
         How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
-        on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
-        baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
-        coarse UVs (bff and uv-prolongation may flip).
+        on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines
+        to compare with are gif and bff on the surface's own metric, and uv-prolongation of the
+        coarse UVs; bff and uv-prolongation may flip.
     energy : str, default "symmetric-dirichlet"
         One of "symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet". The distortion that
         is minimised; exponential-dirichlet lowers it where it is highest, at a mean that is a
         little higher.
     coarse_faces : int, default 0
-        Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-        at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
+        Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces,
+        at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
         number from 0 to 700,000,000.
     tolerance : float, default 0.0001
         Relative decrease of the energy in one iteration below which composite majorization stops. A
@@ -60,14 +60,14 @@ class Flattener:
         True scales and shifts the UVs into the unit square, where those of pages are in any case;
         False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
-        How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
-        and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
-        higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
-        local injectivity only) or bff (conformal, may flip).
+        How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free
+        boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a
+        little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim:
+        the same, local injectivity only. bff: conformal, may flip.
     injectivity : {"auto", "global", "local"}, default "auto"
         What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
-        parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
-        is left as the literature has it).
+        parts may overlap, at a slightly lower energy) or auto. That is global, but for the method
+        cm, which is left as the literature has it.
     refine : bool, default False
         True goes on with composite majorization on the fine mesh from the result, to a little less
         energy in much more time.
@@ -84,9 +84,9 @@ class Flattener:
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
     memory_limit : int, default 0
-        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
-        before it starts, and steps that only hard meshes need are left out where they would exceed
-        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
+        Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that
+        needs more ends before it starts. Steps that only hard meshes need are left out where they
+        would exceed it, or end the run if there is no map without them. A number from 0 to 1e+14.
 
     Raises
     ------
@@ -383,16 +383,16 @@ def parameterize(
     -------
     method : {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"}, default "beltrami"
         How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
-        on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
-        baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
-        coarse UVs (bff and uv-prolongation may flip).
+        on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines
+        to compare with are gif and bff on the surface's own metric, and uv-prolongation of the
+        coarse UVs; bff and uv-prolongation may flip.
     energy : str, default "symmetric-dirichlet"
         One of "symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet". The distortion that
         is minimised; exponential-dirichlet lowers it where it is highest, at a mean that is a
         little higher.
     coarse_faces : int, default 0
-        Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-        at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
+        Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces,
+        at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
         number from 0 to 700,000,000.
     tolerance : float, default 0.0001
         Relative decrease of the energy in one iteration below which composite majorization stops. A
@@ -407,14 +407,14 @@ def parameterize(
         True scales and shifts the UVs into the unit square, where those of pages are in any case;
         False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
-        How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
-        and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
-        higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
-        local injectivity only) or bff (conformal, may flip).
+        How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free
+        boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a
+        little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim:
+        the same, local injectivity only. bff: conformal, may flip.
     injectivity : {"auto", "global", "local"}, default "auto"
         What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
-        parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
-        is left as the literature has it).
+        parts may overlap, at a slightly lower energy) or auto. That is global, but for the method
+        cm, which is left as the literature has it.
     refine : bool, default False
         True goes on with composite majorization on the fine mesh from the result, to a little less
         energy in much more time.
@@ -431,9 +431,9 @@ def parameterize(
         True flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the
         fine mesh is flattened: what is injective then are its own triangles on the same vertices.
     memory_limit : int, default 0
-        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
-        before it starts, and steps that only hard meshes need are left out where they would exceed
-        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
+        Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that
+        needs more ends before it starts. Steps that only hard meshes need are left out where they
+        would exceed it, or end the run if there is no map without them. A number from 0 to 1e+14.
 
     Returns
     -------

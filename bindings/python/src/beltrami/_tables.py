@@ -125,8 +125,8 @@ class Certificate:
     positive, negative, degenerate : int
         Faces of positive, negative, zero area in UV.
     boundary_crossings : int
-        Pairs of boundary edges that meet where they should not: all of them while they are few,
-        else at least so many (it takes and lists no more than about n log n of n edges).
+        Pairs of boundary edges that meet where they should not: of n edges all pairs while they are
+        fewer than about n log n, else at least so many.
     first_bad_face : int | None
         A face that is not positive, or None.
     first_crossing : tuple[int, int] | None

@@ -149,7 +149,7 @@ def unwrap(
     """Cut any surface into charts and flatten them: an injective atlas, with low distortion.
 
     The surface may be closed or open, in any number of components, with holes and handles, and of
-    any quality: nothing is refused but indices out of range, numbers that are not finite, and
+    any quality. Nothing is refused but indices out of range, numbers that are not finite, and
     surfaces without any area. What is not manifold is parted, faces that disagree are turned, and
     every corner gets its UV. The same input gives the same bits, at any number of threads.
 
@@ -211,16 +211,16 @@ def unwrap(
     -------
     method : {"beltrami", "cm", "tutte", "gif", "bff", "uv-prolongation"}, default "beltrami"
         How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
-        on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
-        baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
-        coarse UVs (bff and uv-prolongation may flip).
+        on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines
+        to compare with are gif and bff on the surface's own metric, and uv-prolongation of the
+        coarse UVs; bff and uv-prolongation may flip.
     energy : str, default "symmetric-dirichlet"
         One of "symmetric-dirichlet", "symmetric-arap", "exponential-dirichlet". The distortion that
         is minimised; exponential-dirichlet lowers it where it is highest, at a mean that is a
         little higher.
     coarse_faces : int, default 0
-        Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-        at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
+        Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces,
+        at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels. A
         number from 0 to 700,000,000.
     tolerance : float, default 0.0001
         Relative decrease of the energy in one iteration below which composite majorization stops. A
@@ -235,14 +235,14 @@ def unwrap(
         True scales and shifts the UVs into the unit square, where those of pages are in any case;
         False keeps them in the mesh's unit of length.
     flatten : {"metric", "dirichlet", "gif", "flim", "bff"}, default "metric"
-        How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
-        and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
-        higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
-        local injectivity only) or bff (conformal, may flip).
+        How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free
+        boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a
+        little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim:
+        the same, local injectivity only. bff: conformal, may flip.
     injectivity : {"auto", "global", "local"}, default "auto"
         What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
-        parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
-        is left as the literature has it).
+        parts may overlap, at a slightly lower energy) or auto. That is global, but for the method
+        cm, which is left as the literature has it.
     refine : bool, default False
         True goes on with composite majorization on the fine mesh from the result, to a little less
         energy in much more time.
@@ -256,15 +256,14 @@ def unwrap(
         True delivers UVs that single precision holds exactly, rounded so that the map stays
         injective.
     memory_limit : int, default 0
-        Bytes of memory that a run is to stay within by its estimate: one that needs more ends
-        before it starts, and steps that only hard meshes need are left out where they would exceed
-        it, or end it if there is no map without them; 0 sets no limit. A number from 0 to 1e+14.
+        Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that
+        needs more ends before it starts. Steps that only hard meshes need are left out where they
+        would exceed it, or end the run if there is no map without them. A number from 0 to 1e+14.
     cut : {"minimal", "islands", "auto", "given"}, default "auto"
-        Where seams go beside those that are given: auto (short ones that are searched for, along
-        which the atlas has the target-energy), minimal (a short cut graph where a piece is no
-        disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
-        or given (nowhere: those that are given are used as they are; what is no disk then is opened
-        as by minimal).
+        Where seams go beside those that are given. auto: short ones are searched for, along which
+        the atlas has the target-energy. minimal: a short cut graph where a piece is no disk.
+        islands: around the charts of the UVs that the mesh has, of which what is no disk is opened.
+        given: nowhere, and what is no disk is opened as by minimal.
     hard_angle : float, default 180.0
         Degrees between the normals of two faces above which the edge between them is a seam, but
         for creases that end within the surface and part nothing; 180 makes none. A number from 0 to
@@ -283,10 +282,10 @@ def unwrap(
         True gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a
         layer of their own.
     preset : {"none", "lightmap", "texturing", "one-chart", "hard-surface"}, default "none"
-        What the seams are for: sets the options of the search that are not set otherwise: none
-        (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
-        2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
-        (hard-seams 0.5, flat-seams 6).
+        What the seams are for: sets options of the search that are not set otherwise. none: their
+        defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2.
+        texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1. hard-surface:
+        hard-seams 0.5, flat-seams 6.
     target_energy : float, default 2.05, or as the preset has it
         Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
         all stay: the nearer to 2, the longer the seams. A number from 2.0001 to 1,000,000,000.
@@ -300,12 +299,12 @@ def unwrap(
         Length of the seams, over the root of the area, that the search is to stay within; 0 takes
         any length. A number from 0 to 1,000,000,000.
     concave_seams : float, default 0.15, or as the preset has it
-        How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of
-        its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart. A
+        How far seams seek concave edges and avoid convex ones; 0 does not tell them apart. At a
+        weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave. A
         number from 0 to 10.
     hidden_seams : float, default 0.2, or as the preset has it
-        How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
-        seen from nowhere, to 1, seen from all sides; 0 does not. A number from 0 to 100.
+        How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times its length,
+        where v goes from 0, seen from nowhere, to 1, seen from all sides. A number from 0 to 100.
     hard_seams : float, default 0.85, or as the preset has it
         What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
         below 1 such edges are sought. A number from 0.01 to 100.
@@ -313,9 +312,9 @@ def unwrap(
         What a seam costs, times its length, along an edge between faces of different materials,
         where these are given: below 1 such edges are sought. A number from 0.01 to 100.
     pack : {"pages", "none"}, default "pages"
-        Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
-        unit square) or none (side by side in the unit of length of the mesh; so are charts with
-        pins in any case).
+        Where charts lie: pages (on square pages of a texture, all at one scale, UVs in the unit
+        square) or none (side by side, in the mesh's unit of length). Charts with pins always lie as
+        for none.
     resolution : int, default 1024
         Texels to the side of a page. A number from 8 to 32,768.
     margin : float, default 2.0
@@ -334,10 +333,10 @@ def unwrap(
         Texels to the side of the blocks that no two charts share, as compressed textures want it:
         4; 1 leaves it to the margin. A number from 1 to 64.
     fill_weight : float, default 10.0
-        Length of seams, in roots of the area, that all of a page is worth to the search for seams:
-        at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
-        the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a
-        seam stay whole. A number from 0 to 1,000,000,000.
+        Length of seams, in roots of the area, that all of a page is worth to the search for seams;
+        0 splits no chart. At 10 a chart is split in two where a tenth of the root of the area lets
+        a hundredth more of the pages be filled. Charts of fewer than 32 triangles and those without
+        a seam stay whole. A number from 0 to 1,000,000,000.
     symmetric_seams : float, default 0.0
         How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
         again. They lie in the plane that it is mirrored by, or come in pairs, to within a few
@@ -346,26 +345,25 @@ def unwrap(
         How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos
         t) times an edge there; 0 counts lengths alone. A number from 0 to 100.
     effort : {"quick", "normal", "high"}, default "normal"
-        How long short seams are searched for, and a dense packing: quick (half the time of normal,
-        seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
-        shorter).
+        How long short seams are searched for, and a dense packing: quick, normal or high. quick
+        takes half the time of normal, for seams some 2% longer. high takes some three times the
+        time of normal, for seams some 2% shorter.
     flat_seams : float, default 1.5, or as the preset has it
         How many times as long the seams of a part may be if it then unfolds without distortion, as
-        boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
+        boxes and machined parts do along their edges. 0 spends all of target-energy. Setting that
         or target-p99 sets this to 0: set it after them. A number from 0 to 100.
     stack : {"none", "copies", "mirrored", "halves"}, default "none"
-        Whether components of one shape share texels: none, copies (those that a rigid motion
-        carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
-        (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
-        other). Not with pins, max-charts, seam-budget or symmetric-seams.
+        Whether components of one shape share texels. none: no. copies: those that a rigid motion
+        carries onto one before them lie on its charts. mirrored: mirror images do, too. halves:
+        what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+        other. Not with pins, max-charts, seam-budget or symmetric-seams.
     rectify : {"none", "grids"}, default "none"
-        Which charts become rectangles along the axes: none, or grids (those that are rows and
-        columns of quads, as roads, tubes and cloths are: each column gets one width and each row
-        one height).
+        Which charts become rectangles along the axes: none, or grids. These are rows and columns of
+        quads, as roads, tubes and cloths have: each column gets one width and each row one height.
     snap_texels : bool, default False
         True turns each chart to the most of its border that is straight, then by quarters alone,
-        and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it:
-        nothing by more than half a texel. Charts then keep a texel more room.
+        and moves straight borders onto the edges of texels. Lightmaps and pixel art want that.
+        Nothing moves by more than half a texel, and charts keep a texel more room.
 
     Returns
     -------

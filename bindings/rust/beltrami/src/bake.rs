@@ -177,7 +177,7 @@ pub struct Bake<'a, T> {
 
 impl<'a, T: Pixel> Bake<'a, T> {
     /// The images of the old pages, of as many channels, and the UVs of the corners, three for each
-    /// triangle: the old ones in units of the image, the new ones in the unit square of the page.
+    /// triangle. Old UVs are in units of the image, new ones in the unit square of the page.
     /// Old UVs that are not finite have no source.
     pub fn new(
         images: &'a [Image<'a, T>],

@@ -132,10 +132,10 @@ impl Flattener {
     }
 
     /// Bytes that the library will hold at the peak of the next [`run`](Self::run), with the mesh
-    /// and the options that are set: its copy of the mesh and the last results included, arrays of
-    /// the caller not. It is the least [`Options::memory_limit`] that the run can do with: below,
-    /// it fails before it starts. Without a limit the default mode may take several times as much on
-    /// hard meshes; with one it does without what takes that, or fails where there is no map then.
+    /// and the options that are set. Its copy of the mesh and the last results count, arrays of the
+    /// caller do not. It is the least [`Options::memory_limit`] that the run can do with: below, it
+    /// fails before it starts. Without a limit the default mode may take several times as much on
+    /// hard meshes. With one it does without what takes that, or fails where there is no map then.
     ///
     /// # Errors
     ///

@@ -173,9 +173,9 @@ impl Stage {
 /// A map of a mesh to the plane: the results of a flattener's last run, read from it on demand.
 ///
 /// A run that ends with a reservation has a result all the same, the best map that was found, and
-/// so it is `Ok`: whoever only wants to look at a map can. [`status`](Self::status) tells, and
-/// [`ensure_injective`](Self::ensure_injective) makes an error of a map that is not injective, as
-/// [`ensure_float32_injective`](Self::ensure_float32_injective) does for UVs in single precision:
+/// so it is `Ok`. Whoever only wants to look at a map can. [`status`](Self::status) tells.
+/// [`ensure_injective`](Self::ensure_injective) makes an error of a map that is not injective.
+/// [`ensure_float32_injective`](Self::ensure_float32_injective) does so for UVs in single precision:
 ///
 /// ```
 /// # use beltrami::{Flattener, Mesh};

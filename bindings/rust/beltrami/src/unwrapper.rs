@@ -17,7 +17,7 @@ use crate::surface::Surface;
 /// same options.
 ///
 /// Nothing is refused but indices out of range, numbers that are not finite, and surfaces without
-/// any area: what is not manifold is parted, faces that disagree are turned, and every corner gets
+/// any area. What is not manifold is parted, faces that disagree are turned, and every corner gets
 /// its UV.
 ///
 /// It may move to another thread, and is used by one thread at a time. Unwrappers share nothing: for

@@ -6,9 +6,9 @@ use super::{choice, options, Options, PackOptions, UnwrapOptions};
 
 choice! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
-    /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
-    /// baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
-    /// coarse UVs (bff and uv-prolongation may flip). See [`Options::method`].
+    /// on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines
+    /// to compare with are gif and bff on the surface's own metric, and uv-prolongation of the
+    /// coarse UVs; bff and uv-prolongation may flip. See [`Options::method`].
     Method {
         /// Coarse CM, prolongation of its Beltrami coefficients, one harmonic solve in their
         /// metric.
@@ -35,17 +35,17 @@ choice! {
         /// (s1 - 1)^2 + (1/s2 - 1)^2, minimum 0.
         SymmetricArap = "symmetric-arap",
         /// 1 + exp(D - 2) of the symmetric Dirichlet energy D, minimum 2: what is distorted most
-        /// counts most, so that the worst faces are less so, at a mean that is a little higher.
-        /// From D = 14 on a parabola instead of the exponential.
+        /// counts most. The worst faces are better for it, at a mean that is a little higher. From
+        /// D = 14 on a parabola instead of the exponential.
         ExponentialDirichlet = "exponential-dirichlet",
     }
 }
 
 choice! {
-    /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
-    /// and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
-    /// higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
-    /// local injectivity only) or bff (conformal, may flip). See [`Options::flatten`].
+    /// How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free
+    /// boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a
+    /// little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim:
+    /// the same, local injectivity only. bff: conformal, may flip. See [`Options::flatten`].
     Flatten {
         /// Poisson solve for the whole prolonged metric, free boundary, then a few L-BFGS steps.
         Metric = "metric",
@@ -63,8 +63,8 @@ choice! {
 
 choice! {
     /// What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
-    /// parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
-    /// is left as the literature has it). See [`Options::injectivity`].
+    /// parts may overlap, at a slightly lower energy) or auto. That is global, but for the method
+    /// cm, which is left as the literature has it. See [`Options::injectivity`].
     Injectivity {
         /// Global, but for the method CM: that is left as the literature has it, the reference.
         Auto = "auto",
@@ -88,11 +88,10 @@ choice! {
 }
 
 choice! {
-    /// Where seams go beside those that are given: auto (short ones that are searched for, along
-    /// which the atlas has the target-energy), minimal (a short cut graph where a piece is no
-    /// disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
-    /// or given (nowhere: those that are given are used as they are; what is no disk then is opened
-    /// as by minimal). See [`UnwrapOptions::cut`].
+    /// Where seams go beside those that are given. auto: short ones are searched for, along which
+    /// the atlas has the target-energy. minimal: a short cut graph where a piece is no disk.
+    /// islands: around the charts of the UVs that the mesh has, of which what is no disk is opened.
+    /// given: nowhere, and what is no disk is opened as by minimal. See [`UnwrapOptions::cut`].
     Cut {
         /// Nothing but a short cut graph where a piece is no disk.
         Minimal = "minimal",
@@ -122,10 +121,10 @@ choice! {
 }
 
 choice! {
-    /// What the seams are for: sets the options of the search that are not set otherwise: none
-    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
-    /// 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
-    /// (hard-seams 0.5, flat-seams 6). See [`UnwrapOptions::preset`].
+    /// What the seams are for: sets options of the search that are not set otherwise. none: their
+    /// defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2.
+    /// texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1. hard-surface:
+    /// hard-seams 0.5, flat-seams 6. See [`UnwrapOptions::preset`].
     Preset {
         /// The defaults.
         None = "none",
@@ -144,9 +143,9 @@ choice! {
 }
 
 choice! {
-    /// Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
-    /// unit square) or none (side by side in the unit of length of the mesh; so are charts with
-    /// pins in any case). See [`UnwrapOptions::pack`].
+    /// Where charts lie: pages (on square pages of a texture, all at one scale, UVs in the unit
+    /// square) or none (side by side, in the mesh's unit of length). Charts with pins always lie as
+    /// for none. See [`UnwrapOptions::pack`].
     Pack {
         /// On square pages of a texture, each chart moved and turned, and all scaled alike: the UVs
         /// of a page are in \[0,1\]^2. Rounded to single precision their charts keep all faces,
@@ -173,9 +172,9 @@ choice! {
 }
 
 choice! {
-    /// How long short seams are searched for, and a dense packing: quick (half the time of normal,
-    /// seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
-    /// shorter). See [`UnwrapOptions::effort`].
+    /// How long short seams are searched for, and a dense packing: quick, normal or high. quick
+    /// takes half the time of normal, for seams some 2% longer. high takes some three times the
+    /// time of normal, for seams some 2% shorter. See [`UnwrapOptions::effort`].
     Effort {
         /// Half the time of NORMAL, seams some 2% longer.
         Quick = "quick",
@@ -187,10 +186,10 @@ choice! {
 }
 
 choice! {
-    /// Whether components of one shape share texels: none, copies (those that a rigid motion
-    /// carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
-    /// (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
-    /// other). Not with pins, max-charts, seam-budget or symmetric-seams. See
+    /// Whether components of one shape share texels. none: no. copies: those that a rigid motion
+    /// carries onto one before them lie on its charts. mirrored: mirror images do, too. halves:
+    /// what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+    /// other. Not with pins, max-charts, seam-budget or symmetric-seams. See
     /// [`UnwrapOptions::stack`].
     Stack {
         /// None.
@@ -206,9 +205,9 @@ choice! {
 }
 
 choice! {
-    /// Which charts become rectangles along the axes: none, or grids (those that are rows and
-    /// columns of quads, as roads, tubes and cloths are: each column gets one width and each row
-    /// one height). See [`UnwrapOptions::rectify`].
+    /// Which charts become rectangles along the axes: none, or grids. These are rows and columns of
+    /// quads, as roads, tubes and cloths have: each column gets one width and each row one height.
+    /// See [`UnwrapOptions::rectify`].
     Rectify {
         /// None.
         None = "none",
@@ -220,13 +219,13 @@ choice! {
 
 options! {
     /// How the map is computed: beltrami (fast and low in distortion), cm (composite majorization
-    /// on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a
-    /// baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the
-    /// coarse UVs (bff and uv-prolongation may flip).
+    /// on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines
+    /// to compare with are gif and bff on the surface's own metric, and uv-prolongation of the
+    /// coarse UVs; bff and uv-prolongation may flip.
     ///
     /// Default: [`Beltrami`](Method::Beltrami).
     method(Method) of [Options UnwrapOptions] = 0 "method"
-        "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference), tutte (into a circle, highly distorted), or a baseline to compare with: gif and bff on the surface's own metric, uv-prolongation of the coarse UVs (bff and uv-prolongation may flip)."
+        "How the map is computed: beltrami (fast and low in distortion), cm (composite majorization on the full mesh, the slow reference) or tutte (into a circle, highly distorted). Baselines to compare with are gif and bff on the surface's own metric, and uv-prolongation of the coarse UVs; bff and uv-prolongation may flip."
         Choice(Method::NAMES), 0..=5, default 0, calls 3;
 
     /// The distortion that is minimised; exponential-dirichlet lowers it where it is highest, at a
@@ -237,14 +236,14 @@ options! {
         "The distortion that is minimised; exponential-dirichlet lowers it where it is highest, at a mean that is a little higher."
         Choice(Energy::NAMES), 0..=2, default 0, calls 3;
 
-    /// Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces,
-    /// at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels.
+    /// Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces,
+    /// at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels.
     ///
     /// From 0 to 700000000.
     ///
     /// Default: 0.
     coarse_faces(u32) of [Options UnwrapOptions] = 2 "coarse-faces"
-        "Faces of the simplified mesh that composite majorization runs on; 0 chooses 1% of the faces, at least 10,000, or 1,000 to 5,000 where meshes from 4,000 faces on go through levels."
+        "Faces of the simplified mesh that composite majorization runs on. 0 chooses 1% of the faces, at least 10,000; or 1,000 to 5,000 where meshes from 4,000 faces on go through levels."
         Int(&[]), 0..=700000000, default 0, calls 3;
 
     /// Relative decrease of the energy in one iteration below which composite majorization stops.
@@ -282,23 +281,23 @@ options! {
         "1 scales and shifts the UVs into the unit square, where those of pages are in any case; 0 keeps them in the mesh's unit of length."
         Switch(&[]), 0..=1, default 0, calls 3;
 
-    /// How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary
-    /// and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little
-    /// higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same,
-    /// local injectivity only) or bff (conformal, may flip).
+    /// How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free
+    /// boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a
+    /// little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim:
+    /// the same, local injectivity only. bff: conformal, may flip.
     ///
     /// Default: [`Metric`](Flatten::Metric).
     flatten(Flatten) of [Options UnwrapOptions] = 7 "flatten"
-        "How the method beltrami flattens the fine mesh: metric (Poisson solve with a free boundary and a polish), dirichlet (harmonic, boundary from the coarse map: faster, energy a little higher), gif (harmonic subspace of a few boundary vertices with a scaffold), flim (the same, local injectivity only) or bff (conformal, may flip)."
+        "How the method beltrami flattens the fine mesh. metric: a Poisson solve with a free boundary, and a polish. dirichlet: harmonic, boundary from the coarse map, faster, energy a little higher. gif: a harmonic subspace of a few boundary vertices with a scaffold. flim: the same, local injectivity only. bff: conformal, may flip."
         Choice(Flatten::NAMES), 0..=4, default 0, calls 3;
 
     /// What the optimisation sees to: global (no flips, no boundary crossings), local (no flips:
-    /// parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which
-    /// is left as the literature has it).
+    /// parts may overlap, at a slightly lower energy) or auto. That is global, but for the method
+    /// cm, which is left as the literature has it.
     ///
     /// Default: [`Auto`](Injectivity::Auto).
     injectivity(Injectivity) of [Options UnwrapOptions] = 8 "injectivity"
-        "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto (global, but for the method cm, which is left as the literature has it)."
+        "What the optimisation sees to: global (no flips, no boundary crossings), local (no flips: parts may overlap, at a slightly lower energy) or auto. That is global, but for the method cm, which is left as the literature has it."
         Choice(Injectivity::NAMES), 0..=2, default 0, calls 3;
 
     /// `true` goes on with composite majorization on the fine mesh from the result, to a little
@@ -345,26 +344,25 @@ options! {
         "on flips edges to the intrinsic Delaunay triangulation of the prolonged metric before the fine mesh is flattened: what is injective then are its own triangles on the same vertices."
         Choice(Delaunay::NAMES), 0..=1, default 0, calls 1;
 
-    /// Bytes of memory that a run is to stay within by its estimate: one that needs more ends
-    /// before it starts, and steps that only hard meshes need are left out where they would exceed
-    /// it, or end it if there is no map without them; 0 sets no limit.
+    /// Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that
+    /// needs more ends before it starts. Steps that only hard meshes need are left out where they
+    /// would exceed it, or end the run if there is no map without them.
     ///
     /// From 0 to 100000000000000.
     ///
     /// Default: 0.
     memory_limit(u64) of [Options UnwrapOptions] = 14 "memory-limit"
-        "Bytes of memory that a run is to stay within by its estimate: one that needs more ends before it starts, and steps that only hard meshes need are left out where they would exceed it, or end it if there is no map without them; 0 sets no limit."
+        "Bytes of memory that a run is to stay within by its estimate; 0 sets no limit. A run that needs more ends before it starts. Steps that only hard meshes need are left out where they would exceed it, or end the run if there is no map without them."
         Int(&[]), 0..=100000000000000.0, default 0, calls 3;
 
-    /// Where seams go beside those that are given: auto (short ones that are searched for, along
-    /// which the atlas has the target-energy), minimal (a short cut graph where a piece is no
-    /// disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened)
-    /// or given (nowhere: those that are given are used as they are; what is no disk then is opened
-    /// as by minimal).
+    /// Where seams go beside those that are given. auto: short ones are searched for, along which
+    /// the atlas has the target-energy. minimal: a short cut graph where a piece is no disk.
+    /// islands: around the charts of the UVs that the mesh has, of which what is no disk is opened.
+    /// given: nowhere, and what is no disk is opened as by minimal.
     ///
     /// Default: [`Auto`](Cut::Auto).
     cut(Cut) of [UnwrapOptions] = 15 "cut"
-        "Where seams go beside those that are given: auto (short ones that are searched for, along which the atlas has the target-energy), minimal (a short cut graph where a piece is no disk), islands (the charts of the UVs that the mesh has; what is no disk of them is opened) or given (nowhere: those that are given are used as they are; what is no disk then is opened as by minimal)."
+        "Where seams go beside those that are given. auto: short ones are searched for, along which the atlas has the target-energy. minimal: a short cut graph where a piece is no disk. islands: around the charts of the UVs that the mesh has, of which what is no disk is opened. given: nowhere, and what is no disk is opened as by minimal."
         Choice(Cut::NAMES), 0..=3, default 2, calls 2;
 
     /// Degrees between the normals of two faces above which the edge between them is a seam, but
@@ -412,14 +410,14 @@ options! {
         "1 gives copies of a face, as of double-sided surfaces, the UVs of the first instead of a layer of their own."
         Switch(&[]), 0..=1, default 0, calls 2;
 
-    /// What the seams are for: sets the options of the search that are not set otherwise: none
-    /// (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams
-    /// 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface
-    /// (hard-seams 0.5, flat-seams 6).
+    /// What the seams are for: sets options of the search that are not set otherwise. none: their
+    /// defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2.
+    /// texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1. hard-surface:
+    /// hard-seams 0.5, flat-seams 6.
     ///
     /// Default: [`None`](Preset::None).
     preset(Preset) of [UnwrapOptions] = 21 "preset"
-        "What the seams are for: sets the options of the search that are not set otherwise: none (their defaults), lightmap (target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2), texturing (concave-seams 0.6, hidden-seams 2), one-chart (max-charts 1) or hard-surface (hard-seams 0.5, flat-seams 6)."
+        "What the seams are for: sets options of the search that are not set otherwise. none: their defaults. lightmap: target-energy 2.1, hidden-seams 0, hard-seams 0.5, flat-seams 2. texturing: concave-seams 0.6, hidden-seams 2. one-chart: max-charts 1. hard-surface: hard-seams 0.5, flat-seams 6."
         Choice(Preset::NAMES), 0..=4, default 0, calls 2;
 
     /// Mean symmetric Dirichlet energy of the atlas that seams are searched for, 2 for lengths that
@@ -461,24 +459,24 @@ options! {
         "Length of the seams, over the root of the area, that the search is to stay within; 0 takes any length."
         Float(&[]), 0..=1000000000, default 0, calls 2;
 
-    /// How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of
-    /// its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart.
+    /// How far seams seek concave edges and avoid convex ones; 0 does not tell them apart. At a
+    /// weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave.
     ///
     /// From 0 to 10.
     ///
     /// Default: 0.15.
     concave_seams(f64) of [UnwrapOptions] = 26 "concave-seams"
-        "How far seams seek concave edges and avoid convex ones: at a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave; 0 does not tell them apart."
+        "How far seams seek concave edges and avoid convex ones; 0 does not tell them apart. At a weight a one costs exp(-a c) of its length, where c goes from -1, convex, to 1, concave."
         Float(&[]), 0..=10, default 0.15, calls 2;
 
-    /// How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0,
-    /// seen from nowhere, to 1, seen from all sides; 0 does not.
+    /// How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times its length,
+    /// where v goes from 0, seen from nowhere, to 1, seen from all sides.
     ///
     /// From 0 to 100.
     ///
     /// Default: 0.2.
     hidden_seams(f64) of [UnwrapOptions] = 27 "hidden-seams"
-        "How far seams hide: at a weight b one costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides; 0 does not."
+        "How far seams hide; 0: not at all. At a weight b a seam costs 1 + b v times its length, where v goes from 0, seen from nowhere, to 1, seen from all sides."
         Float(&[]), 0..=100, default 0.2, calls 2;
 
     /// What a seam costs, times its length, along an edge whose faces turn by more than 60 degrees:
@@ -501,13 +499,13 @@ options! {
         "What a seam costs, times its length, along an edge between faces of different materials, where these are given: below 1 such edges are sought."
         Float(&[]), 0.01..=100, default 0.5, calls 2;
 
-    /// Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the
-    /// unit square) or none (side by side in the unit of length of the mesh; so are charts with
-    /// pins in any case).
+    /// Where charts lie: pages (on square pages of a texture, all at one scale, UVs in the unit
+    /// square) or none (side by side, in the mesh's unit of length). Charts with pins always lie as
+    /// for none.
     ///
     /// Default: [`Pages`](Pack::Pages).
     pack(Pack) of [UnwrapOptions] = 30 "pack"
-        "Where charts lie: pages (packed onto square pages of a texture, all at one scale, UVs in the unit square) or none (side by side in the unit of length of the mesh; so are charts with pins in any case)."
+        "Where charts lie: pages (on square pages of a texture, all at one scale, UVs in the unit square) or none (side by side, in the mesh's unit of length). Charts with pins always lie as for none."
         Choice(Pack::NAMES), 0..=1, default 0, calls 2;
 
     /// Texels to the side of a page.
@@ -565,16 +563,16 @@ options! {
         "Texels to the side of the blocks that no two charts share, as compressed textures want it: 4; 1 leaves it to the margin."
         Int(&[]), 1..=64, default 1, calls 6;
 
-    /// Length of seams, in roots of the area, that all of a page is worth to the search for seams:
-    /// at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of
-    /// the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a
-    /// seam stay whole.
+    /// Length of seams, in roots of the area, that all of a page is worth to the search for seams;
+    /// 0 splits no chart. At 10 a chart is split in two where a tenth of the root of the area lets
+    /// a hundredth more of the pages be filled. Charts of fewer than 32 triangles and those without
+    /// a seam stay whole.
     ///
     /// From 0 to 1000000000.
     ///
     /// Default: 10.
     fill_weight(f64) of [UnwrapOptions] = 37 "fill-weight"
-        "Length of seams, in roots of the area, that all of a page is worth to the search for seams: at 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled; 0 splits none. Charts of fewer than 32 triangles and those without a seam stay whole."
+        "Length of seams, in roots of the area, that all of a page is worth to the search for seams; 0 splits no chart. At 10 a chart is split in two where a tenth of the root of the area lets a hundredth more of the pages be filled. Charts of fewer than 32 triangles and those without a seam stay whole."
         Float(&[]), 0..=1000000000, default 10, calls 2;
 
     /// How much more seams may cost for being symmetric where the surface is: 0.5 for half as much
@@ -598,51 +596,50 @@ options! {
         "How far seams avoid turns: at a weight w one by an angle t, in the surface, costs w (1 - cos t) times an edge there; 0 counts lengths alone."
         Float(&[]), 0..=100, default 0, calls 2;
 
-    /// How long short seams are searched for, and a dense packing: quick (half the time of normal,
-    /// seams some 2% longer), normal or high (some three times the time of normal, seams some 2%
-    /// shorter).
+    /// How long short seams are searched for, and a dense packing: quick, normal or high. quick
+    /// takes half the time of normal, for seams some 2% longer. high takes some three times the
+    /// time of normal, for seams some 2% shorter.
     ///
     /// Default: [`Normal`](Effort::Normal).
     effort(Effort) of [UnwrapOptions] = 40 "effort"
-        "How long short seams are searched for, and a dense packing: quick (half the time of normal, seams some 2% longer), normal or high (some three times the time of normal, seams some 2% shorter)."
+        "How long short seams are searched for, and a dense packing: quick, normal or high. quick takes half the time of normal, for seams some 2% longer. high takes some three times the time of normal, for seams some 2% shorter."
         Choice(Effort::NAMES), 0..=2, default 1, calls 2;
 
     /// How many times as long the seams of a part may be if it then unfolds without distortion, as
-    /// boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that
+    /// boxes and machined parts do along their edges. 0 spends all of target-energy. Setting that
     /// or target-p99 sets this to 0: set it after them.
     ///
     /// From 0 to 100.
     ///
     /// Default: 1.5.
     flat_seams(f64) of [UnwrapOptions] = 41 "flat-seams"
-        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges; 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them."
+        "How many times as long the seams of a part may be if it then unfolds without distortion, as boxes and machined parts do along their edges. 0 spends all of target-energy. Setting that or target-p99 sets this to 0: set it after them."
         Float(&[]), 0..=100, default 1.5, calls 2;
 
-    /// Whether components of one shape share texels: none, copies (those that a rigid motion
-    /// carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves
-    /// (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
-    /// other). Not with pins, max-charts, seam-budget or symmetric-seams.
+    /// Whether components of one shape share texels. none: no. copies: those that a rigid motion
+    /// carries onto one before them lie on its charts. mirrored: mirror images do, too. halves:
+    /// what is symmetric is cut along its plane, where edges lie in that, and one half lies on the
+    /// other. Not with pins, max-charts, seam-budget or symmetric-seams.
     ///
     /// Default: [`None`](Stack::None).
     stack(Stack) of [UnwrapOptions] = 42 "stack"
-        "Whether components of one shape share texels: none, copies (those that a rigid motion carries onto one before them lie on its charts), mirrored (mirror images do, too) or halves (what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other). Not with pins, max-charts, seam-budget or symmetric-seams."
+        "Whether components of one shape share texels. none: no. copies: those that a rigid motion carries onto one before them lie on its charts. mirrored: mirror images do, too. halves: what is symmetric is cut along its plane, where edges lie in that, and one half lies on the other. Not with pins, max-charts, seam-budget or symmetric-seams."
         Choice(Stack::NAMES), 0..=3, default 0, calls 2;
 
-    /// Which charts become rectangles along the axes: none, or grids (those that are rows and
-    /// columns of quads, as roads, tubes and cloths are: each column gets one width and each row
-    /// one height).
+    /// Which charts become rectangles along the axes: none, or grids. These are rows and columns of
+    /// quads, as roads, tubes and cloths have: each column gets one width and each row one height.
     ///
     /// Default: [`None`](Rectify::None).
     rectify(Rectify) of [UnwrapOptions] = 43 "rectify"
-        "Which charts become rectangles along the axes: none, or grids (those that are rows and columns of quads, as roads, tubes and cloths are: each column gets one width and each row one height)."
+        "Which charts become rectangles along the axes: none, or grids. These are rows and columns of quads, as roads, tubes and cloths have: each column gets one width and each row one height."
         Choice(Rectify::NAMES), 0..=1, default 0, calls 2;
 
     /// `true` turns each chart to the most of its border that is straight, then by quarters alone,
-    /// and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it:
-    /// nothing by more than half a texel. Charts then keep a texel more room.
+    /// and moves straight borders onto the edges of texels. Lightmaps and pixel art want that.
+    /// Nothing moves by more than half a texel, and charts keep a texel more room.
     ///
     /// Default: `false`.
     snap_texels(bool) of [UnwrapOptions] = 44 "snap-texels"
-        "1 turns each chart to the most of its border that is straight, then by quarters alone, and moves its straight borders onto the edges of texels, as lightmaps and pixel art want it: nothing by more than half a texel. Charts then keep a texel more room."
+        "1 turns each chart to the most of its border that is straight, then by quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. Nothing moves by more than half a texel, and charts keep a texel more room."
         Switch(&[]), 0..=1, default 0, calls 2;
 }
