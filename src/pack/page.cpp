@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "base/compiler.h"
 #include "base/processor.h"
 
 namespace beltrami {
@@ -12,18 +13,14 @@ namespace {
 using Word = std::uint64_t;
 constexpr int kBits = 64, kWordBits = 6;
 
-/// `kLanes` numbers in one register.
-template <class T, int kLanes>
-struct Lanes {
-  using Type [[gnu::vector_size(kLanes * sizeof(T))]] = T;
-
-  BELTRAMI_INLINE static bool any(const Type& lanes) {
-    T any = 0;
-#pragma GCC unroll 4
-    for (int k = 0; k < kLanes; ++k) any |= lanes[k];
-    return any != 0;
-  }
-};
+/// Whether a bit of them all is set.
+template <int kLanes>
+BELTRAMI_INLINE bool any_of(const Register<Word, kLanes>& words) {
+  Word any = 0;
+  BELTRAMI_UNROLL(4)
+  for (int k = 0; k < kLanes; ++k) any |= words[k];
+  return any != 0;
+}
 
 int log2_of(int x) {
   return static_cast<int>(std::bit_width(static_cast<unsigned>(x))) - 1;
@@ -118,7 +115,7 @@ BELTRAMI_INLINE void Page::raise_squares(const Changed& changed, const Needs& ne
 }
 
 #if BELTRAMI_DISPATCH_AVX2
-[[gnu::target("avx2")]] void Page::raise_wide(const Changed& changed, const Needs& needs) {
+BELTRAMI_FOR_AVX2 void Page::raise_wide(const Changed& changed, const Needs& needs) {
   raise_runs(changed, needs);
   raise_squares(changed, needs);
 }
@@ -212,14 +209,14 @@ int Page::rows_together(const Mask& mask, int y, int last) {
 template <int kLanes>
 struct Page::Free {
   static constexpr int kVectors = kRows / kLanes;
-  using Vector = typename Lanes<Word, kLanes>::Type;
+  using Vector = Register<Word, kLanes>;
   Vector of[kVectors];
 
   BELTRAMI_INLINE bool any() const {
     Vector all = of[0];
-#pragma GCC unroll 4
+    BELTRAMI_UNROLL(4)
     for (int v = 1; v < kVectors; ++v) all |= of[v];
-    return Lanes<Word, kLanes>::any(all);
+    return any_of<kLanes>(all);
   }
 };
 
@@ -231,7 +228,7 @@ BELTRAMI_INLINE bool Page::keep_free(const Bits& words, int w, int y, int shift,
   const Word* const first = column(words, w + shift / kBits) + y;
   const Word* const second = first + stride_;
   const int rest = shift % kBits, up = kBits - 1 - rest;
-#pragma GCC unroll 4
+  BELTRAMI_UNROLL(4)
   for (int v = 0; v < Free<kLanes>::kVectors; ++v) {
     typename Free<kLanes>::Vector low, high;
     std::memcpy(&low, first + v * kLanes, sizeof low);
@@ -266,13 +263,13 @@ template <int kLanes>
 BELTRAMI_INLINE Page::Word Page::parts_together(const Mask& mask, int y, int to) const {
   using Vector = typename Free<kLanes>::Vector;
   Free<kLanes> free;
-  for (Vector& vector : free.of) vector = first_parts(to) - Vector{};
+  for (Vector& vector : free.of) fill(first_parts(to), vector);
   for (const Square& square : mask.squares) {
     const Word* const open = squares_[square.level].open.data() + y + square.y;
     const int shift = square.x >> part_bits_;
     // Of a part that begins between two the first or the second has what is in it.
     const int more = (square.x & ((1 << part_bits_) - 1)) == 0 ? 0 : 1;
-#pragma GCC unroll 4
+    BELTRAMI_UNROLL(4)
     for (int v = 0; v < Free<kLanes>::kVectors; ++v) {
       Vector parts;
       std::memcpy(&parts, open + v * kLanes, sizeof parts);
@@ -302,7 +299,7 @@ BELTRAMI_INLINE bool Page::find_first(const Mask& mask, int y, int rows, int to,
     for (int w = begin; w < end && w <= end_word; ++w) {
       const Word all = w == end_word ? ~Word{0} >> (kBits - 1 - to % kBits) : ~Word{0};
       Free<kLanes> free;
-      for (auto& vector : free.of) vector = all - typename Free<kLanes>::Vector{};
+      for (auto& vector : free.of) fill(all, vector);
       if (!free_places(mask, y, w, free, steps)) continue;
       std::array<Word, kRows> found;
       std::memcpy(found.data(), free.of, sizeof found);
@@ -321,8 +318,8 @@ BELTRAMI_INLINE bool Page::find_first(const Mask& mask, int y, int rows, int to,
 }
 
 #if BELTRAMI_DISPATCH_AVX2
-[[gnu::target("avx2")]] bool Page::find_first_wide(const Mask& mask, int y, int rows, int to,
-                                                   Places& places, std::int64_t& steps) const {
+BELTRAMI_FOR_AVX2 bool Page::find_first_wide(const Mask& mask, int y, int rows, int to,
+                                             Places& places, std::int64_t& steps) const {
   return find_first<4>(mask, y, rows, to, places, steps);
 }
 #endif

@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Shared libraries that every system of a kind has.
-ELF_NEEDS = re.compile(r"lib(c|m|pthread|dl|beltrami)\.so\.\d+|ld-linux-\S+")
+ELF_NEEDS = re.compile(r"lib(c|m|pthread|dl|beltrami)\.so\.\d+|ld-linux-\S+|libc\.so")  # of musl
 #: Windows 10 and later have the universal C library.
 PE_NEEDS = re.compile(r"KERNEL32\.dll|ntdll\.dll|api-ms-win-crt-\S+\.dll|beltrami\.dll", re.I)
 OF_EVERY_DYLIB = {"__dso_handle", "_mh_dylib_header"}

@@ -116,7 +116,6 @@ def main() -> None:
         sys.exit(
             f"dist: there is no target '{unknown[0]}': choose of {', '.join([*TARGETS, *EXTRAS])}"
         )
-    # What nobody has built or run is made on request alone.
     wanted = arguments.what or [*TARGETS, *EXTRAS]
     os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(DIST / "zig-cache")
     OUT.mkdir(parents=True, exist_ok=True)

@@ -56,6 +56,8 @@ TARGETS = {
         Target("x86_64-windows", "x86_64-windows-gnu", "win_amd64", ".zip"),
         Target(WASM, "wasm32-wasi", "", ".tgz"),
         Target("aarch64-linux", "aarch64-linux-gnu.2.17", "manylinux_2_17_aarch64", static=True),
+        Target("x86_64-linux-musl", "x86_64-linux-musl", "musllinux_1_2_x86_64"),
+        Target("aarch64-linux-musl", "aarch64-linux-musl", "musllinux_1_2_aarch64"),
         Target("aarch64-macos", "aarch64-macos.11.0", "macosx_11_0_arm64"),
         Target("x86_64-macos", "x86_64-macos.11.0", "macosx_11_0_x86_64"),
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from conftest import BUST
@@ -135,6 +137,14 @@ def test_a_path_without_a_file_says_so(kind, tmp_path):
     assert str(caught.value.filename) == str(missing)
     with pytest.raises(IsADirectoryError):
         beltrami.unwrap(kind(tmp_path))
+
+
+def test_a_file_without_trimesh_says_what_to_install(tmp_path, monkeypatch):
+    path = tmp_path / "square.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(ModuleNotFoundError, match="pip install trimesh"):
+        beltrami.unwrap(path)
 
 
 @pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "off", "glb"])

@@ -38,7 +38,7 @@ class BeltramiConan(ConanFile):
     def validate(self):
         check_min_cppstd(self, 20)
         if is_msvc(self):
-            raise ConanInvalidConfiguration("the library has vectors of GCC: build it with Clang")
+            raise ConanInvalidConfiguration("Microsoft's compiler has not been tried: build with Clang")
 
     def build_requirements(self):
         self.tool_requires("cmake/[>=3.25 <4]")

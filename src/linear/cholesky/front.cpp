@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/processor.h"
+#include "base/compiler.h"
 
 namespace beltrami::front {
 namespace {
@@ -15,8 +15,7 @@ constexpr int kRowBlock = 128;   // rows of a packed operand that stay in the se
 /// `kLanes` numbers in one register.
 template <class T, int kLanes>
 struct Vector {
-  using Type [[gnu::vector_size(kLanes * sizeof(T))]] = T;
-  Type v;
+  Register<T, kLanes> v;
 
   BELTRAMI_INLINE static Vector load(const T* p) {
     Vector r;
@@ -36,25 +35,25 @@ struct Tile {
 
   BELTRAMI_INLINE static void run(const T* a, const T* b, int depth, T* c, std::int64_t stride) {
     V sum[kColumns][kVectors];
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int j = 0; j < kColumns; ++j) {
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) sum[j][v] = V::load(c + j * stride + v * kLanes);
     }
     for (int p = 0; p < depth; ++p) {
       V row[kVectors];
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) row[v] = V::load(a + p * kGroup + v * kLanes);
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int j = 0; j < kColumns; ++j) {
         const T factor = b[p * kGroup + j];
-#pragma GCC unroll 8
+        BELTRAMI_UNROLL(8)
         for (int v = 0; v < kVectors; ++v) sum[j][v].subtract_product(row[v], factor);
       }
     }
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int j = 0; j < kColumns; ++j) {
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) sum[j][v].store(c + j * stride + v * kLanes);
     }
   }
@@ -153,24 +152,24 @@ BELTRAMI_INLINE void solve_groups(T* c, std::int64_t stride, int loaded, int siz
       source = partial;
     }
     V x[kVectors];
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) x[v] = V::load(source + v * kLanes);
     for (int p = 0; p < j; ++p) {
       const T factor = rows[j * kInnerBlock + p];
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) x[v].subtract_product(V::load(at(p, v)), factor);
     }
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) {
       x[v].v *= inverse[j];
       x[v].store(at(j, v));
     }
     if (clipped) {
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) x[v].store(partial + v * kLanes);
       for (int i = 0; i < loaded; ++i) c[j * stride + i] = partial[i];
     } else {
-#pragma GCC unroll 8
+      BELTRAMI_UNROLL(8)
       for (int v = 0; v < kVectors; ++v) x[v].store(c + j * stride + v * kLanes);
     }
   }
@@ -256,13 +255,13 @@ BELTRAMI_INLINE void forward(const T* panel, int height, int width, T* x) {
     if (count == kUnroll) {
       for (; i + kLanes <= height; i += kLanes) {
         V l[kUnroll];
-#pragma GCC unroll 4
+        BELTRAMI_UNROLL(4)
         for (int q = 0; q < kUnroll; ++q) l[q] = V::load(column[q] + i);
-#pragma GCC unroll 4
+        BELTRAMI_UNROLL(4)
         for (int s = 0; s < kSides; ++s) {
           T* y = x + static_cast<std::int64_t>(s) * height + i;
           V value = V::load(y);
-#pragma GCC unroll 4
+          BELTRAMI_UNROLL(4)
           for (int q = 0; q < kUnroll; ++q) value.subtract_product(l[q], factor[s][q]);
           value.store(y);
         }
@@ -301,23 +300,23 @@ BELTRAMI_INLINE void backward(const T* panel, int height, int width, T* x) {
     for (int q = count; q < kUnroll; ++q) column[q] = column[0];
     const int begin = j + count;
     V sum[kSides][kUnroll][kVectors];
-#pragma GCC unroll 4
+    BELTRAMI_UNROLL(4)
     for (int s = 0; s < kSides; ++s) {
-#pragma GCC unroll 4
+      BELTRAMI_UNROLL(4)
       for (int q = 0; q < kUnroll; ++q) {
-#pragma GCC unroll 8
-        for (int v = 0; v < kVectors; ++v) sum[s][q][v].v = typename V::Type{};
+        BELTRAMI_UNROLL(8)
+        for (int v = 0; v < kVectors; ++v) sum[s][q][v].v = decltype(sum[s][q][v].v){};
       }
     }
     int i = begin;
     for (; i + kGroup <= height; i += kGroup) {
-#pragma GCC unroll 4
+      BELTRAMI_UNROLL(4)
       for (int s = 0; s < kSides; ++s) {
         const T* y = x + static_cast<std::int64_t>(s) * height + i;
-#pragma GCC unroll 8
+        BELTRAMI_UNROLL(8)
         for (int v = 0; v < kVectors; ++v) {
           const V value = V::load(y + v * kLanes);
-#pragma GCC unroll 4
+          BELTRAMI_UNROLL(4)
           for (int q = 0; q < kUnroll; ++q) {
             sum[s][q][v].v += V::load(column[q] + i + v * kLanes).v * value.v;
           }
@@ -329,7 +328,7 @@ BELTRAMI_INLINE void backward(const T* panel, int height, int width, T* x) {
       T total[kUnroll];
       for (int q = 0; q < count; ++q) {
         alignas(64) T part[kGroup];
-#pragma GCC unroll 8
+        BELTRAMI_UNROLL(8)
         for (int v = 0; v < kVectors; ++v) sum[s][q][v].store(part + v * kLanes);
         total[q] = ((part[0] + part[1]) + (part[2] + part[3])) +
                    ((part[4] + part[5]) + (part[6] + part[7]));
@@ -374,19 +373,19 @@ struct Row {
   Vector<T, kWidth> part[kVectors];
 
   BELTRAMI_INLINE explicit Row(const T* from) {
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) part[v] = Vector<T, kWidth>::load(from + v * kWidth);
   }
   BELTRAMI_INLINE void store(T* to) const {
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) part[v].store(to + v * kWidth);
   }
   BELTRAMI_INLINE void subtract_product(const Row& row, T factor) {
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) part[v].subtract_product(row.part[v], factor);
   }
   BELTRAMI_INLINE void divide(T by) {
-#pragma GCC unroll 8
+    BELTRAMI_UNROLL(8)
     for (int v = 0; v < kVectors; ++v) part[v].v /= by;
   }
 };
@@ -469,7 +468,7 @@ BELTRAMI_INLINE void backward_rows(const T* panel, int height, int width, T* con
 // NOLINTEND(bugprone-macro-parentheses)
 BELTRAMI_KERNELS(Baseline, , 16)
 #if BELTRAMI_DISPATCH_AVX2
-BELTRAMI_KERNELS(Avx2, [[gnu::target("avx2")]], 32)
+BELTRAMI_KERNELS(Avx2, BELTRAMI_FOR_AVX2, 32)
 #endif
 
 template <class T>

@@ -5,12 +5,7 @@
 #include <bit>
 #include <limits>
 
-// The population count that nearly every processor has, and the base of x86-64 has not.
-#if defined(__GNUC__) && defined(__x86_64__)
-#define BELTRAMI_WITH_POPCNT [[gnu::target("popcnt")]]
-#else
-#define BELTRAMI_WITH_POPCNT
-#endif
+#include "base/compiler.h"
 
 namespace beltrami {
 namespace {
@@ -97,7 +92,7 @@ template <class Visit>
   }
 }
 
-BELTRAMI_WITH_POPCNT void LeafOrder::eliminate_popcnt(std::span<int> order) {
+BELTRAMI_FOR_POPCNT void LeafOrder::eliminate_popcnt(std::span<int> order) {
   eliminate_with(order);
 }
 

@@ -58,7 +58,12 @@ def load(path: Any) -> Any:
     if Path(path).is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
     Path(path).stat()  # trimesh takes the path of no file for what it is to read
-    import trimesh
+    try:
+        import trimesh
+    except ModuleNotFoundError as missing:
+        raise ModuleNotFoundError(
+            f"files are read by trimesh, which is not there: pip install trimesh ({missing})"
+        ) from None
 
     loaded = trimesh.load(path, process=False)
     if is_mesh(loaded) or is_scene(loaded):
