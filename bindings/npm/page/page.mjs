@@ -124,6 +124,7 @@ class Page {
   /** Has a new worker do something; its answers come to `answer`. */
   #start(what, options, cornerUvs) {
     this.cancel();
+    this.edited = null;
     this.#fail('');
     this.running.hidden = false;
     this.progress.value = 0;
@@ -180,7 +181,7 @@ class Page {
       return;
     }
     if (failure !== undefined) {
-      if (this.seams) {
+      if (this.seams && this.edited) {
         this.seams.takeBack();
         this.#showEdited(this.edited);
       } else {

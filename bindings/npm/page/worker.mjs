@@ -4,6 +4,8 @@ import { load } from './beltrami/index.mjs';
 const loading = load();
 /** Milliseconds between two messages of progress. */
 const BETWEEN = 50;
+/** The chart of a face without area. */
+const NO_CHART = 0xffffffff;
 let editor = null;
 /** What `undo` goes back to, the latest last. */
 const marks = [];
@@ -24,10 +26,11 @@ function edited() {
 
 /** Maps what an edit concerns, and lays it out among the rest; everything, where that has no room. */
 function follow() {
-  const before = new Set(editor.charts.map(({ id }) => id)), { corners } = editor.update();
-  if (corners.length === 0) return;
-  const { faceCharts } = editor, moved = new Set(editor.charts.map(({ id }) => id).filter((id) => !before.has(id)));
-  for (const face of facesOf(corners)) if (faceCharts[face] !== 0xffffffff) moved.add(faceCharts[face]);
+  const ids = () => editor.charts.map(({ id }) => id), before = new Set(ids()), { corners } = editor.update();
+  // What was parted and has not moved still wants its margin.
+  const { faceCharts } = editor, moved = new Set(ids().filter((id) => !before.has(id)));
+  for (const face of facesOf(corners)) if (faceCharts[face] !== NO_CHART) moved.add(faceCharts[face]);
+  if (moved.size === 0) return;
   try {
     editor.pack(Uint32Array.from(moved));
   } catch (error) {
