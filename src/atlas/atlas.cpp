@@ -39,7 +39,7 @@ namespace {
 /// Smaller surfaces are in the caches anyway.
 constexpr Index kWorthArranging = 50'000;
 // Where the stages end in the progress.
-constexpr double kAdmitted = 0.04, kMapped = 0.9, kPlaced = 0.95;
+constexpr double kAdmitted = 0.03, kMapped = 0.83, kPlaced = 0.98;
 
 /// What cannot be rounded where it was placed is split, and all is placed anew, so often: a chart
 /// that was halved so often is a crumb.

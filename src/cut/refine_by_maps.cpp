@@ -31,7 +31,7 @@ constexpr double kWaveLength = 1.0 / 3;
 /// Costs go astray in so many ways.
 constexpr int kAstrayStarts = 8;
 /// Steps that a search takes, about: for its progress alone.
-constexpr double kUsualSteps = 8;
+constexpr double kUsualSteps = 3;
 /// Share of a budget of length that coarse seams may spend: on the fine surface they are longer.
 constexpr double kSpent = 0.97;
 /// Relative decrease at which maps end that judge: descents that end sooner may stop on a plateau.
