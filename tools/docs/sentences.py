@@ -3,12 +3,14 @@
     sentences.py PAGE ...
 
 Prose is what is left of a page of Markdown without code, tables, pictures and headings. A sentence
-has at most MOST words, and those of a page at most MEAN in the mean. Of a source in C or C++ it is
-the comments of a header, without what is set in like a table, and the summaries of options.
+has at most MOST words, and those of a page at most MEAN in the mean. Of a source it is what
+documents it: comments of the C header and of TypeScript, without what is set in like a table;
+summaries of options; docstrings of Python without the heads of their items; comments for rustdoc.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 from pathlib import Path
@@ -68,6 +70,40 @@ def comments(text: str) -> list[tuple[int, str]]:
     return found
 
 
+def docstrings(text: str) -> list[tuple[int, str]]:
+    """Return the paragraphs of docstrings, without headings, items' heads and examples."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            continue
+        words = ast.get_docstring(node) or ""
+        words = re.sub(r"^Examples\n-+\n.*?(?=\n\w+\n-+$|\Z)", "", words, flags=re.S | re.M)
+        words = re.sub(r"^\w[\w ]*\n-+$|^\*{0,2}\w[\w, *]* : .*$|^>>>.*$", "", words, flags=re.M)
+        number = node.body[0].lineno if words else 0
+        found += [(number, part) for part in parts_of(words)]
+    return found
+
+
+def doc_comments(text: str) -> list[tuple[int, str]]:
+    """Return the paragraphs of comments that begin with three slashes, without code and tables."""
+    found = []
+    for match in re.finditer(r"(?:^[ \t]*//[/!].*\n)+", text, re.M):
+        number = text.count("\n", 0, match.start()) + 1
+        words = re.sub(r"^[ \t]*//[/!] ?", "", match[0], flags=re.M)
+        words = re.sub(r"^```.*?^```|^[#|].*$", "", words, flags=re.S | re.M)
+        found += [(number, part) for part in parts_of(words)]
+    return found
+
+
+def parts_of(words: str) -> list[str]:
+    """Return paragraphs and items of lists."""
+    return [" ".join(part.split()) for part in re.split(r"\n\s*\n|\n(?=\s*[-*] )", words)]
+
+
+#: How what is read in a file is found, by its suffix.
+FINDERS = {".md": paragraphs, ".py": docstrings, ".rs": doc_comments, ".hpp": doc_comments}
+
+
 def sentences(paragraph: str) -> list[list[str]]:
     """Return the words of each sentence. Code counts as one word, a link as its text."""
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", paragraph)
@@ -83,8 +119,7 @@ def problems(page: Path) -> list[str]:
     """Return a line for each thing that is wrong with a page."""
     wrong, lengths = [], []
     is_page = page.suffix == ".md"
-    find = paragraphs if is_page else comments
-    for number, paragraph in find(page.read_text()):
+    for number, paragraph in FINDERS.get(page.suffix, comments)(page.read_text()):
         for words in sentences(paragraph):
             lengths.append(len(words))
             if len(words) > MOST:

@@ -116,8 +116,8 @@ namespace detail {
 /// What kind of results a context has one of at a time.
 enum Kind : std::size_t { kRun, kUnwrap, kPack, kSession };
 
-/// A context of C, and the numbers of the results of each kind that it has had: results of which
-/// there are newer ones know by them that theirs are gone.
+/// A context of C, and the numbers of the results of each kind that it has had. By these a result
+/// knows that there are newer ones, and that its own is gone.
 struct Handle {
   Handle() = default;
   Handle(const Handle&) = delete;

@@ -40,8 +40,8 @@ class Atlas:
     Attributes
     ----------
     uvs : (k, 2) array of float32 or float64
-        One (u, v) per UV vertex, in the unit square of its page; with ``pack="none"``, and with
-        pins, in the surface's unit of length (or in the unit square, with `unit_square`).
+        One (u, v) per UV vertex, in the unit square of its page. With ``pack="none"``, and with
+        pins, they are in the surface's unit of length, or with `unit_square` in the unit square.
     uv_faces : (m, 3) array of integers, or list of arrays
         The UV vertex of each corner, in the shape of the faces as given; for a list of polygons of
         several sizes a list of arrays.
@@ -59,9 +59,10 @@ class Atlas:
         The triangles that were computed on and that the certificate speaks of, as corners, in the
         orientation in which they are positive.
     status : str
-        "BELTRAMI_OK"; "BELTRAMI_NOT_CONVERGED", where the atlas is injective, but an optimisation
-        stopped at its iteration limit; "BELTRAMI_NOT_INJECTIVE", where a chart has no map or one
-        that is not (its own status tells), or "BELTRAMI_NOT_INJECTIVE_FLOAT32".
+        "BELTRAMI_OK", "BELTRAMI_NOT_CONVERGED", "BELTRAMI_NOT_INJECTIVE" or
+        "BELTRAMI_NOT_INJECTIVE_FLOAT32". Not converged: the atlas is injective, but an optimisation
+        stopped at its iteration limit. Not injective: a chart has no map, or one that is not
+        injective; its own status tells.
     certificate : AtlasCertificate
         The exact verdict on the very numbers in `uvs`.
     float32_certificate : AtlasCertificate

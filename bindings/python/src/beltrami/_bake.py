@@ -96,11 +96,12 @@ def bake(
     new_uvs : (m, 3, 2) array_like of floats
         The new UVs, in the unit square of the page of the triangle.
     pixels : {"linear", "srgb", "srgb-alpha", "normals", "occlusion"}, default "linear"
-        What channels are, which says how means are taken: numbers as they are; colours of sRGB,
-        meant in linear light, with a second or fourth channel that is linear; the same, where a
-        colour counts by that channel; normals in tangent space, which are turned to the new axes.
-        With "occlusion" no image is read: the share of a grey sky that a place sees, from 0 to 1
-        (255 or 65,535 of whole numbers), past the triangles themselves or `source_vertices`.
+        What channels are, which says how means are taken. The first are numbers as they are. Then
+        come colours of sRGB, meant in linear light, with a second or fourth channel that is linear.
+        The third are the same, where a colour counts by that channel. Normals are in tangent space,
+        and are turned to the new axes. With "occlusion" no image is read. It is the share of a grey
+        sky that a place sees, from 0 to 1 (255 or 65,535 of whole numbers), past the triangles
+        themselves or `source_vertices`.
     resolution : int, default 1024
         Texels to the side of a page, 1 to 32,768.
     gutter : int, optional

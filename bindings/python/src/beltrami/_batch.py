@@ -45,10 +45,9 @@ def batch(
 
     Every mesh is a process of its own: one that fails, crashes or is killed becomes a record with
     its failure, and the others go on. ``out_dir/batch.jsonl`` gets a line for each when it ends. A
-    mesh is left out where that log has a result for it, or its refusal, and neither the file (by
-    path, size and time), nor the options, nor the version of the library are others since; whatever
-    crashed, was cancelled, or could not be read or written is tried again. One call at a time may
-    use a folder.
+    mesh is left out where that log has a result for it, or its refusal. The file (by path, size and
+    time), the options and the version of the library have to be the same. Whatever crashed, was
+    cancelled, or could not be read or written is tried again. One call at a time may use a folder.
 
     Parameters
     ----------

@@ -106,8 +106,8 @@ class NotADiskError(MeshError):
 class PinError(BeltramiError):
     """Corners cannot be held where they were pinned: no injective map does that.
 
-    Its element is the first corner that cannot be met together with those before it; the face of a
-    rectangle, or a vertex of straight edges, where a chart cannot be made straight.
+    Its element is the first corner that cannot be met together with those before it. Where a chart
+    cannot be made straight it is the face of a rectangle, or a vertex of straight edges.
     """
 
 

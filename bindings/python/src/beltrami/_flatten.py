@@ -374,7 +374,7 @@ def parameterize(
     progress : bool or callable, optional
         True draws a bar: tqdm's, in terminals and notebooks, where it is installed, else a plain
         line on stderr if that is a terminal. A callable is told ``(fraction, stage)`` in this
-        thread, with a fraction in [0, 1] that never decreases; it cancels by returning False or by
+        thread, with a fraction in [0, 1] that never decreases. It cancels by returning False or by
         raising, and what it raises is passed on.
     cancel : CancelToken, optional
         Ends the call from any thread.

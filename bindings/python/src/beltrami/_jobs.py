@@ -42,8 +42,8 @@ class BatchRecord:
     input, output : str
         Path of the mesh, and name of the file with UVs in the folder of results.
     status : str
-        A status of the library such as "BELTRAMI_OK" or "BELTRAMI_E_CLOSED"; "FILE_ERROR" for a
-        file that could not be read or written; "PROCESS_DIED" where the process was killed or
+        A status of the library such as "BELTRAMI_OK" or "BELTRAMI_E_CLOSED". "FILE_ERROR" is for a
+        file that could not be read or written. "PROCESS_DIED" says that the process was killed or
         crashed, or the worker it ran on.
     message : str | None
         Of a failure: one sentence.

@@ -162,7 +162,7 @@ def pack(
 ) -> Packing:
     """Pack the charts of one UV mesh or several onto the pages of a texture.
 
-    Each chart is moved, turned and scaled, and none is mirrored: between charts there are at least
+    Each chart is moved, turned and scaled, and none is mirrored. Between charts there are at least
     `margin` texels, half as many to the edges of a page, measured on the numbers that are returned.
     The same input gives the same bits, at any number of threads.
 

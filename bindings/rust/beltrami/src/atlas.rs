@@ -91,9 +91,9 @@ impl<'a> Atlas<'a> {
         Err(Error::from_status(kind.status(), certificate.bad_element()))
     }
 
-    /// One (u, v) for every UV vertex: in the unit square of its page; with
-    /// [`Pack::None`](crate::Pack::None), and with pins, in the surface's unit of length, or with the
-    /// option `unit_square` in the unit square. Single precision is rounded to nearest.
+    /// One (u, v) for every UV vertex, in the unit square of its page. With
+    /// [`Pack::None`](crate::Pack::None), and with pins, they are in the surface's unit of length, or
+    /// with the option `unit_square` in the unit square. Single precision is rounded to nearest.
     pub fn uvs<T: Uv>(&self) -> Vec<T> {
         let mut uvs = vec![T::origin(); count(self.raw().uv_vertices)];
         self.fill(T::room(&mut uvs), sys::beltrami_get_uv_vertices);
@@ -162,8 +162,9 @@ impl<'a> Atlas<'a> {
         self.origins::<u64>().into_iter().map(|vertex| items[count(vertex)].clone()).collect()
     }
 
-    /// The seams, those given and those found, as pairs of vertices in `u32` or `u64`: edges at which
-    /// UVs part, each once, the lesser vertex first, in increasing order; open borders are none. Of
+    /// The seams, those given and those found, as pairs of vertices in `u32` or `u64`. They are
+    /// edges at which UVs part, each once, the lesser vertex first, in increasing order. Open borders
+    /// are none. Of
     /// vertices that count as one it is the least. As [`seams`](crate::Surface::seams) of the
     /// surface, with [`Cut::Given`](crate::Cut::Given), they make the same charts.
     pub fn seams<T: Index>(&self) -> Vec<[T; 2]> {

@@ -251,7 +251,7 @@ impl<'a, T: Pixel> Bake<'a, T> {
         self
     }
 
-    /// The position of each corner of other triangles of the same shape, in the same place: the old
+    /// The position of each corner of other triangles of the same shape, in the same place. The old
     /// UVs and pages are then of these, and each texel shows the nearest place of them.
     pub fn source_positions(mut self, positions: impl Into<Positions<'a>>) -> Self {
         self.source_positions = Some(positions.into());

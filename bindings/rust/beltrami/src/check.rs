@@ -141,7 +141,7 @@ pub fn check_boundary_with<'a>(
     Ok(judge(sys::beltrami_check_boundary, faces.into(), uvs.into(), token)?.crossings)
 }
 
-/// Why a measure failed, with the element where it is one of the faces or the UVs: a measure does not
+/// Why a measure failed, with the element where it is one of the faces or the UVs. A measure does not
 /// name it, but the check that reads the same does.
 fn measure_failure(
     status: sys::beltrami_status,

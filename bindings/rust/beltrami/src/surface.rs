@@ -266,7 +266,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Edges, by their vertices, that become straight with those of their kind that they meet, in
-    /// each chart that has them, and for each a [`PinKind`] as an integer, but not
+    /// each chart that has them. For each there is a [`PinKind`] as an integer, but not
     /// [`PinKind::Point`]. Unwrapping fails with [`ErrorKind::Pins`](crate::ErrorKind::Pins) where
     /// no injective map has them straight.
     pub fn straight_edges(

@@ -128,10 +128,10 @@ impl Unwrapper {
     /// # Errors
     ///
     /// [`InvalidArgument`](ErrorKind::InvalidArgument) where lengths do not fit together, a face has
-    /// less than three corners, or an option leaves another one without effect;
+    /// less than three corners, or an option leaves another one without effect.
     /// [`Empty`](ErrorKind::Empty), [`IndexOutOfRange`](ErrorKind::IndexOutOfRange),
-    /// [`NonFinite`](ErrorKind::NonFinite), [`ZeroArea`](ErrorKind::ZeroArea), with the element that
-    /// is the cause; [`OutOfMemory`](ErrorKind::OutOfMemory), [`Internal`](ErrorKind::Internal). An
+    /// [`NonFinite`](ErrorKind::NonFinite) and [`ZeroArea`](ErrorKind::ZeroArea), with the element
+    /// that is the cause. [`OutOfMemory`](ErrorKind::OutOfMemory), [`Internal`](ErrorKind::Internal). An
     /// atlas that is not injective is no error: see [`Atlas`].
     pub fn unwrap(&mut self, surface: &Surface<'_>) -> Result<Atlas<'_>, Error> {
         self.unwrap_with(surface, Control::new())
