@@ -1,8 +1,9 @@
 """Prints what the tests ran of each room: lines and branches, in a table.
 
-    coverage.py SUMMARY.json
+    coverage.py COVERAGE.json
 
-SUMMARY.json is what gcovr writes with --json-summary.
+COVERAGE.json is what gcovr writes with --json. A line of a template counts once, by the one of its
+instances that ran most of it.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import json
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 
 def room_of(filename: str) -> str:
@@ -18,14 +20,31 @@ def room_of(filename: str) -> str:
     return "/".join(Path(filename).parts[:-1][:2])
 
 
+def counts_of(lines: list[dict[str, Any]]) -> Counter[str]:
+    """Return the lines and branches of a file, and how many of them ran."""
+    ran: dict[int, bool] = {}
+    branches: dict[int, tuple[int, int]] = {}
+    for line in lines:
+        number = line["line_number"]
+        ran[number] = ran.get(number, False) or line["count"] > 0
+        taken = sum(branch["count"] > 0 for branch in line["branches"])
+        found = (taken, len(line["branches"]))
+        branches[number] = max(branches.get(number, (0, 0)), found)
+    return Counter(
+        line_covered=sum(ran.values()),
+        line_total=len(ran),
+        branch_covered=sum(taken for taken, _ in branches.values()),
+        branch_total=sum(total for _, total in branches.values()),
+    )
+
+
 def main() -> None:
     """Print the table."""
-    summary = json.loads(Path(sys.argv[1]).read_text())
     rooms: dict[str, Counter[str]] = {}
     total: Counter[str] = Counter()
-    for file in summary["files"]:
-        counts = {key: file[key] for key in file if key.endswith(("_covered", "_total"))}
-        rooms.setdefault(room_of(file["filename"]), Counter()).update(counts)
+    for file in json.loads(Path(sys.argv[1]).read_text())["files"]:
+        counts = counts_of(file["lines"])
+        rooms.setdefault(room_of(file["file"]), Counter()).update(counts)
         total.update(counts)
     print(f"{'room':20} {'lines':>16} {'':>6} {'branches':>16}")
     for room, counts in [*sorted(rooms.items()), ("all", total)]:
