@@ -287,6 +287,12 @@ TEST(GltfRead, WhatIsOutOfRangeIsNamed) {
   expect_refusal([](Json& j) { j.erase("meshes"), j.erase("nodes"); }, "no triangles");
 }
 
+TEST(GltfRead, ListsThatAreNoneAreRefused) {
+  for (const char* list : {"images", "textures", "materials", "animations", "samplers", "skins"}) {
+    expect_refusal([&](Json& j) { j[list] = {{"bufferView", 0}}; }, list);
+  }
+}
+
 TEST(GltfRead, NodesAreAForest) {
   expect_refusal([](Json& j) { j["nodes"][0]["children"] = {0}; }, "nodes[0]: it is below itself");
   expect_refusal(

@@ -141,6 +141,16 @@ void read_buffers(Document& document, const std::optional<std::string_view>& chu
   }
 }
 
+/// What is to be lists of the document is that: else it would be found out when the file is
+/// written.
+void require_lists(const Document& document) {
+  for (const char* list :
+       {"accessors", "animations", "bufferViews", "buffers", "images", "materials", "meshes",
+        "nodes", "samplers", "scenes", "skins", "textures"}) {
+    static_cast<void>(document.count(list));
+  }
+}
+
 }  // namespace
 
 BufferView buffer_view(const Document& document, std::uint64_t number) {
@@ -187,6 +197,7 @@ Document read_document(std::string_view bytes, const std::string& path, Reach re
   if (container.other_chunks) document.not_kept.emplace_back("chunks that are not of glTF 2.0");
   document.json = parse(container.json, path);
   require_version(document);
+  require_lists(document);
   read_buffers(document, container.chunk, reach);
   decompress(document);
   for (std::uint64_t i = 0; i < document.count("bufferViews"); ++i) buffer_view(document, i);
