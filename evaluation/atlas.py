@@ -36,10 +36,10 @@ SPOT = FOLDER / "spot.obj"
 RIVALS = ("xatlas", "uvunwrap", "UVAtlas", "Blender")
 # Our variants, by name, with the keywords of unwrap.
 OURS: dict[str, dict[str, object]] = {
+    "quick": {"effort": "quick"},
+    "default": {},
     "auto 2.1": {"target_energy": 2.1},
-    "auto 2.05": {"target_energy": 2.05},
     "auto 2.01": {"target_energy": 2.01},
-    "minimal": {"cut": "minimal"},
 }
 ISLANDS: dict[str, dict[str, object]] = {
     "islands": {"cut": "islands"},
