@@ -27,7 +27,7 @@ function surfaceOf(meshes, isAsked) {
   const positions = [], indices = [], materials = [], parts = [];
   let right = 0, count = 0;
   for (const { mesh, scale } of meshes) {
-    const box = [Infinity, -Infinity], first = positions.length, shift = () => right - box[0];
+    const box = [Infinity, -Infinity], first = positions.length;
     for (const primitive of mesh.listPrimitives().filter(isAsked)) {
       const place = primitive.getAttribute('POSITION'), corners = cornersOf(primitive), item = [];
       for (let v = 0; v < place.getCount(); ++v) {
@@ -41,7 +41,7 @@ function surfaceOf(meshes, isAsked) {
       parts.push({ primitive, corners });
     }
     if (meshes.length === 1 || first === positions.length) continue;
-    const by = shift(), size = box[1] - box[0];
+    const by = right - box[0], size = box[1] - box[0];
     for (let i = first; i < positions.length; i += 3) positions[i] += by;
     right += (1 + BETWEEN) * (size || 1);
   }

@@ -162,9 +162,10 @@ export interface Editor {
   lock(charts: Uint32Array, locked?: boolean): void;
   /** Charts are mapped anew by the next update; cold: from nothing. */
   renew(charts: Uint32Array, cold?: boolean): void;
-  /** `steps`: Newton steps of a chart at most, 0: to its minimum; `seconds`: after which no step begins, 0: any. */
+  /** `steps`: Newton steps of a chart at most, 0: to its minimum; `seconds`: after which no step begins, 0: any.
+   *  Throws BeltramiError, of a pin that cannot be met with its corner as `element`. */
   update(how?: { seconds?: number; steps?: number } & Running): Changes;
-  /** Packs charts among the others, which stay; null: all. */
+  /** Packs charts among the others, which stay; null: all. Throws BeltramiError where there is no room. */
   pack(charts?: Uint32Array | null, how?: Running): Changes;
   /** The exact verdict on all charts together. */
   check(): AtlasCertificate;

@@ -3,6 +3,8 @@
 
     same_bits.py --native PROGRAM --stage FOLDER [--quick]
 
+A program in C is linked with the library of the target, too, and run.
+
 FOLDER has bin/ and lib/ of one target, as tools/dist/dist.py leaves it below build/dist/stage. It
 is run here: Linux on another processor under qemu, Windows under wine. Where that is missing
 nothing is tested, which is said. With --quick large meshes are flattened, not unwrapped: for what

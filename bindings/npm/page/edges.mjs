@@ -1,11 +1,5 @@
 // Edges of a mesh as an editor of seams sees them: vertices at one place are one.
-
-/** Where faces begin, and the end of the last. */
-function startsOf({ indices, faceSizes }) {
-  const count = faceSizes ? faceSizes.length : indices.length / 3, starts = new Uint32Array(count + 1);
-  for (let f = 0; f < count; ++f) starts[f + 1] = starts[f] + (faceSizes ? faceSizes[f] : 3);
-  return starts;
-}
+import { facesOfCorners } from './corners.mjs';
 
 export class Edges {
   /** `triangles`: three corners each, of which the mesh's polygons are made. */
@@ -13,10 +7,15 @@ export class Edges {
     this.mesh = mesh;
     this.triangles = triangles;
     this.vertices = this.#welded();
-    const starts = startsOf(mesh);
+    const faces = facesOfCorners(mesh);
+    let first = 0; // of the face
     /** The corner after each, around its face. */
-    this.next = Uint32Array.from(mesh.indices, (_, corner) => corner + 1);
-    for (let f = 0; f + 1 < starts.length; ++f) if (starts[f + 1] > starts[f]) this.next[starts[f + 1] - 1] = starts[f];
+    this.next = Uint32Array.from(mesh.indices, (_, corner) => {
+      if (faces[corner + 1] === faces[corner]) return corner + 1;
+      const back = first;
+      first = corner + 1;
+      return back;
+    });
     /** By the number of an edge, the corners from which its sides go. */
     this.sides = new Map();
     /** By a vertex, the edges at it. */

@@ -1,4 +1,5 @@
 // From a mesh and its atlas to what the viewer shows, and to the keys of a report.
+import { facesOfCorners } from './corners.mjs';
 
 /** The symmetric Dirichlet energy of a triangle, whose UVs are in units of length; infinite where it is flipped. */
 function energyOf(positions, a, b, c, uvs, corners, unit) {
@@ -23,19 +24,11 @@ export function arraysOf(mesh, atlas) {
   const { triangles, cornerUvs, cornerUvVertices, cornerPages, faceCharts } = atlas, count = triangles.length / 3;
   const unit = atlas.packing ? atlas.packing.resolution / atlas.packing.texelsPerUnit : 1;
   const arrays = { energies: new Float32Array(count), charts: new Uint32Array(count), faces: new Uint32Array(3 * count) };
-  const starts = mesh.faceSizes ? Uint32Array.from(mesh.faceSizes) : null;
-  if (starts) for (let f = 0, at = 0; f < starts.length; ++f) starts[f] = at += mesh.faceSizes[f];
-  let face = 0;
+  const faces = facesOfCorners(mesh);
   const uvVertices = atlas.uvVertices.length / 2, uvs = new Float32Array(2 * uvVertices), places = new Float64Array(3 * uvVertices);
   for (let t = 0; t < count; ++t) {
     const corners = triangles.subarray(3 * t, 3 * t + 3);
-    if (starts) {
-      if (face > 0 && corners[0] < starts[face - 1]) face = 0;
-      while (corners[0] >= starts[face]) ++face;
-    } else {
-      face = Math.floor(corners[0] / 3);
-    }
-    arrays.charts[t] = faceCharts[face];
+    arrays.charts[t] = faceCharts[faces[corners[0]]];
     arrays.energies[t] = energyOf(mesh.positions, ...Array.from(corners, (c) => mesh.indices[c]), cornerUvs, corners, unit);
     corners.forEach((corner, k) => {
       const v = cornerUvVertices[corner], page = cornerPages[corner];
@@ -72,17 +65,14 @@ function percentile(energies, areas, share) {
  */
 export function editedAtlas(atlas, { cornerUvs, faceCharts, charts, report, certificate }, mesh, vertices, seamLength) {
   const count = vertices.length, known = new Map(), uvs = [], cornerUvVertices = new Uint32Array(count), cornerPages = new Uint32Array(count);
-  const own = new cornerUvs.constructor(cornerUvs), boxes = new Map();
-  const chartOf = new Uint32Array(count);
-  for (let f = 0, corner = 0; corner < count; ++f) {
-    for (const end = corner + (mesh.faceSizes?.[f] ?? 3); corner < end; ++corner) {
-      chartOf[corner] = faceCharts[f];
-      const box = boxes.get(faceCharts[f]) ?? [Infinity, Infinity];
-      boxes.set(faceCharts[f], [Math.min(box[0], cornerUvs[2 * corner]), Math.min(box[1], cornerUvs[2 * corner + 1])]);
-    }
-  }
+  const own = new cornerUvs.constructor(cornerUvs), chartOf = facesOfCorners(mesh).map((face) => faceCharts[face]);
+  const leasts = new Map(); // u and v of a chart
+  chartOf.forEach((chart, corner) => {
+    const least = leasts.get(chart) ?? [Infinity, Infinity];
+    leasts.set(chart, least.map((value, k) => Math.min(value, cornerUvs[2 * corner + k])));
+  });
   for (let corner = 0; corner < count; ++corner) {
-    const [column, row] = boxes.get(chartOf[corner]).map((least) => Math.max(Math.floor(least), 0));
+    const [column, row] = leasts.get(chartOf[corner]).map((least) => Math.max(Math.floor(least), 0));
     cornerPages[corner] = column + 10 * row;
     own[2 * corner] -= column;
     own[2 * corner + 1] -= row;

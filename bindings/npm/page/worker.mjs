@@ -1,5 +1,6 @@
 // Unwraps and edits beside the page, which stays quick, and may end this worker to cancel.
 import { load } from './beltrami/index.mjs';
+import { facesOfCorners } from './corners.mjs';
 
 const loading = load();
 /** Milliseconds between two messages of progress. */
@@ -7,6 +8,8 @@ const BETWEEN = 50;
 /** The chart of a face without area. */
 const NO_CHART = 0xffffffff;
 let editor = null;
+/** Of its corners. */
+let faces = null;
 /** What `undo` goes back to, the latest last. */
 const marks = [];
 
@@ -29,7 +32,7 @@ function follow() {
   const ids = () => editor.charts.map(({ id }) => id), before = new Set(ids()), { corners } = editor.update();
   // What was parted and has not moved still wants its margin.
   const { faceCharts } = editor, moved = new Set(ids().filter((id) => !before.has(id)));
-  for (const face of facesOf(corners)) if (faceCharts[face] !== NO_CHART) moved.add(faceCharts[face]);
+  for (const corner of corners) if (faceCharts[faces[corner]] !== NO_CHART) moved.add(faceCharts[faces[corner]]);
   if (moved.size === 0) return;
   try {
     editor.pack(Uint32Array.from(moved));
@@ -39,18 +42,13 @@ function follow() {
   }
 }
 
-let facesOf = null;
-
 const actions = {
   unwrap(beltrami, { surface, options }) {
     const atlas = beltrami.unwrap(surface, { ...options, progress: reported() });
     postMessage({ atlas, version: beltrami.version });
   },
   begin(beltrami, { surface, options }) {
-    const corners = surface.indices.length, face = new Uint32Array(corners);
-    if (surface.faceSizes) surface.faceSizes.reduce((at, size, f) => { face.fill(f, at, at + size); return at + size; }, 0);
-    else for (let corner = 0; corner < corners; ++corner) face[corner] = Math.floor(corner / 3);
-    facesOf = (some) => some.map((corner) => face[corner]);
+    faces = facesOfCorners(surface);
     editor = beltrami.edit(surface, options);
     editor.update();
     edited();
