@@ -115,7 +115,7 @@ class Host {
   bool has_begun() const { return has_begun_; }
 
   void call() {
-    switch (data_.ConsumeIntegralInRange(0, 11)) {
+    switch (data_.ConsumeIntegralInRange(0, 12)) {
       case 0:
       case 1:
         return set_seams();
@@ -127,6 +127,8 @@ class Host {
         return of_charts(beltrami_session_lock);
       case 5:
         return of_charts(beltrami_session_renew);
+      case 12:
+        return set_flags();
       case 6:
         return pack();
       case 7:
@@ -215,6 +217,13 @@ class Host {
     const std::vector<std::uint64_t> ids = some_charts();
     const beltrami_buffer buffer = {ids.data(), 0, BELTRAMI_U64, 0};
     noted(function(context_, &buffer, ids.size(), data_.ConsumeBool() ? 1 : 0));
+  }
+
+  void set_flags() {
+    const std::vector<std::uint64_t> ids = some_charts();
+    const beltrami_buffer buffer = {ids.data(), 0, BELTRAMI_U64, 0};
+    noted(beltrami_session_set_flags(context_, &buffer, ids.size(),
+                                     data_.ConsumeIntegralInRange<std::uint32_t>(0, 16)));
   }
 
   int polls() { return data_.ConsumeBool() ? kMostPolls : data_.ConsumeIntegralInRange(0, 60); }

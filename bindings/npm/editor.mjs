@@ -2,6 +2,7 @@
 import { checked, REALS, WHOLE, wrong } from './calls.mjs';
 
 const PIN_KINDS = ['point', 'u', 'v', 'line'];
+const FLAGS = ['keepFrame', 'keepScale', 'align', 'stack']; // by their bits
 
 export class Editor {
   #calls;
@@ -32,6 +33,13 @@ export class Editor {
   select(faces) { this.#edit('beltrami_session_select', faces ?? new Uint32Array(), 'faces', 1); }
 
   lock(charts, locked = true) { this.#edit('beltrami_session_lock', charts, 'charts', 1, locked ? 1 : 0); }
+
+  setFlags(charts, flags = {}) {
+    const unknown = Object.keys(flags).find((name) => !FLAGS.includes(name));
+    if (unknown) throw wrong(`a chart has no flag "${unknown}": there are ${FLAGS.join(', ')}`);
+    const sum = FLAGS.reduce((all, name, i) => all + (flags[name] ? 1 << i : 0), 0);
+    this.#edit('beltrami_session_set_flags', charts, 'charts', 1, sum);
+  }
 
   renew(charts, cold = false) { this.#edit('beltrami_session_renew', charts, 'charts', 1, cold ? 1 : 0); }
 
@@ -104,7 +112,11 @@ export class Editor {
   get report() { return this.#read('beltrami_session', 'beltrami_get_session'); }
 
   get charts() {
-    return Array.from({ length: this.report.charts }, (_, i) => this.#read('beltrami_session_chart', 'beltrami_get_session_chart', BigInt(i)));
+    return Array.from({ length: this.report.charts }, (_, i) => {
+      const { flags, reserved, stackedOn, ...chart } = this.#read('beltrami_session_chart', 'beltrami_get_session_chart', BigInt(i));
+      FLAGS.forEach((name, bit) => { chart[name] = (flags >> bit & 1) === 1; });
+      return { ...chart, stackedOn: stackedOn < 2 ** 53 ? stackedOn : null };
+    });
   }
 
   #within(body) {

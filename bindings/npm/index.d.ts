@@ -144,6 +144,24 @@ export interface EditorChart {
   readonly symmetricDirichlet: number;
   /** Lengths in the plane per length on the surface that it is to have. */
   readonly scale: number;
+  readonly keepFrame: boolean;
+  readonly keepScale: boolean;
+  readonly align: boolean;
+  readonly stack: boolean;
+  /** The number of the chart that packing has laid it on, while both stay as they are, or null. */
+  readonly stackedOn: number | null;
+}
+
+/** What a chart keeps, beside its lock: false where it is left out. */
+export interface ChartFlags {
+  /** Packing does not turn it. */
+  keepFrame?: boolean;
+  /** Pins leave its size, and packing those of all charts. */
+  keepScale?: boolean;
+  /** What is straight of its border lies along the axes; pins overrule it. */
+  align?: boolean;
+  /** Packing lays it on the first chart of its shape that has this flag. */
+  stack?: boolean;
 }
 
 /**
@@ -160,6 +178,8 @@ export interface Editor {
   select(faces: Uint32Array | null): void;
   /** Charts, by their numbers, stay whatever happens, or are let go. */
   lock(charts: Uint32Array, locked?: boolean): void;
+  /** These and no other flags for charts. One to be aligned is due. */
+  setFlags(charts: Uint32Array, flags?: ChartFlags): void;
   /** Charts are mapped anew by the next update; cold: from nothing. */
   renew(charts: Uint32Array, cold?: boolean): void;
   /** `steps`: Newton steps of a chart at most, 0: to its minimum; `seconds`: after which no step begins, 0: any.

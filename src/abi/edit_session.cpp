@@ -196,6 +196,17 @@ void EditSession::lock(const beltrami_buffer* charts, std::uint64_t count, bool 
   session_.lock(read_charts(charts, count), locked);
 }
 
+void EditSession::set_flags(const beltrami_buffer* charts, std::uint64_t count,
+                            std::uint32_t flags) {
+  constexpr std::uint32_t kAll = BELTRAMI_CHART_KEEP_FRAME | BELTRAMI_CHART_KEEP_SCALE |
+                                 BELTRAMI_CHART_ALIGN | BELTRAMI_CHART_STACK;
+  if ((flags & ~kAll) != 0) {
+    throw Error(Fault::kInvalidArgument,
+                "the flags " + std::to_string(flags) + " are no sum of BELTRAMI_CHART_ numbers");
+  }
+  session_.set_flags(read_charts(charts, count), static_cast<std::uint8_t>(flags));
+}
+
 void EditSession::renew(const beltrami_buffer* charts, std::uint64_t count, bool cold) {
   session_.renew(read_charts(charts, count), cold);
 }

@@ -33,6 +33,7 @@ class EditSession {
                      std::uint64_t count);
   void select(const beltrami_buffer* faces, std::uint64_t count);
   void lock(const beltrami_buffer* charts, std::uint64_t count, bool locked);
+  void set_flags(const beltrami_buffer* charts, std::uint64_t count, std::uint32_t flags);
   void renew(const beltrami_buffer* charts, std::uint64_t count, bool cold);
 
   Updated update(int steps, const Work& work);

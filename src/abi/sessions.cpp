@@ -79,6 +79,10 @@ beltrami_session_chart describe_chart(const EditSession& session, std::uint64_t 
   report.first_face = static_cast<std::uint64_t>(session.face_of(chart.first));
   report.symmetric_dirichlet = chart.energy;
   report.scale = std::ldexp(chart.scale, ground.exponent);
+  report.flags = state.flags_of(chart);
+  const Index below = state.stacked_on(chart);
+  report.stacked_on =
+      below == kNone ? UINT64_MAX : static_cast<std::uint64_t>(state.charts[below].id);
   return report;
 }
 
@@ -136,6 +140,11 @@ beltrami_status beltrami_session_select(beltrami_context* context, const beltram
 beltrami_status beltrami_session_lock(beltrami_context* context, const beltrami_buffer* charts,
                                       uint64_t count, int32_t locked) {
   return with_session(context, [&](EditSession& own) { own.lock(charts, count, locked != 0); });
+}
+
+beltrami_status beltrami_session_set_flags(beltrami_context* context, const beltrami_buffer* charts,
+                                           uint64_t count, uint32_t flags) {
+  return with_session(context, [&](EditSession& own) { own.set_flags(charts, count, flags); });
 }
 
 beltrami_status beltrami_session_renew(beltrami_context* context, const beltrami_buffer* charts,

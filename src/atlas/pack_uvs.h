@@ -24,6 +24,9 @@ struct UvMesh {
   /// Per face the page on which its chart stays where it is, in [0, 1]^2, or kNone; empty: none
   /// stays. Equal for the faces of a chart.
   std::vector<Index> kept_page = {};
+  /// Per face the turns of its chart, as PackChart has them; empty: 0. Equal for the faces of a
+  /// chart.
+  std::vector<int> own_turns = {};
 };
 
 struct PackedUvs {

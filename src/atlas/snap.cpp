@@ -31,40 +31,6 @@ double tangent_of(Vec2 edge) {
   return edge.y() / edge.x();
 }
 
-/// The turn (cosine, sine) that brings the most of a border along the axes; none that is worth it.
-std::optional<Vec2> turn_to_border(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
-  std::vector<std::pair<double, double>> edges;  // tangents and lengths
-  double all = 0;
-  for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
-    const std::size_t next = i + 1 == mesh.boundary.size() ? 0 : i + 1;
-    const Vec2 edge = uvs[mesh.boundary[next]] - uvs[mesh.boundary[i]];
-    const double length = edge.norm();
-    if (!(length > 0)) continue;
-    const double tangent = tangent_of(edge);
-    all += length;
-    edges.emplace_back(tangent, length);
-    // At 45 degrees the ends of the range meet.
-    if (std::abs(tangent) > 1 - 2 * kOneDirection) edges.emplace_back(-1 / tangent, length);
-  }
-  std::sort(edges.begin(), edges.end());
-  double best = 0, along = 0, sum = 0, moment = 0;
-  for (std::size_t first = 0, last = 0; last < edges.size(); ++last) {
-    sum += edges[last].second;
-    moment += edges[last].first * edges[last].second;
-    for (; edges[last].first - edges[first].first > kOneDirection; ++first) {
-      sum -= edges[first].second;
-      moment -= edges[first].first * edges[first].second;
-    }
-    if (sum > best) {
-      best = sum;
-      along = moment / sum;
-    }
-  }
-  if (!(best >= kWorthTurning * all) || all == 0) return std::nullopt;
-  const double size = portable::hypot(1, along);
-  return Vec2(1 / size, -along / size);
-}
-
 /// Where borders along an axis lie, and how long they are there.
 struct Line {
   double place = 0, length = 0;
@@ -143,11 +109,44 @@ void move(const std::vector<Line>& lines, int k, std::vector<Vec2>& texels) {
 
 }  // namespace
 
+std::optional<Vec2> turn_to_borders(const DiskMesh& mesh, const std::vector<Vec2>& uvs) {
+  std::vector<std::pair<double, double>> edges;  // tangents and lengths
+  double all = 0;
+  for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
+    const std::size_t next = i + 1 == mesh.boundary.size() ? 0 : i + 1;
+    const Vec2 edge = uvs[mesh.boundary[next]] - uvs[mesh.boundary[i]];
+    const double length = edge.norm();
+    if (!(length > 0)) continue;
+    const double tangent = tangent_of(edge);
+    all += length;
+    edges.emplace_back(tangent, length);
+    // At 45 degrees the ends of the range meet.
+    if (std::abs(tangent) > 1 - 2 * kOneDirection) edges.emplace_back(-1 / tangent, length);
+  }
+  std::sort(edges.begin(), edges.end());
+  double best = 0, along = 0, sum = 0, moment = 0;
+  for (std::size_t first = 0, last = 0; last < edges.size(); ++last) {
+    sum += edges[last].second;
+    moment += edges[last].first * edges[last].second;
+    for (; edges[last].first - edges[first].first > kOneDirection; ++first) {
+      sum -= edges[first].second;
+      moment -= edges[first].first * edges[first].second;
+    }
+    if (sum > best) {
+      best = sum;
+      along = moment / sum;
+    }
+  }
+  if (!(best >= kWorthTurning * all) || all == 0) return std::nullopt;
+  const double size = portable::hypot(1, along);
+  return Vec2(1 / size, -along / size);
+}
+
 void align_to_borders(const std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
   for (std::size_t c = 0; c < charts.size(); ++c) {
     MappedChart& map = maps[c];
     if (map.aligned || map.error || map.pinned()) continue;
-    const std::optional<Vec2> turn = turn_to_border(charts[c].chart.mesh, map.uvs);
+    const std::optional<Vec2> turn = turn_to_borders(charts[c].chart.mesh, map.uvs);
     if (!turn) continue;
     for (Vec2& w : map.uvs) {
       w = {turn->x() * w.x() - turn->y() * w.y(), turn->y() * w.x() + turn->x() * w.y()};

@@ -1,6 +1,7 @@
 // Straight borders along the axes, and on the edges of texels.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "atlas/map_charts.h"
@@ -15,6 +16,9 @@ namespace beltrami {
 /// angles lies along the axes, and has it `aligned`: but for maps of which no share worth the name
 /// does.
 void align_to_borders(const std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
+
+/// The turn (cosine, sine) by which it does so with one map; none that is worth it.
+std::optional<Vec2> turn_to_borders(const DiskMesh& mesh, const std::vector<Vec2>& uvs);
 
 /// Moves the borders of a map that lie along an axis for a texel or more onto the nearest texel
 /// edges, and what is between them in proportion: nothing by more than half a texel. Where that

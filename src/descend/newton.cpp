@@ -18,6 +18,7 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   result.energies.push_back(stepper.mean_energy(uvs));
   if (options.contact) stepper.set_contact(*options.contact);
   if (options.slides != nullptr) stepper.set_slides(*options.slides);
+  stepper.set_ranks(options.ranks);
   const auto judge = [&] {
     if (!options.admissible) return;
     result.refused = !options.admissible(uvs);

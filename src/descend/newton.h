@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -30,6 +31,8 @@ struct NewtonOptions {
   /// Per vertex the unit normal of the line along which it may slide, zero where it is free; null:
   /// all are free. It begins on its line.
   const std::vector<Vec2>* slides = nullptr;
+  /// Per vertex its rank in an order of elimination (linear/elimination.h); none: one is found.
+  std::span<const Index> ranks = {};
 };
 
 struct NewtonResult {

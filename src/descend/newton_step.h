@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "descend/contact.h"
 #include "descend/line_search.h"
 #include "descend/newton_loop.h"
+#include "linear/elimination.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/face_chunks.h"
@@ -60,6 +62,9 @@ class NewtonStepper {
   /// From now on vertices move along the lines of these unit normals, where they are not zero.
   /// Keeps the reference.
   void set_slides(const std::vector<Vec2>& normals) { slides_ = &normals; }
+  /// From now on unknowns are eliminated in the order of these ranks of their vertices, unless
+  /// there are none.
+  void set_ranks(std::span<const Index> ranks) { ranks_ = ranks; }
   /// See BoundaryContact::fit; for the steps from `uvs` on. `distortion`: as symmetric Dirichlet
   /// energy; `comparable`: what gains are compared with. Precondition: set_contact.
   void fit_contact(const std::vector<Vec2>& uvs, double distortion, double comparable) {
@@ -123,6 +128,7 @@ class NewtonStepper {
   bool analyzed_ = false;
   Eigen::VectorXd gradient_;
   const std::vector<Vec2>* slides_ = nullptr;
+  std::span<const Index> ranks_;
 };
 
 template <class Density>
@@ -303,7 +309,9 @@ NewtonStep NewtonStepper<Density>::step_with(const Model& model, std::vector<Vec
   std::vector<Contact> touching;
   if (contact_) touching = meet_contacts(uvs);
   assemble_model(model, uvs);
-  if (!analyzed_) solver_->analyze(hessian_.matrix(), hessian_.places(uvs));
+  if (!analyzed_) {
+    solver_->analyze(hessian_.matrix(), hessian_.places(uvs), in_order(ranks_, hessian_.rows()));
+  }
   analyzed_ = true;
   NewtonStep result;
   result.energy = energy;

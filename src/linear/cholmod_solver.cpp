@@ -37,7 +37,8 @@ class CholmodSolver final : public SpdSolver {
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
 
-  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
+  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/,
+               std::span<const int> /*order*/) override {
     cholmod_free_factor(&factor_, &common_);
     cholmod_sparse view = view_of(lower);
     factor_ = cholmod_analyze(&view, &common_);

@@ -114,7 +114,8 @@ class EigenSolver final : public SpdSolver {
  public:
   explicit EigenSolver(const Work& work) : work_(work) {}
 
-  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/) override {
+  void analyze(const SparseMatrix& lower, std::span<const Place> /*places*/,
+               std::span<const int> /*order*/) override {
     factor_.analyzePattern(lower);
   }
 

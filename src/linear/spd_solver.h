@@ -44,10 +44,16 @@ class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
   /// Orders the pattern of `lower`. `places`, which may be empty: one per row, or one per block
-  /// where the matrix consists of dense 2 x 2 blocks; they help to order large matrices. Throws
-  /// std::bad_alloc, or Error SOLVER.
-  virtual void analyze(const SparseMatrix& lower, std::span<const Place> places) = 0;
-  void analyze(const SparseMatrix& lower) { analyze(lower, {}); }
+  /// where the matrix consists of dense 2 x 2 blocks; they help to order large matrices. `order`,
+  /// likewise, lists the rows or blocks as they are to be eliminated, which spares the solver the
+  /// search for an order; back ends may search all the same. Throws std::bad_alloc, or Error
+  /// SOLVER.
+  virtual void analyze(const SparseMatrix& lower, std::span<const Place> places,
+                       std::span<const int> order) = 0;
+  void analyze(const SparseMatrix& lower, std::span<const Place> places) {
+    analyze(lower, places, {});
+  }
+  void analyze(const SparseMatrix& lower) { analyze(lower, {}, {}); }
   /// Factorizes a matrix of the analyzed pattern. False: it is not positive definite in floating
   /// point.
   [[nodiscard]] virtual bool factorize(const SparseMatrix& lower) = 0;

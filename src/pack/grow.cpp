@@ -98,7 +98,7 @@ class Growth {
       const double mass = std::max(1.0, box.sizes().norm() * density);
       if (!stays) extent_ = std::max(extent_, box.sizes().norm() * density);
       body.lightness = stays ? 0 : 1 / mass;
-      const bool turns = turns_ && !stays && !problem.chart(c).aligned;
+      const bool turns = turns_ && !stays && problem.chart(c).own_turns == 0;
       body.slackness = turns ? 1 / (mass * std::max(inertia, 1.0)) : 0;
       points_ += size_of(body.outline.points);
       poses_.push_back({packed.placements[c].place(middle, density), packed.placements[c].turn});

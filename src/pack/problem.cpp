@@ -54,7 +54,7 @@ Problem::Problem(std::span<const PackChart> charts, std::vector<Outline> outline
       base_(charts.size(), Vec2(1, 0)) {
   parallel_for(work, size(), 16, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t c = begin; c < end && (options_.turns > 4 || options_.upright); ++c) {
-      if (!charts_[c].aligned) base_[c] = turn_to_least_box(outlines_[c].hull);
+      if (charts_[c].own_turns == 0) base_[c] = turn_to_least_box(outlines_[c].hull);
     }
   });
   turns_ = options.turns;
@@ -181,8 +181,9 @@ double Problem::radius() const {
 }
 
 Vec2 Problem::turn(Index c, int k) const {
-  // What lies along the axes has each quarter in the place of all turns up to the next one.
-  if (charts_[c].aligned) k -= k % std::max(1, turns_ / 4);
+  // What has few turns has each in the place of all up to the next one.
+  const int own = charts_[c].own_turns;
+  if (own > 0) k -= k % std::max(1, turns_ / own);
   Vec2 step;
   if (4 * k % turns_ == 0) {
     const std::array<Vec2, 4> quarters{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
@@ -205,6 +206,10 @@ Masks Problem::masks(double texels_per_unit, double spare) const {
       const int quarter = turns_ % 4 == 0 ? turns_ / 4 : turns_;
       masks[c].reserve(turns_);
       for (int k = 0; k < turns_; ++k) {
+        if (k > 0 && charts_[c].own_turns == 1) {
+          masks[c].push_back(masks[c][0]);
+          continue;
+        }
         if (k >= 2 * quarter) {
           masks[c].push_back(half_turned(masks[c][k - 2 * quarter]));
           continue;
@@ -213,7 +218,7 @@ Masks Problem::masks(double texels_per_unit, double spare) const {
           masks[c].push_back(quarter_turned(masks[c][k - quarter]));
           continue;
         }
-        if (k > 0 && charts_[c].aligned) {
+        if (k > 0 && charts_[c].own_turns == 4) {
           masks[c].push_back(masks[c][0]);
           continue;
         }

@@ -67,13 +67,15 @@ double size_of_map(const std::vector<Vec2>& uvs) {
 class WayToPins {
  public:
   WayToPins(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-            const ChartOptions& options, bool strict, const Work& work)
+            const ChartOptions& options, bool strict, const Work& work,
+            std::span<const Index> ranks = {})
       : mesh_(mesh),
         rest_(rest),
         options_(options),
         work_(work),
         contact_(mesh.boundary, boundary_lengths(mesh), boundary_lengths(mesh)),
-        strict_(strict) {}
+        strict_(strict),
+        ranks_(ranks) {}
 
   void set_pins(const Similarity& frame, Pins pins) {
     held_.assign(mesh_.positions.size(), false);
@@ -110,8 +112,9 @@ class WayToPins {
   /// whether it was not cut short.
   bool relax(const Work& work, std::vector<Vec2>& uvs) const;
 
-  /// The same from a map near the minimum, whose boundary presses on itself nowhere or hardly.
-  bool relax_nearby(const Work& work, std::vector<Vec2>& uvs) const;
+  /// The same from a map near the minimum. `presses`: whether its boundary did so when it was made,
+  /// and does now.
+  bool relax_nearby(const Work& work, std::vector<Vec2>& uvs, bool& presses) const;
 
  private:
   bool keeps_simple(const std::vector<Vec2>& uvs) const {
@@ -163,6 +166,7 @@ class WayToPins {
   /// borders, which `strict_` says.
   NewtonOptions last_steps() const {
     NewtonOptions newton = newton_options(options_);
+    newton.ranks = ranks_;
     if (any_slides_) newton.slides = &slides_;
     if (strict_) return newton;
     newton.proxy_steps = 0;
@@ -171,6 +175,7 @@ class WayToPins {
   }
   NewtonOptions relaxing_steps() const {
     NewtonOptions newton = newton_options(options_);
+    newton.ranks = ranks_;
     if (any_slides_) newton.slides = &slides_;
     newton.max_iterations = kRelaxingSteps;
     newton.proxy_steps = kRelaxingProxies;
@@ -178,6 +183,8 @@ class WayToPins {
     return newton;
   }
   bool minimise(NewtonOptions newton, bool simple, const Work& work, std::vector<Vec2>& uvs) const;
+  std::optional<bool> relax_freely(const Work& work, std::vector<Vec2>& uvs) const;
+  std::optional<bool> relax_pressed(const Work& work, std::vector<Vec2>& uvs) const;
   bool minimise_soundly(const Work& work, std::vector<Vec2>& uvs) const;
   bool embed(std::vector<Vec2>& uvs) const;
   enum class End { kMet, kStuck, kTouched };
@@ -194,6 +201,7 @@ class WayToPins {
   std::vector<Vec2> slides_;  // per vertex as NewtonOptions has it
   bool any_slides_ = false;
   const bool strict_;  // pins may not have the boundary touch itself
+  const std::span<const Index> ranks_;
   std::vector<Index> vertices_;
   std::vector<Vec2> places_;
 };
@@ -230,8 +238,8 @@ bool WayToPins::relax(const Work& work, std::vector<Vec2>& uvs) const {
   return minimise(last_steps(), simple, work, uvs);
 }
 
-bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
-  if (!keeps_simple(uvs)) return relax(work, uvs);
+/// Without a look at the boundary, which may not touch itself afterwards; none where it does.
+std::optional<bool> WayToPins::relax_freely(const Work& work, std::vector<Vec2>& uvs) const {
   std::vector<Vec2> free = uvs;
   const bool converged = minimise(last_steps(), false, work, free);
   const std::vector<Vec2> before = free;
@@ -243,18 +251,39 @@ bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs) const {
   };
   const bool sound = contact_.is_simple(free) ||
                      (options_.parts_touching && open_touching_sides(mesh_, work, free) && holds());
-  if (sound) {
-    uvs.swap(free);
-    return converged;
-  }
+  if (!sound) return std::nullopt;
+  uvs.swap(free);
+  return converged;
+}
+
+/// With the barrier of the boundary; none where steps too few have gained nothing.
+std::optional<bool> WayToPins::relax_pressed(const Work& work, std::vector<Vec2>& uvs) const {
   const auto energy = [&](const std::vector<Vec2>& map) {
     return mean_energy(options_.energy, mesh_.faces, rest_, map, work);
   };
+  NewtonOptions newton = last_steps();
+  newton.contact = &contact_;
   std::vector<Vec2> pressed = uvs;
-  const bool pressed_converged = relax(work, pressed);
-  if (!pressed_converged && energy(pressed) > energy(uvs)) return false;
+  const bool converged =
+      !minimise_energy(mesh_.faces, rest_, fixed_, pressed, newton, work).is_cut_short;
+  if (!converged && energy(pressed) > energy(uvs)) return std::nullopt;
   uvs.swap(pressed);
-  return pressed_converged;
+  return converged;
+}
+
+bool WayToPins::relax_nearby(const Work& work, std::vector<Vec2>& uvs, bool& presses) const {
+  const bool did_press = std::exchange(presses, false);
+  if (!keeps_simple(uvs)) return relax(work, uvs);
+  std::optional<bool> converged;
+  if (!did_press) converged = relax_freely(work, uvs);
+  if (converged) return *converged;
+  converged = relax_pressed(work, uvs);
+  if (converged) {
+    presses = contact_.is_pressed(uvs);
+    return *converged;
+  }
+  if (did_press) converged = relax_freely(work, uvs);
+  return converged.value_or(false);
 }
 
 /// Tutte's embedding in the polygon of the pins, which cannot fold where that is convex.
@@ -422,10 +451,10 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
 
 HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, Touching touching,
-                  const ChartOptions& options, const Work& work) {
+                  const ChartOptions& options, const Work& work, const Known& known) {
   const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
   const bool may_touch = touching == Touching::kAllowed;
-  WayToPins way(mesh, rest, options, !may_touch, work);
+  WayToPins way(mesh, rest, options, !may_touch, work, known.ranks);
   const auto reach = [&](Pins some, std::vector<Vec2>& map) {
     way.set_pins({}, some);
     return way.fits(map) || way.go(map);
@@ -450,7 +479,8 @@ HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
     return map;
   }
   put_at(pins, map.uvs);
-  map.converged = way.relax_nearby(relaxing, map.uvs);
+  map.presses = known.presses;
+  map.converged = way.relax_nearby(relaxing, map.uvs, map.presses);
   return map;
 }
 

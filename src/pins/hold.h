@@ -32,6 +32,7 @@ struct HeldMap {
                           ///< are met within rounding; else none
   double scale = 1;       ///< of the map against the surface: lengths per length
   bool converged = true;  ///< the optimisation was not cut short
+  bool presses = false;   ///< of drag_pins: the boundary presses on itself
   /// Where not all could be met: the first that could not be together with those before it, or
   /// where the time was up a later one.
   Index failed = kNone;
@@ -56,6 +57,12 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, const ChartOptions& options,
                   const Work& work);
 
+/// What is known of a map that is dragged, which saves work.
+struct Known {
+  bool presses = false;               ///< drag_pins has left it so
+  std::span<const Index> ranks = {};  ///< as NewtonOptions has them
+};
+
 /// Whether the boundary may touch itself where pins ask for it.
 enum class Touching { kAllowed, kRefused };
 
@@ -69,6 +76,6 @@ enum class Touching { kAllowed, kRefused };
 /// stuck.
 HeldMap drag_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
                   const std::vector<HeldVertex>& pins, Touching touching,
-                  const ChartOptions& options, const Work& work);
+                  const ChartOptions& options, const Work& work, const Known& known = {});
 
 }  // namespace beltrami

@@ -67,6 +67,11 @@ class Parts {
                        [&](Index c) { return before_.charts[c].due != Due::kCold; });
   }
 
+  bool any_presses() const {
+    return std::any_of(charts_.begin(), charts_.end(),
+                       [&](Index c) { return before_.charts[c].presses; });
+  }
+
   /// Of all parts, in the order of the pins of each.
   std::vector<MetPin> pins() const {
     std::vector<MetPin> all;
@@ -256,6 +261,7 @@ Carried carry(const Ground& ground, const SessionState& before, const CornerUvs&
   carried.scale = parts.scale();
   carried.placed = parts.all_placed();
   carried.warm = carried.placed && parts.all_warm();
+  carried.presses = parts.any_presses();
   carried.pins = parts.pins();
   carried.uvs.assign(part.chart.mesh.positions.size(), Vec2::Zero());
   if (!carried.placed) return carried;

@@ -18,6 +18,7 @@ struct Carried {
   bool placed = false;       ///< its faces had a place before
   double scale = 1;          ///< of the largest part, or of that which is held
   bool warm = false;         ///< all of it had maps that were of use
+  bool presses = false;      ///< the boundary of one of these did so on itself
   std::vector<MetPin> pins;  ///< that its parts were mapped with
 };
 

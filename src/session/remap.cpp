@@ -1,10 +1,13 @@
 #include "session/remap.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "atlas/map_charts.h"
+#include "atlas/snap.h"
 #include "base/error.h"
 #include "descend/tutte.h"
 #include "energy/energy.h"
@@ -15,6 +18,7 @@
 #include "pins/similarity.h"
 #include "repair/rounding.h"
 #include "session/carry.h"
+#include "session/state.h"
 
 namespace beltrami {
 namespace {
@@ -53,6 +57,7 @@ class Mapper {
   void map_anew();
   void hold(bool from_anywhere);
   void take_back();
+  void align();
 
   const RemapTask& task_;
   const ChartOptions& options_;
@@ -91,6 +96,15 @@ std::vector<HeldVertex> Mapper::held_places() const {
 
 /// Takes the start to where its pins fit best, with its scale.
 void Mapper::fit_pins() {
+  if ((task_.flags & kKeepScale) != 0) {
+    std::vector<std::pair<Vec2, Vec2>> pairs;
+    for (const HeldVertex& pin : pinned_places()) {
+      if (pin.kind == PinKind::kPoint) pairs.emplace_back(start_[pin.vertex], pin.place);
+    }
+    const Similarity fit = fit_similarity(pairs, true);
+    for (Vec2& w : start_) w = fit(w);
+    return;
+  }
   const Similarity fit = fit_to_pins(start_, pinned_places());
   const int before = result_.draft.exponent;
   set_unit(result_.draft.scale * fit.scale());
@@ -127,9 +141,10 @@ void Mapper::hold(bool from_anywhere) {
   if (places.empty()) places.push_back({draft.disk.boundary[0], start_[draft.disk.boundary[0]]});
   ChartOptions limited = options_;
   if (task_.steps > 0) limited.max_iterations = std::min(limited.max_iterations, task_.steps);
-  const HeldMap map =
-      from_anywhere ? hold_pins(draft.disk, draft.placed, places, options_, work_)
-                    : drag_pins(draft.disk, start_, places, Touching::kAllowed, limited, work_);
+  const HeldMap map = from_anywhere
+                          ? hold_pins(draft.disk, draft.placed, places, options_, work_)
+                          : drag_pins(draft.disk, start_, places, Touching::kAllowed, limited,
+                                      work_, {.presses = task_.presses, .ranks = task_.ranks});
   if (map.failed != kNone) {
     const auto failed = static_cast<std::size_t>(map.failed);
     if (failed < task_.pins.size()) {
@@ -142,6 +157,7 @@ void Mapper::hold(bool from_anywhere) {
   }
   draft.uvs = map.uvs;
   draft.converged = map.converged && draft.converged;
+  draft.presses = map.presses;
   draft.scale *= map.scale;
   if (is_free()) return;
   draft.held.assign(draft.uvs.size(), false);
@@ -163,19 +179,41 @@ void Mapper::take_back() {
   for (Vec2& w : draft.placed) w = back(w);
 }
 
+/// Turns a map that is free to move as a whole so that its straight borders lie along the axes,
+/// about its middle.
+void Mapper::align() {
+  Draft& draft = result_.draft;
+  const std::optional<Vec2> turn = turn_to_borders(draft.disk, draft.placed);
+  if (!turn) return;
+  Eigen::AlignedBox2d box;
+  for (const Vec2& w : draft.placed) box.extend(w);
+  const Similarity turned{{turn->x(), turn->y()}, box.center(), box.center()};
+  for (Vec2& w : draft.placed) w = turned(w);
+}
+
 Drafted Mapper::run() {
   set_unit(task_.scale);
   for (const Vec2& w : task_.start) start_.push_back(scaled(w, result_.draft.exponent));
   const bool serves = task_.warm && mend_start(result_.draft.disk, task_.held, start_, work_);
   if (!serves) {
     map_anew();
-    if (!is_free()) hold(true);
+    const bool keeps_scale = task_.placed && (task_.flags & kKeepScale) != 0;
+    if (!is_free() && keeps_scale) {
+      start_ = result_.draft.placed;
+      if (!any(task_.held)) fit_pins();
+      hold(false);
+    } else if (!is_free()) {
+      hold(true);
+    } else if ((task_.flags & kAlign) != 0) {
+      align();
+    }
     return std::move(result_);
   }
   const bool fits = task_.fit_pins || task_.pins.size() <= kFewPins;
   if (!task_.pins.empty() && !any(task_.held) && fits) fit_pins();
   hold(false);
   if (is_free()) take_back();
+  if (is_free() && (task_.flags & kAlign) != 0) align();
   return std::move(result_);
 }
 
@@ -212,6 +250,7 @@ Remapped finish(const AtlasChart& part, Draft draft, const Vec2& shift, bool flo
   Remapped result;
   result.scale = draft.scale;
   result.converged = draft.converged;
+  result.presses = draft.presses;
   result.energy = energy_of(part, draft.disk.positions, rounded.uvs, work);
   result.outcome = verdict(part, rounded.certificate, rounded.uvs, work);
   if (result.outcome == Outcome::kOk && !result.converged) result.outcome = Outcome::kNotConverged;

@@ -1,6 +1,7 @@
 // One chart of a session -> its new map, from the one that it has or from nothing.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "atlas/open.h"
@@ -25,6 +26,9 @@ struct RemapTask {
   bool fit_pins = false;       ///< the map is turned and scaled to where its pins fit best
   std::vector<bool> held;      ///< per vertex, whether it may not move
   int steps = 0;               ///< Newton steps from a start; 0: to the minimum
+  std::vector<Index> ranks;    ///< of elimination, per vertex
+  bool presses = false;        ///< as Known has it
+  std::uint8_t flags = 0;      ///< of ChartFlags
 };
 
 /// A map before it is rounded.
@@ -36,6 +40,7 @@ struct Draft {
   std::vector<bool> held;    ///< vertices whose places are exact; or none
   double scale = 1;
   bool converged = true;
+  bool presses = false;            ///< as HeldMap has it
   Outcome outcome = Outcome::kOk;  ///< what is known so far
 };
 
@@ -43,6 +48,7 @@ struct Remapped {
   std::vector<Vec2> uvs;  ///< as delivered
   double scale = 1;
   bool converged = true;
+  bool presses = false;
   Outcome outcome = Outcome::kOk;
   double energy = 0;  ///< see SessionChart
 };

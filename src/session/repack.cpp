@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "pack/types.h"
 #include "pins/similarity.h"
 #include "session/session.h"
+#include "session/stack.h"
 #include "session/state.h"
 
 namespace beltrami {
@@ -29,6 +31,9 @@ class Repacker {
     }
   }
 
+  /// Finds which charts are to lie on others.
+  void stack(const Work& work);
+
   Outcome run(PackOptions options, const Work& work);
   bool lies_on_pages(const Work& work) const;
   SessionState result() { return std::move(next_); }
@@ -36,14 +41,39 @@ class Repacker {
  private:
   Index page_of(const SessionChart& chart) const;
   UvMesh mesh() const;
+  void take_off(std::size_t c, UvMesh& mesh) const;
+  void lay(Index c);
   void take(Index c, const PackedUvs& packed);
 
   const Session& session_;
   SessionState next_;
-  const std::vector<bool> moves_;  // per chart
+  const std::vector<bool> moves_;                // per chart
+  std::vector<Index> on_;                        // likewise the chart that it lies on, or kNone
+  std::vector<std::vector<Index>> vertices_on_;  // of those that are to be laid there: vertices_on
   std::vector<Index> first_uv_;
   Index uvs_ = 0;
 };
+
+void Repacker::stack(const Work& work) {
+  on_.assign(next_.charts.size(), kNone);
+  vertices_on_.resize(next_.charts.size());
+  std::vector<Index> first;  // of each shape
+  for (Index c = 0; c < size_of(next_.charts); ++c) {
+    const SessionChart& chart = next_.charts[c];
+    const Index below = next_.stacked_on(chart);
+    if (!moves_[c] && below != kNone && !moves_[below]) on_[c] = below;
+    if ((next_.flags_of(chart) & kStack) == 0) continue;
+    for (const Index other : first) {
+      if (!moves_[c]) break;
+      auto vertices = vertices_on(*chart.part, *next_.charts[other].part, work);
+      if (!vertices) continue;
+      on_[c] = other;
+      vertices_on_[c] = *std::move(vertices);
+      break;
+    }
+    if (on_[c] == kNone) first.push_back(c);
+  }
+}
 
 /// The page that a chart begins on: the first where it lies on none.
 Index Repacker::page_of(const SessionChart& chart) const {
@@ -57,17 +87,39 @@ Index Repacker::page_of(const SessionChart& chart) const {
   return is_page ? static_cast<Index>(column + kPagesInARow * row) : 0;
 }
 
+/// The faces of a chart that lies on another are none to be packed: each at a vertex of that.
+void Repacker::take_off(std::size_t c, UvMesh& mesh) const {
+  const Index on = on_[c], at = first_uv_[on] + next_.charts[on].mesh().faces[0][0];
+  for (Index f = 0; f < next_.charts[c].faces(); ++f) {
+    const Index face = next_.charts[c].part->chart.input_face[f];
+    mesh.faces[face] = {at, at, at};
+    mesh.excepted[face] = true;
+  }
+}
+
 UvMesh Repacker::mesh() const {
   UvMesh mesh;
   mesh.uvs.assign(uvs_, Vec2::Zero());
   mesh.faces.resize(session_.ground_.face_count());
   mesh.kept_page.assign(mesh.faces.size(), kNone);
+  mesh.own_turns.assign(mesh.faces.size(), 0);
+  mesh.excepted.assign(mesh.faces.size(), false);
   for (std::size_t c = 0; c < next_.charts.size(); ++c) {
     const SessionChart& chart = next_.charts[c];
+    if (on_[c] != kNone) {
+      take_off(c, mesh);
+      continue;
+    }
+    const std::uint8_t flags = next_.flags_of(chart);
     const Index page = moves_[c] ? kNone : page_of(chart);
     for (Index f = 0; f < chart.faces(); ++f) {
       const Index face = chart.part->chart.input_face[f];
       mesh.kept_page[face] = page;
+      if ((flags & kKeepFrame) != 0) {
+        mesh.own_turns[face] = 1;
+      } else if ((flags & kAlign) != 0) {
+        mesh.own_turns[face] = 4;
+      }
       for (int k = 0; k < 3; ++k) {
         const Index v = chart.mesh().faces[f][k];
         mesh.faces[face][k] = first_uv_[c] + v;
@@ -97,12 +149,29 @@ void Repacker::take(Index c, const PackedUvs& packed) {
   }
   chart.scale *= moved.scale();
   chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(uvs));
+  chart.lies_on = nullptr;
+}
+
+/// Gives a chart the map of the one that it lies on, which has got its place.
+void Repacker::lay(Index c) {
+  SessionChart& chart = next_.charts[c];
+  const SessionChart& other = next_.charts[on_[c]];
+  std::vector<Vec2> uvs = map_on(*chart.part, vertices_on_[c], *other.uvs);
+  chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(uvs));
+  chart.lies_on = other.uvs;
+  chart.scale = other.scale;
+  chart.due = other.due;
+  chart.outcome = other.outcome;
+  chart.energy = other.energy;
 }
 
 Outcome Repacker::run(PackOptions options, const Work& work) {
   const PackedUvs packed = pack_uvs(mesh(), options, session_.float32_, work);
   for (Index c = 0; c < size_of(next_.charts); ++c) {
-    if (moves_[c]) take(c, packed);
+    if (moves_[c] && on_[c] == kNone) take(c, packed);
+  }
+  for (Index c = 0; c < size_of(next_.charts); ++c) {
+    if (moves_[c] && on_[c] != kNone) lay(c);
   }
   return packed.outcome;
 }
@@ -139,9 +208,17 @@ Outcome Session::pack(std::span<const Index> ids, const PackOptions& options, co
     return verdict;
   }
   const bool some_stay = std::find(moves.begin(), moves.end(), false) != moves.end();
+  const bool keeps_scale = std::any_of(
+      state_.charts.begin(), state_.charts.end(),
+      [&](const SessionChart& chart) { return (state_.flags_of(chart) & kKeepScale) != 0; });
   PackOptions own = options;
-  if (some_stay) own.texels_per_unit = 0;  // that of those which stay: sizes are kept
+  if (some_stay) {
+    own.texels_per_unit = 0;  // that of those which stay: sizes are kept
+  } else if (keeps_scale) {
+    own.texels_per_unit = options.resolution;  // a page is 1 wide
+  }
   Repacker repacker(*this, std::move(moves));
+  repacker.stack(work);
   try {
     const Outcome outcome = repacker.run(own, work);
     commit(repacker.result());

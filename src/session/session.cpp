@@ -51,6 +51,7 @@ Session::Session(SessionInput input, const GroundOptions& options, const ChartOp
   state_.seams = first_seams(ground_, input, work.part(0.5, 0.6));
   state_.opened.assign(state_.seams.size(), false);
   state_.locked.assign(faces, false);
+  state_.flags.assign(faces, 0);
   state_.chart_of_face.assign(faces, kNone);
   state_.place_in_chart.assign(faces, kNone);
   state_.pins = std::move(input.pins);
@@ -154,6 +155,19 @@ void Session::lock(std::span<const Index> ids, bool locked) {
   }
 }
 
+void Session::set_flags(std::span<const Index> ids, std::uint8_t flags) {
+  std::vector<Index> indices;
+  for (const Index id : ids) indices.push_back(index_of(id));
+  for (const Index c : indices) {
+    SessionChart& chart = state_.charts[c];
+    const bool turns = (flags & ~state_.flags_of(chart) & kAlign) != 0;
+    if (turns && chart.due == Due::kNothing) chart.due = Due::kWarm;
+    for (Index f = 0; f < chart.faces(); ++f) {
+      state_.flags[chart.part->chart.input_face[f]] = flags;
+    }
+  }
+}
+
 void Session::renew(std::span<const Index> ids, bool cold) {
   std::vector<Index> indices;
   for (const Index id : ids) indices.push_back(index_of(id));
@@ -226,15 +240,19 @@ double Session::energy() const {
 AtlasCertificate Session::check(const Work& work) const {
   std::vector<Triangle> faces(ground_.face_count());
   std::vector<Vec2> uvs;
+  AtlasRules rules;
+  rules.excepted.assign(faces.size(), false);
   for (const SessionChart& chart : state_.charts) {
     const Index first = size_of(uvs);
+    const bool is_stacked = state_.stacked_on(chart) != kNone;
     for (Index f = 0; f < chart.faces(); ++f) {
       Triangle& face = faces[chart.part->chart.input_face[f]];
       for (int k = 0; k < 3; ++k) face[k] = first + chart.mesh().faces[f][k];
+      rules.excepted[chart.part->chart.input_face[f]] = is_stacked;
     }
     uvs.insert(uvs.end(), chart.uvs->begin(), chart.uvs->end());
   }
-  return certify_atlas(faces, uvs, {}, work);
+  return certify_atlas(faces, uvs, rules, work);
 }
 
 }  // namespace beltrami

@@ -60,8 +60,11 @@ class Session {
   /// The others stay where they are.
   void select(std::span<const Index> faces);
   /// Charts that stay where they are whatever happens, or no longer. Throws Error INVALID_ARGUMENT
-  /// where there is no such chart; so do the next two.
+  /// where there is no such chart; so do the next three.
   void lock(std::span<const Index> ids, bool locked);
+  /// Gives charts these flags, a sum of ChartFlags, in place of those that they have. What is to be
+  /// aligned from now on is mapped anew by the next update.
+  void set_flags(std::span<const Index> ids, std::uint8_t flags);
   /// Has charts mapped anew by the next update, where they are; `cold`: from nothing.
   void renew(std::span<const Index> ids, bool cold);
 
@@ -75,11 +78,13 @@ class Session {
   /// Packs charts, by ids, or all, among the others, which stay; so do charts with locked faces and
   /// those with pins. The sizes of charts to each other are kept; where all are packed they are
   /// scaled as one to what fits, or to what is asked for. Where there is no room for them elsewhere
-  /// they stay where they are, if that is on the pages and injective. Throws Error NO_ROOM or what
+  /// they stay where they are, if that is on the pages and injective. Flags say what of this is
+  /// otherwise. Throws Error NO_ROOM or what
   /// pack_uvs does.
   Outcome pack(std::span<const Index> ids, const PackOptions& options, const Work& work);
 
-  /// The exact verdict on all charts together, in the numbers delivered.
+  /// The exact verdict on all charts together but for those that are stacked on others, in the
+  /// numbers delivered.
   AtlasCertificate check(const Work& work) const;
 
   /// Notes the state under a number, and goes back to it. Throws Error INVALID_ARGUMENT where there

@@ -1,6 +1,7 @@
 // What an editing session knows at one time: a value, so that a copy of it is an undo.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,14 @@ struct MetPin {
   bool operator==(const MetPin& other) const = default;
 };
 
+/// What a chart keeps, beside its lock: a sum of these.
+enum ChartFlags : std::uint8_t {
+  kKeepFrame = 1,  ///< packing does not turn it
+  kKeepScale = 2,  ///< neither its pins nor packing change its size
+  kAlign = 4,      ///< its straight borders lie along the axes, as far as they can without pins
+  kStack = 8       ///< packing lays it on the first chart of its shape that is to be stacked, too
+};
+
 struct SessionChart {
   Index id = 0;
   Index first = 0;                               ///< the least of its faces, of the input
@@ -44,9 +53,12 @@ struct SessionChart {
   bool placed = false;                           ///< `uvs` say where it lies
   double scale = 1;  ///< lengths in the plane per length on the ground that it is to have
   Due due = Due::kCold;
+  bool presses = false;  ///< the boundary of its map on itself
   Outcome outcome = Outcome::kNotConverged;
   double energy = 0;  ///< mean symmetric Dirichlet, of its real faces, at its scale
   std::vector<MetPin> pins;
+  /// Where packing has laid it on another chart, the UVs of that one.
+  std::shared_ptr<const std::vector<Vec2>> lies_on = nullptr;
 
   Index faces() const { return part->real_faces; }
   const DiskMesh& mesh() const { return part->chart.mesh; }
@@ -58,6 +70,7 @@ struct SessionState {
   std::vector<Index> toggled;  ///< half-edges whose seams have changed since the charts were cut
   std::vector<Pin> pins;
   std::vector<bool> locked;           ///< per face of the ground
+  std::vector<std::uint8_t> flags;    ///< likewise, of ChartFlags
   std::vector<bool> selected;         ///< likewise; none: all are
   std::vector<SessionChart> charts;   ///< by their least face of the input
   std::vector<Index> chart_of_face;   ///< per face of the ground
@@ -70,6 +83,11 @@ struct SessionState {
   const Triangle& vertices_in_chart(Index face) const {
     return charts[chart_of_face[face]].mesh().faces[place_in_chart[face]];
   }
+
+  /// Those that all of its faces have.
+  std::uint8_t flags_of(const SessionChart& chart) const;
+  /// The chart that a chart was laid on, where both have stayed as they were; else kNone.
+  Index stacked_on(const SessionChart& chart) const;
 
   bool may_move(Index face) const { return !locked[face] && (selected.empty() || selected[face]); }
 };

@@ -50,6 +50,17 @@ bool is_met(const ChartPin& pin, const Vec2& w) {
   return std::abs(normal.dot(pin.place - w)) <= kOnLine * (w.norm() + pin.place.norm());
 }
 
+/// Per vertex of a chart the rank that it has on the ground; what closes a hole comes last.
+std::vector<Index> ranks_in(const Ground& ground, const AtlasChart& part) {
+  const Chart& chart = part.chart;
+  std::vector<Index> ranks(chart.mesh.positions.size(), size_of(ground.ranks));
+  for (Index f = 0; f < part.real_faces; ++f) {
+    const Triangle& on_ground = ground.admitted.surface.faces[chart.input_face[f]];
+    for (int k = 0; k < 3; ++k) ranks[chart.mesh.faces[f][k]] = ground.ranks[on_ground[k]];
+  }
+  return ranks;
+}
+
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
   Eigen::AlignedBox2d box;
   for (const Vec2& w : uvs) box.extend(w);
@@ -119,6 +130,7 @@ void Updater::cut() {
     chart.placed = carried.placed;
     chart.scale = carried.scale;
     chart.due = carried.warm ? Due::kWarm : Due::kCold;
+    chart.presses = carried.presses;
     chart.pins = std::move(carried.pins);
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(carried.uvs));
     chart.first = first_input_face(part, ground.admitted);
@@ -137,8 +149,11 @@ void Updater::number(std::vector<SessionChart>& fresh) {
   for (Index c = 0; c < size_of(fresh); ++c) {
     fresh[c].id = kNone;
     std::map<Index, Index> faces;
+    auto own = faces.end();  // neighbours are of one chart
     for (Index f = 0; f < fresh[c].faces(); ++f) {
-      ++faces[next_.chart_of_face[fresh[c].part->chart.input_face[f]]];
+      const Index old = next_.chart_of_face[fresh[c].part->chart.input_face[f]];
+      if (own == faces.end() || own->first != old) own = faces.try_emplace(old, 0).first;
+      ++own->second;
     }
     for (const auto& [old, count] : faces) shares.emplace_back(-count, next_.charts[old].id, c);
   }
@@ -233,7 +248,10 @@ void Updater::map(Job& job, const Work& work) const {
                        .pins = job.pins,
                        .fit_pins = !same_pins,
                        .held = job.held,
-                       .steps = steps_};
+                       .steps = steps_,
+                       .ranks = ranks_in(session_.ground_, *chart.part),
+                       .presses = chart.presses,
+                       .flags = next_.flags_of(chart)};
   try {
     Drafted made = draft(task, session_.chart_, work);
     if (made.failed_pin != kNone) {
@@ -301,11 +319,13 @@ void Updater::take(Job& job, const Vec2& shift) {
   chart.due = goes_on ? Due::kWarm : Due::kNothing;
   chart.placed = true;
   chart.scale = made.scale;
+  chart.presses = made.presses;
   chart.outcome = made.outcome;
   chart.energy = made.energy;
   chart.pins = std::move(met);
   if (made.uvs != *chart.uvs) {
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(made.uvs));
+    chart.lies_on = nullptr;
   }
 }
 

@@ -100,6 +100,7 @@ std::vector<std::pair<std::string, Call>> all_calls() {
       {"set_pins", [](Context c) { return beltrami_session_set_pins(c, nullptr, nullptr, 0); }},
       {"select", [](Context c) { return beltrami_session_select(c, nullptr, 0); }},
       {"lock", [](Context c) { return beltrami_session_lock(c, nullptr, 0, 1); }},
+      {"set_flags", [](Context c) { return beltrami_session_set_flags(c, nullptr, 0, 0); }},
       {"renew", [](Context c) { return beltrami_session_renew(c, nullptr, 0, 0); }},
       {"update", [](Context c) { return beltrami_session_update(c, 0, 0, nullptr, nullptr); }},
       {"pack", [](Context c) { return beltrami_session_pack(c, nullptr, 0, nullptr, nullptr); }},
@@ -283,6 +284,25 @@ TEST(Sessions, RefuseWhatThereIsNot) {
   EXPECT_EQ(beltrami_session_set_pins(context.get(), &corners, &nowhere, 1), BELTRAMI_E_NON_FINITE);
   EXPECT_EQ(beltrami_error_element_kind(context.get()), BELTRAMI_ELEMENT_CORNER);
   EXPECT_EQ(beltrami_error_element(context.get()), 4u);
+}
+
+TEST(Sessions, FlagsAreThoseThatWereGivenLast) {
+  const Context context = begun(meshes::grid(3, 3));
+  const std::uint64_t id = first_chart(context);
+  const beltrami_buffer charts = {&id, 0, BELTRAMI_U64, 0};
+  const auto flags = [&] {
+    auto chart = sized<beltrami_session_chart>();
+    EXPECT_EQ(beltrami_get_session_chart(context.get(), 0, &chart), BELTRAMI_OK);
+    EXPECT_EQ(chart.stacked_on, UINT64_MAX);
+    return chart.flags;
+  };
+  EXPECT_EQ(flags(), 0U);
+  for (const std::uint32_t given : {6U, 9U, 0U}) {
+    EXPECT_EQ(beltrami_session_set_flags(context.get(), &charts, 1, given), BELTRAMI_OK);
+    EXPECT_EQ(flags(), given);
+  }
+  EXPECT_EQ(beltrami_session_set_flags(context.get(), &charts, 1, 16), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_NE(message(context).find("16"), std::string::npos);
 }
 
 TEST(Sessions, ReadAndWriteAtAnyStrideInEveryType) {

@@ -121,6 +121,8 @@ TEST(CppEditor, StepsAndSelectionsGoOn) {
   const std::vector<std::uint64_t> ids = ids_of(editor);
   editor.lock(ids);
   EXPECT_NE(editor.charts()[0].locked, 0);
+  editor.set_flags(ids, BELTRAMI_CHART_KEEP_FRAME | BELTRAMI_CHART_STACK);
+  EXPECT_EQ(editor.charts()[0].flags, 9U);
   editor.renew(ids, true);
   editor.update();
   EXPECT_EQ(editor.corner_uvs(), after);

@@ -107,7 +107,7 @@ class Player {
   int below(std::size_t end) { return static_cast<int>(random_() % end); }
 
   void edit() {
-    switch (random_() % 8) {
+    switch (random_() % 9) {
       case 0:
       case 1:
       case 2:
@@ -120,6 +120,8 @@ class Player {
         return select();
       case 6:
         return lock();
+      case 7:
+        return session_.set_flags(some_charts(), static_cast<std::uint8_t>(random_() % 16));
       default:
         return session_.renew(some_charts(), chance(3));
     }

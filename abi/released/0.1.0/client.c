@@ -409,6 +409,7 @@ static void edit(beltrami_context* context) {
   edges = integers(edge);
   REQUIRE(beltrami_session_set_seams(context, &edges, 1, 0) == BELTRAMI_OK);
   REQUIRE(beltrami_session_lock(context, &first, 1, 0) == BELTRAMI_OK);
+  REQUIRE(beltrami_session_set_flags(context, &first, 1, BELTRAMI_CHART_ALIGN) == BELTRAMI_OK);
   REQUIRE(beltrami_session_renew(context, &first, 1, 0) == BELTRAMI_OK);
   REQUIRE(beltrami_session_select(context, &first, 1) == BELTRAMI_OK);
   REQUIRE(beltrami_session_select(context, NULL, 0) == BELTRAMI_OK);

@@ -66,6 +66,11 @@ test('pins are met, and charts and faces are held', () => {
   editor.renew(Uint32Array.of(id));
   assert.equal(editor.update().corners.length, 0);
   editor.lock(Uint32Array.of(id), false);
+  editor.setFlags(Uint32Array.of(id), { align: true, stack: true });
+  const [{ keepFrame, align, stack, stackedOn }] = editor.charts;
+  assert.deepEqual({ keepFrame, align, stack, stackedOn }, { keepFrame: false, align: true, stack: true, stackedOn: null });
+  assert.throws(() => editor.setFlags(Uint32Array.of(id), { locked: true }), /keepFrame/);
+  editor.setFlags(Uint32Array.of(id));
   editor.select(Uint32Array.of(0));
   editor.update();
   editor.select(null);

@@ -134,6 +134,25 @@ def test_given_uvs_stay_until_they_are_edited() -> None:
         np.testing.assert_array_equal(editor.corner_uvs, atlas.corner_uvs.reshape(-1, 2))
 
 
+def test_flags_are_those_that_were_given_last_and_twins_are_stacked() -> None:
+    vertices, faces = grid(6)
+    twin = vertices + np.array([20.0, 0.0, 0.0])
+    both = np.concatenate([vertices, twin]), np.concatenate([faces, faces + len(vertices)])
+    with beltrami.Editor(*both) as editor:
+        editor.update()
+        numbers = [chart.id for chart in editor.charts]
+        editor.set_flags(numbers, align=True, keep_scale=True)
+        editor.set_flags(numbers, stack=True, align=True)
+        assert all(chart.stack and chart.align for chart in editor.charts)
+        assert not any(chart.keep_scale or chart.keep_frame for chart in editor.charts)
+        editor.update()
+        editor.pack()
+        assert [chart.stacked_on for chart in editor.charts] == [None, numbers[0]]
+        assert editor.check().injective
+        half = len(editor.corner_uvs) // 2
+        np.testing.assert_array_equal(editor.corner_uvs[:half], editor.corner_uvs[half:])
+
+
 def test_locked_and_unselected_faces_stay() -> None:
     vertices, faces = grid(12)
     with beltrami.Editor(vertices, faces, seams=row(12, 6, 0, 12)) as editor:

@@ -107,6 +107,11 @@ class Editor {
   Result<void> try_lock(const Indices<1>& charts, bool locked = true) {
     return set_charts(&beltrami_session_lock, charts, locked);
   }
+  /// Gives charts flags, a sum of BELTRAMI_CHART_ numbers, in place of those that they have.
+  Result<void> try_set_flags(const Indices<1>& charts, std::uint32_t flags) {
+    if (Result<void> is = sound(charts); !is) return is;
+    return source_.call(&beltrami_session_set_flags, &charts.buffer(), count(charts), flags);
+  }
   /// Has charts mapped anew by the next update; `cold`: from nothing.
   Result<void> try_renew(const Indices<1>& charts, bool cold = false) {
     return set_charts(&beltrami_session_renew, charts, cold);
@@ -234,6 +239,9 @@ class Editor {
   }
   void lock(const Indices<1>& charts, bool locked = true) {
     try_lock(charts, locked).value();
+  }
+  void set_flags(const Indices<1>& charts, std::uint32_t flags) {
+    try_set_flags(charts, flags).value();
   }
   void renew(const Indices<1>& charts, bool cold = false) {
     try_renew(charts, cold).value();

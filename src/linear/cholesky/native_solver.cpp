@@ -39,7 +39,9 @@ class NativeSolver final : public SpdSolver {
   NativeSolver(const SolverOptions& options, int least_single, const Work& work)
       : options_(options), least_single_(least_single), work_(work) {}
 
-  void analyze(const SparseMatrix& lower, std::span<const Place> places) override {
+  using SpdSolver::analyze;
+  void analyze(const SparseMatrix& lower, std::span<const Place> places,
+               std::span<const int> given) override {
     single_.clear();
     double_.clear();
     compact_ = {};
@@ -47,8 +49,13 @@ class NativeSolver final : public SpdSolver {
     const int block = block_size_of(lower);
     const Graph graph = graph_of(lower, block, work_);
     poll_interrupt();
-    std::vector<int> order;
+    std::vector<int> order(given.begin(), given.end());
     bool doubtful = false;
+    if (!order.empty()) {
+      symbolic_ = analyze_pattern(graph, order, block, work_);
+      pattern_ = permute_pattern(lower, symbolic_, work_);
+      return;
+    }
     if (static_cast<int>(places.size()) == graph.count() && graph.count() >= kLeastDissected &&
         all_finite(places)) {
       order = nested_dissection_order(graph, places, work_);

@@ -13,8 +13,7 @@
  * do, and the face, vertex or corner concerned.
  *
  * Structs: the caller sets `struct_size` to sizeof of the struct that it was compiled with. The
- * library reads and writes only the fields that this size covers.
- */
+ * library reads and writes only the fields that this size covers. */
 #ifndef BELTRAMI_BELTRAMI_H
 #define BELTRAMI_BELTRAMI_H
 
@@ -115,8 +114,7 @@ enum {
 /* Version of the library as major * 1000000 + minor * 1000 + patch. Cannot fail. */
 BELTRAMI_API uint32_t beltrami_version(void);
 
-/* One line on this build: version, solver, licence of what it links. Static, never NULL. Cannot
- * fail. */
+/* One line: version, solver, licence of what it links. Static, never NULL. Cannot fail. */
 BELTRAMI_API const char* beltrami_build_info(void);
 
 /* 1 if this build has `feature`, else 0: "solver:native", "solver:eigen", "solver:cholmod",
@@ -142,16 +140,15 @@ typedef struct beltrami_context beltrami_context;
 BELTRAMI_API beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out);
 #define beltrami_create(out) beltrami_create_(BELTRAMI_ABI, (out))
 
-/* Frees a context; NULL is fine. Cannot fail. During a run, which is a defect of the caller, it
- * does nothing. */
+/* Frees a context; NULL is fine. Cannot fail; during a run, a defect of the caller, does nothing.
+ */
 BELTRAMI_API void beltrami_destroy(beltrami_context* context);
 
 /* What the last failed call on this context said, in one sentence of UTF-8; "" after a success.
  * Valid until the next call on the context. NULL context: "". Cannot fail. */
 BELTRAMI_API const char* beltrami_error_message(const beltrami_context* context);
 
-/* The input face or vertex that the last failure is about, counted from 0, or BELTRAMI_NO_ELEMENT.
- * Cannot fail. */
+/* The input element of the last failure, from 0, or BELTRAMI_NO_ELEMENT. Cannot fail. */
 BELTRAMI_API uint64_t beltrami_error_element(const beltrami_context* context);
 
 /* What beltrami_error_element counts: a BELTRAMI_ELEMENT_ number. Cannot fail. */
@@ -413,8 +410,7 @@ BELTRAMI_API int32_t beltrami_option_find(const char* name);
  * INVALID_ARGUMENT lists them all. Errors: INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_option_describe(int32_t key, beltrami_option_info* out);
 
-/* Name of value `value` of the choice option `key` ("cm"), or NULL past its last value. Static.
- * Cannot fail. */
+/* Name of a value of the choice option `key` ("cm"), or NULL past its last. Static, cannot fail. */
 BELTRAMI_API const char* beltrami_option_choice(int32_t key, int32_t value);
 
 /* Sets an option for later runs, in any order: whether options go together is judged by the run.
@@ -443,9 +439,8 @@ BELTRAMI_API beltrami_status beltrami_set_parallel_for(beltrami_context* context
                                                        beltrami_parallel_for parallel_for,
                                                        void* user);
 
-/* Writes the value that option `key` has: its default, what it was set to, or what the option
- * preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
- * run). */
+/* Writes the value that option `key` has: its default, what it was set to, or what the preset wrote
+ * there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a run). */
 BELTRAMI_API beltrami_status beltrami_get_option(beltrami_context* context, int32_t key,
                                                  double* value);
 
@@ -602,8 +597,7 @@ typedef struct beltrami_stage {
 } beltrami_stage;
 
 /* The functions below that return a status fail with INVALID_STATE before the first run with a
- * result. They fail with INVALID_ARGUMENT for NULL, an unset struct_size, or an odd type or stride.
- */
+ * result, and with INVALID_ARGUMENT for NULL, an unset struct_size, an odd type or stride. */
 
 /* Counts, area and cost of the last run with a result; the counts are those of the try whose map
  * was kept. Errors: INVALID_STATE, INVALID_ARGUMENT. */
@@ -611,10 +605,9 @@ BELTRAMI_API beltrami_status beltrami_get_result(beltrami_context* context, belt
 
 /* Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32
  * or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
- * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for
- * the vertices that must move a little further for the map to stay injective (float32_moves in
- * beltrami_result): beltrami_get_float32_certificate tells. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+ * length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for vertices
+ * that must move further for the map to stay injective (float32_moves in beltrami_result):
+ * beltrami_get_float32_certificate tells. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_uvs(beltrami_context* context, void* out, int32_t type,
                                               uint64_t stride);
 
@@ -870,15 +863,13 @@ typedef struct beltrami_atlas_certificate {
   int32_t reserved;           /* 0 */
 } beltrami_atlas_certificate;
 
-/* The functions below fail with INVALID_STATE before the first beltrami_unwrap with a result. They
- * fail with INVALID_ARGUMENT for NULL, an unset struct_size, an index out of range, or an odd type
- * or stride. */
+/* The functions below fail with INVALID_STATE before the first beltrami_unwrap with a result, and
+ * with INVALID_ARGUMENT for NULL, an unset struct_size, an index out of range, odd types. */
 
 /* Counts, energy and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_atlas(beltrami_context* context, beltrami_atlas* out);
 
-/* Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+/* Chart `index` from 0, by their least faces. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_chart(beltrami_context* context, uint64_t index,
                                                 beltrami_chart* out);
 
@@ -899,13 +890,11 @@ BELTRAMI_API beltrami_status beltrami_get_corner_pages(beltrami_context* context
                                                        int32_t type, uint64_t stride);
 
 /* Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
- * buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+ * buffer: they are split at seams alone. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_corner_uv_vertices(beltrami_context* context, void* out,
                                                              int32_t type, uint64_t stride);
 
-/* Writes the (u, v) of each UV vertex: `type` F32 or F64. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+/* Writes the (u, v) of each UV vertex: F32 or F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_uv_vertices(beltrami_context* context, void* out,
                                                       int32_t type, uint64_t stride);
 
@@ -1016,8 +1005,7 @@ typedef struct beltrami_packing {
 /* Counts, density, margin and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_packing(beltrami_context* context, beltrami_packing* out);
 
-/* Writes the share of each page that charts cover: `type` F32 or F64. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+/* Writes the covered share of each page: F32 or F64. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_page_utilisations(beltrami_context* context, void* out,
                                                             int32_t type, uint64_t stride);
 
@@ -1058,8 +1046,7 @@ BELTRAMI_API beltrami_status beltrami_get_packed_uvs(beltrami_context* context, 
 BELTRAMI_API beltrami_status beltrami_get_packed_charts(beltrami_context* context, uint64_t mesh,
                                                         void* out, int32_t type, uint64_t stride);
 
-/* ---- Editing sessions: seams and pins that move ------------------------------------------------
- */
+/* ---- Editing sessions: seams and pins that move -------------------------------------------- */
 
 /* A host with a user in front of it begins a session over one surface, notes edits in it, and asks
  * for an update after each. An update maps the charts that the edits concern and no others, from
@@ -1112,9 +1099,8 @@ BELTRAMI_API beltrami_status beltrami_session_set_pin_kinds(beltrami_context* co
                                                             const beltrami_buffer* directions,
                                                             uint64_t count);
 
-/* Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
- * are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
- * INDEX_OUT_OF_RANGE. */
+/* Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Their charts are due;
+ * vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT, INDEX_OUT_OF_RANGE. */
 BELTRAMI_API beltrami_status beltrami_session_select(beltrami_context* context,
                                                      const beltrami_buffer* faces, uint64_t count);
 
@@ -1123,6 +1109,21 @@ BELTRAMI_API beltrami_status beltrami_session_select(beltrami_context* context,
 BELTRAMI_API beltrami_status beltrami_session_lock(beltrami_context* context,
                                                    const beltrami_buffer* charts, uint64_t count,
                                                    int32_t locked);
+
+/* What a chart keeps, beside its lock: a sum of these. */
+enum {
+  BELTRAMI_CHART_FORCE_SIGNED_ = -1,
+  BELTRAMI_CHART_KEEP_FRAME = 1, /* packing does not turn it */
+  BELTRAMI_CHART_KEEP_SCALE = 2, /* pins leave its size, and packing those of all charts */
+  BELTRAMI_CHART_ALIGN = 4,      /* what is straight of its border lies along the axes */
+  BELTRAMI_CHART_STACK = 8       /* packing lays it on the first of its shape with this flag */
+};
+
+/* Gives charts flags in place of those that they have. One to be aligned is due; pins overrule it.
+ * Charts on others are not judged until one of the two changes. Errors: INVALID_ARGUMENT. */
+BELTRAMI_API beltrami_status beltrami_session_set_flags(beltrami_context* context,
+                                                        const beltrami_buffer* charts,
+                                                        uint64_t count, uint32_t flags);
 
 /* Makes charts due, given likewise; with `cold` other than 0 they start from nothing. Errors:
  * INVALID_ARGUMENT. */
@@ -1194,14 +1195,16 @@ typedef struct beltrami_session_chart {
   uint64_t triangles;
   uint64_t first_face; /* of the input, the least */
   double symmetric_dirichlet;
-  double scale; /* lengths in the plane per length on the surface that it is to have */
+  double scale;        /* lengths in the plane per length on the surface that it is to have */
+  uint32_t flags;      /* a sum of BELTRAMI_CHART_ numbers: those of all of its faces */
+  uint32_t reserved;   /* 0 */
+  uint64_t stacked_on; /* the number of the chart that it lies on; all bits set: none */
 } beltrami_session_chart;
 
 /* Counts and cost. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_session(beltrami_context* context, beltrami_session* out);
 
-/* Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
- * INVALID_ARGUMENT. */
+/* Chart `index` from 0, by their least faces. Errors: INVALID_STATE, INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_get_session_chart(beltrami_context* context, uint64_t index,
                                                         beltrami_session_chart* out);
 
@@ -1258,8 +1261,8 @@ enum {
                                    * 0 to 1, is written to all channels */
 };
 
-/* An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
- * F32 as it is. */
+/* An image in the caller's memory: rows from the top (v = 1) down, integers in their whole range.
+ */
 typedef struct beltrami_image {
   const void* pixels;
   uint64_t width;    /* 1 to 65536 */

@@ -735,6 +735,15 @@ namespace Beltrami
         Covered = 2,
     }
 
+    /// <summary>What a chart keeps, beside its lock: a sum of these.</summary>
+    public enum Chart
+    {
+        KeepFrame = 1,
+        KeepScale = 2,
+        Align = 4,
+        Stack = 8,
+    }
+
     /// <summary>How a session stands.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct NativeSession
@@ -778,6 +787,12 @@ namespace Beltrami
         public double SymmetricDirichlet;
         /// <summary>Lengths in the plane per length on the surface that it is to have.</summary>
         public double Scale;
+        /// <summary>A sum of BELTRAMI_CHART_ numbers: those of all of its faces.</summary>
+        public uint Flags;
+        /// <summary>0.</summary>
+        public uint Reserved;
+        /// <summary>The number of the chart that it lies on; all bits set: none.</summary>
+        public ulong StackedOn;
     }
 
     /// <summary>What an image shows beyond [0,1]^2.</summary>
@@ -806,8 +821,8 @@ namespace Beltrami
         Occlusion = 4,
     }
 
-    /// <summary>An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in
-    /// their whole range, F32 as it is.</summary>
+    /// <summary>An image in the caller's memory: rows from the top (v = 1) down, integers in their
+    /// whole range.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct NativeImage
     {
@@ -1246,6 +1261,13 @@ namespace Beltrami
             NativeBuffer* charts,
             ulong count,
             int locked);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_session_set_flags(
+            IntPtr context,
+            NativeBuffer* charts,
+            ulong count,
+            uint flags);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status beltrami_session_renew(

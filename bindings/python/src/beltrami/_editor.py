@@ -17,7 +17,7 @@ from ._errors import NotInjectiveWarning
 from ._library import UNWRAP
 from ._polygons import Faces
 from ._progress import Progress, hook_for
-from ._sessions import SessionChart, SessionContext, SessionReport
+from ._sessions import CHART_FLAGS, SessionChart, SessionContext, SessionReport
 from ._surfaces import Surface
 from ._tables import AtlasCertificate, UnwrapOptions
 
@@ -246,6 +246,41 @@ class Editor:
             For charts that there are not, and other arrays.
         """
         self._context.edit("lock", _integers("charts", charts, None), int(locked))
+
+    def set_flags(
+        self,
+        charts: npt.ArrayLike,
+        *,
+        keep_frame: bool = False,
+        keep_scale: bool = False,
+        align: bool = False,
+        stack: bool = False,
+    ) -> None:
+        """Give charts these flags in place of those that they have.
+
+        Parameters
+        ----------
+        charts : (k,) array_like of integers
+            Numbers of charts.
+        keep_frame : bool, default False
+            Packing does not turn them.
+        keep_scale : bool, default False
+            Pins leave their size, and packing those of all charts.
+        align : bool, default False
+            What is straight of their borders lies along the axes, from the next update on. Pins
+            overrule it.
+        stack : bool, default False
+            Packing lays each on the first chart of its shape that has this flag. It is not judged
+            there until one of the two changes.
+
+        Raises
+        ------
+        InvalidArgumentError, TypeError, ValueError
+            For charts that there are not, and other arrays.
+        """
+        on = (keep_frame, keep_scale, align, stack)
+        flags = sum(flag for flag, is_on in zip(CHART_FLAGS, on, strict=True) if is_on)
+        self._context.edit("set_flags", _integers("charts", charts, None), flags)
 
     def renew(self, charts: npt.ArrayLike, cold: bool = False) -> None:
         """Have the next update map charts anew, where they are.

@@ -15,6 +15,15 @@ from ._surfaces import Surface
 from ._tables import AtlasCertificate
 
 
+# Those of keep_frame, keep_scale, align and stack.
+CHART_FLAGS: tuple[int, ...] = (
+    lib.BELTRAMI_CHART_KEEP_FRAME,
+    lib.BELTRAMI_CHART_KEEP_SCALE,
+    lib.BELTRAMI_CHART_ALIGN,
+    lib.BELTRAMI_CHART_STACK,
+)
+
+
 @dataclass(frozen=True)
 class SessionReport:
     """How a session stands.
@@ -73,6 +82,10 @@ class SessionChart:
         Its mean energy, 2 at least.
     scale : float
         Lengths in the plane per length on the surface that it is to have.
+    keep_frame, keep_scale, align, stack : bool
+        The flags that all of its faces have: Editor.set_flags.
+    stacked_on : int | None
+        The number of the chart that packing has laid it on, while both stay as they are.
     """
 
     id: int
@@ -83,6 +96,11 @@ class SessionChart:
     first_face: int
     symmetric_dirichlet: float
     scale: float
+    keep_frame: bool
+    keep_scale: bool
+    align: bool
+    stack: bool
+    stacked_on: int | None
 
 
 class SessionContext(Context):
@@ -168,6 +186,8 @@ class SessionContext(Context):
                     int(out.first_face),
                     float(out.symmetric_dirichlet),
                     float(out.scale),
+                    *(bool(out.flags & flag) for flag in CHART_FLAGS),
+                    None if out.stacked_on == 2**64 - 1 else int(out.stacked_on),
                 )
             )
         return tuple(charts)

@@ -72,8 +72,7 @@ extern "C" {
     pub fn beltrami_version() -> u32;
 }
 extern "C" {
-    /** One line on this build: version, solver, licence of what it links. Static, never NULL. Cannot
- fail.*/
+    /// One line: version, solver, licence of what it links. Static, never NULL. Cannot fail.
     pub fn beltrami_build_info() -> *const ::core::ffi::c_char;
 }
 extern "C" {
@@ -107,8 +106,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Frees a context; NULL is fine. Cannot fail. During a run, which is a defect of the caller, it
- does nothing.*/
+    /// Frees a context; NULL is fine. Cannot fail; during a run, a defect of the caller, does nothing.
     pub fn beltrami_destroy(context: *mut beltrami_context);
 }
 extern "C" {
@@ -119,8 +117,7 @@ extern "C" {
     ) -> *const ::core::ffi::c_char;
 }
 extern "C" {
-    /** The input face or vertex that the last failure is about, counted from 0, or BELTRAMI_NO_ELEMENT.
- Cannot fail.*/
+    /// The input element of the last failure, from 0, or BELTRAMI_NO_ELEMENT. Cannot fail.
     pub fn beltrami_error_element(context: *const beltrami_context) -> u64;
 }
 extern "C" {
@@ -466,8 +463,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Name of value `value` of the choice option `key` ("cm"), or NULL past its last value. Static.
- Cannot fail.*/
+    /// Name of a value of the choice option `key` ("cm"), or NULL past its last. Static, cannot fail.
     pub fn beltrami_option_choice(key: i32, value: i32) -> *const ::core::ffi::c_char;
 }
 extern "C" {
@@ -516,9 +512,8 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Writes the value that option `key` has: its default, what it was set to, or what the option
- preset wrote there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a
- run).*/
+    /** Writes the value that option `key` has: its default, what it was set to, or what the preset wrote
+ there if that was set later. Errors: INVALID_ARGUMENT, INVALID_STATE (during a run).*/
     pub fn beltrami_get_option(
         context: *mut beltrami_context,
         key: i32,
@@ -994,10 +989,9 @@ extern "C" {
 extern "C" {
     /** Writes one (u, v) per input vertex, in input order, into the caller's memory: `type` BELTRAMI_F32
  or BELTRAMI_F64, `stride` bytes from one vertex to the next (0: packed). In the mesh's unit of
- length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for
- the vertices that must move a little further for the map to stay injective (float32_moves in
- beltrami_result): beltrami_get_float32_certificate tells. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+ length (or in [0,1]^2 with the unit-square option). F32 is rounded to nearest, but for vertices
+ that must move further for the map to stay injective (float32_moves in beltrami_result):
+ beltrami_get_float32_certificate tells. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_uvs(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
@@ -1712,8 +1706,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+    /// Chart `index` from 0, by their least faces. Errors: INVALID_STATE, INVALID_ARGUMENT.
     pub fn beltrami_get_chart(
         context: *mut beltrami_context,
         index: u64,
@@ -1752,8 +1745,7 @@ extern "C" {
 }
 extern "C" {
     /** Writes the UV vertex of each corner: `type` U32 or U64. With the UV vertices below it is an index
- buffer: they are split where seams ask for it, and nowhere else. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+ buffer: they are split at seams alone. Errors: INVALID_STATE, INVALID_ARGUMENT.*/
     pub fn beltrami_get_corner_uv_vertices(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
@@ -1762,8 +1754,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Writes the (u, v) of each UV vertex: `type` F32 or F64. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+    /// Writes the (u, v) of each UV vertex: F32 or F64. Errors: INVALID_STATE, INVALID_ARGUMENT.
     pub fn beltrami_get_uv_vertices(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
@@ -2032,8 +2023,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Writes the share of each page that charts cover: `type` F32 or F64. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+    /// Writes the covered share of each page: F32 or F64. Errors: INVALID_STATE, INVALID_ARGUMENT.
     pub fn beltrami_get_page_utilisations(
         context: *mut beltrami_context,
         out: *mut ::core::ffi::c_void,
@@ -2157,9 +2147,8 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Charts with such faces
- are due; the vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT,
- INDEX_OUT_OF_RANGE.*/
+    /** Says which faces may move: `count` items of 1, U32 or U64, or with 0 all. Their charts are due;
+ vertices of all other faces stay where they are. Errors: INVALID_ARGUMENT, INDEX_OUT_OF_RANGE.*/
     pub fn beltrami_session_select(
         context: *mut beltrami_context,
         faces: *const beltrami_buffer,
@@ -2174,6 +2163,27 @@ extern "C" {
         charts: *const beltrami_buffer,
         count: u64,
         locked: i32,
+    ) -> beltrami_status;
+}
+pub const BELTRAMI_CHART_FORCE_SIGNED_: _bindgen_ty_21 = -1;
+/// packing does not turn it
+pub const BELTRAMI_CHART_KEEP_FRAME: _bindgen_ty_21 = 1;
+/// pins leave its size, and packing those of all charts
+pub const BELTRAMI_CHART_KEEP_SCALE: _bindgen_ty_21 = 2;
+/// what is straight of its border lies along the axes
+pub const BELTRAMI_CHART_ALIGN: _bindgen_ty_21 = 4;
+/// packing lays it on the first of its shape with this flag
+pub const BELTRAMI_CHART_STACK: _bindgen_ty_21 = 8;
+/// What a chart keeps, beside its lock: a sum of these.
+pub type _bindgen_ty_21 = ::core::ffi::c_int;
+extern "C" {
+    /** Gives charts flags in place of those that they have. One to be aligned is due; pins overrule it.
+ Charts on others are not judged until one of the two changes. Errors: INVALID_ARGUMENT.*/
+    pub fn beltrami_session_set_flags(
+        context: *mut beltrami_context,
+        charts: *const beltrami_buffer,
+        count: u64,
+        flags: u32,
     ) -> beltrami_status;
 }
 extern "C" {
@@ -2330,13 +2340,19 @@ pub struct beltrami_session_chart {
     pub symmetric_dirichlet: f64,
     /// lengths in the plane per length on the surface that it is to have
     pub scale: f64,
+    /// a sum of BELTRAMI_CHART_ numbers: those of all of its faces
+    pub flags: u32,
+    /// 0
+    pub reserved: u32,
+    /// the number of the chart that it lies on; all bits set: none
+    pub stacked_on: u64,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
     [
         "Size of beltrami_session_chart",
-    ][::core::mem::size_of::<beltrami_session_chart>() - 56usize];
+    ][::core::mem::size_of::<beltrami_session_chart>() - 72usize];
     [
         "Alignment of beltrami_session_chart",
     ][::core::mem::align_of::<beltrami_session_chart>() - 8usize];
@@ -2367,6 +2383,15 @@ const _: () = {
     [
         "Offset of field: beltrami_session_chart::scale",
     ][::core::mem::offset_of!(beltrami_session_chart, scale) - 48usize];
+    [
+        "Offset of field: beltrami_session_chart::flags",
+    ][::core::mem::offset_of!(beltrami_session_chart, flags) - 56usize];
+    [
+        "Offset of field: beltrami_session_chart::reserved",
+    ][::core::mem::offset_of!(beltrami_session_chart, reserved) - 60usize];
+    [
+        "Offset of field: beltrami_session_chart::stacked_on",
+    ][::core::mem::offset_of!(beltrami_session_chart, stacked_on) - 64usize];
 };
 extern "C" {
     /// Counts and cost. Errors: INVALID_STATE, INVALID_ARGUMENT.
@@ -2376,8 +2401,7 @@ extern "C" {
     ) -> beltrami_status;
 }
 extern "C" {
-    /** Chart `index`, counted from 0 in the order of their least faces. Errors: INVALID_STATE,
- INVALID_ARGUMENT.*/
+    /// Chart `index` from 0, by their least faces. Errors: INVALID_STATE, INVALID_ARGUMENT.
     pub fn beltrami_get_session_chart(
         context: *mut beltrami_context,
         index: u64,
@@ -2427,39 +2451,38 @@ extern "C" {
         stride: u64,
     ) -> beltrami_status;
 }
-pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_21 = -1;
-pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_21 = 0;
+pub const BELTRAMI_WRAP_FORCE_SIGNED_: _bindgen_ty_22 = -1;
+pub const BELTRAMI_WRAP_REPEAT: _bindgen_ty_22 = 0;
 /// its outermost texels
-pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_21 = 1;
+pub const BELTRAMI_WRAP_CLAMP: _bindgen_ty_22 = 1;
 /// itself, mirrored at every other time
-pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_21 = 2;
+pub const BELTRAMI_WRAP_MIRROR: _bindgen_ty_22 = 2;
 /// What an image shows beyond [0,1]^2.
-pub type _bindgen_ty_21 = ::core::ffi::c_int;
-pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_22 = -1;
-/// between texels; a mean where many are shown by one
-pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_22 = 0;
-/// each place shows its texel; means of 4 x 4 places in a new one
-pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_22 = 1;
-/// How texels are read.
 pub type _bindgen_ty_22 = ::core::ffi::c_int;
-pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_23 = -1;
+pub const BELTRAMI_FILTER_FORCE_SIGNED_: _bindgen_ty_23 = -1;
+/// between texels; a mean where many are shown by one
+pub const BELTRAMI_FILTER_LINEAR: _bindgen_ty_23 = 0;
+/// each place shows its texel; means of 4 x 4 places in a new one
+pub const BELTRAMI_FILTER_NEAREST: _bindgen_ty_23 = 1;
+/// How texels are read.
+pub type _bindgen_ty_23 = ::core::ffi::c_int;
+pub const BELTRAMI_PIXELS_FORCE_SIGNED_: _bindgen_ty_24 = -1;
 /// as they are: roughness, heights, linear light
-pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_23 = 0;
+pub const BELTRAMI_PIXELS_LINEAR: _bindgen_ty_24 = 0;
 /// colours, in linear light; a second or fourth channel is linear
-pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_23 = 1;
+pub const BELTRAMI_PIXELS_SRGB: _bindgen_ty_24 = 1;
 /// the same, and a colour counts by that channel, its alpha
-pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_23 = 2;
+pub const BELTRAMI_PIXELS_SRGB_ALPHA: _bindgen_ty_24 = 2;
 /** of tangent space, with 3 or 4 channels: x and y of normals
  are turned from the axes of the old UVs to those of the new
  ones. 0 is the middle of the type's range (F32: 0.5)*/
-pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_23 = 3;
+pub const BELTRAMI_PIXELS_NORMALS: _bindgen_ty_24 = 3;
 /** none are read: the share of a grey sky that a face sees, from
  0 to 1, is written to all channels*/
-pub const BELTRAMI_PIXELS_OCCLUSION: _bindgen_ty_23 = 4;
+pub const BELTRAMI_PIXELS_OCCLUSION: _bindgen_ty_24 = 4;
 /// What the channels of an image are, which says how a mean of them is taken.
-pub type _bindgen_ty_23 = ::core::ffi::c_int;
-/** An image in the caller's memory: rows from the top (v = 1) down, U8 and U16 in their whole range,
- F32 as it is.*/
+pub type _bindgen_ty_24 = ::core::ffi::c_int;
+/// An image in the caller's memory: rows from the top (v = 1) down, integers in their whole range.
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct beltrami_image {

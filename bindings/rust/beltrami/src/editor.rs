@@ -11,7 +11,7 @@ use crate::atlas::{require_room, Get};
 use crate::atlas_report::AtlasCertificate;
 use crate::context::Context;
 use crate::control::{Control, Trampoline};
-use crate::editor_report::{Budget, Changes, EditorChart, EditorSummary, Mark};
+use crate::editor_report::{Budget, Changes, ChartFlags, EditorChart, EditorSummary, Mark};
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{Uv, Uvs, UvsMut};
 use crate::options::UnwrapOptions;
@@ -242,6 +242,19 @@ impl Editor {
         self.edit(Integers::from(charts).0, |context, buffer, count| {
             // SAFETY: the context is alive, and `count` numbers are borrowed.
             unsafe { sys::beltrami_session_lock(context, buffer, count, locked.into()) }
+        })
+    }
+
+    /// Gives charts these flags in place of those that they have. One to be aligned is due; pins
+    /// overrule it.
+    ///
+    /// # Errors
+    ///
+    /// As [`lock`](Self::lock).
+    pub fn set_flags(&mut self, charts: &[u64], flags: ChartFlags) -> Result<(), Error> {
+        self.edit(Integers::from(charts).0, |context, buffer, count| {
+            // SAFETY: the context is alive, and `count` numbers are borrowed.
+            unsafe { sys::beltrami_session_set_flags(context, buffer, count, flags.raw()) }
         })
     }
 

@@ -66,6 +66,40 @@ pub struct EditorSummary {
     pub cpu_seconds: f64,
 }
 
+/// What a chart keeps, beside its lock: nothing by default.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct ChartFlags {
+    /// Packing does not turn it.
+    pub keep_frame: bool,
+    /// Pins leave its size, and packing those of all charts.
+    pub keep_scale: bool,
+    /// What is straight of its border lies along the axes.
+    pub align: bool,
+    /// Packing lays it on the first chart of its shape that has this flag.
+    pub stack: bool,
+}
+
+impl ChartFlags {
+    fn bits(self) -> [(bool, u32); 4] {
+        [
+            (self.keep_frame, sys::BELTRAMI_CHART_KEEP_FRAME as u32),
+            (self.keep_scale, sys::BELTRAMI_CHART_KEEP_SCALE as u32),
+            (self.align, sys::BELTRAMI_CHART_ALIGN as u32),
+            (self.stack, sys::BELTRAMI_CHART_STACK as u32),
+        ]
+    }
+
+    pub(crate) fn raw(self) -> u32 {
+        self.bits().iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum()
+    }
+
+    fn from_raw(raw: u32) -> ChartFlags {
+        let [keep_frame, keep_scale, align, stack] =
+            ChartFlags::default().bits().map(|(_, bit)| raw & bit != 0);
+        ChartFlags { keep_frame, keep_scale, align, stack }
+    }
+}
+
 /// A chart of an editor.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -86,6 +120,10 @@ pub struct EditorChart {
     pub symmetric_dirichlet: f64,
     /// Lengths in the plane per length on the surface that it is to have.
     pub scale: f64,
+    /// Those of all of its faces.
+    pub flags: ChartFlags,
+    /// The number of the chart that packing has laid it on, while both stay as they are.
+    pub stacked_on: Option<u64>,
 }
 
 /// How an editor stood when [`Editor::save`](crate::Editor::save) was called.
@@ -117,6 +155,8 @@ impl EditorChart {
             first_face: count(raw.first_face),
             symmetric_dirichlet: raw.symmetric_dirichlet,
             scale: raw.scale,
+            flags: ChartFlags::from_raw(raw.flags),
+            stacked_on: Some(raw.stacked_on).filter(|&number| number != u64::MAX),
         }
     }
 }

@@ -39,7 +39,7 @@ pub use check::{
 };
 pub use control::{CancelToken, Control, Progress};
 pub use editor::Editor;
-pub use editor_report::{Budget, Changes, EditorChart, EditorSummary, Mark};
+pub use editor_report::{Budget, Changes, ChartFlags, EditorChart, EditorSummary, Mark};
 pub use error::{Element, Error, ErrorKind};
 pub use flattener::Flattener;
 pub use library::{build_info, has, version};

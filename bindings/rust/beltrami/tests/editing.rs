@@ -8,7 +8,8 @@ use std::sync::mpsc;
 use std::thread;
 
 use beltrami::{
-    Budget, CancelToken, Control, Editor, ErrorKind, PinKind, Status, Surface, UnwrapOptions, View,
+    Budget, CancelToken, ChartFlags, Control, Editor, ErrorKind, PinKind, Status, Surface,
+    UnwrapOptions, View,
 };
 use support::{sheet, single};
 
@@ -110,6 +111,20 @@ fn locked_and_unselected_faces_stay() {
     editor.update().unwrap().raw();
     let after = editor.corner_uvs::<[f64; 2]>();
     assert_eq!(after[after.len() - 6..], before[before.len() - 6..]);
+}
+
+#[test]
+fn charts_keep_what_their_flags_say() {
+    let mut editor = editor(6);
+    editor.open_seams(&across(6)).unwrap();
+    editor.update().unwrap();
+    let flags = ChartFlags { align: true, stack: true, ..ChartFlags::default() };
+    editor.set_flags(&ids(&editor), flags).unwrap();
+    assert!(editor.charts().iter().all(|chart| chart.due && chart.flags == flags));
+    editor.update().unwrap();
+    editor.pack().unwrap();
+    assert!(editor.charts().iter().all(|chart| chart.stacked_on != Some(chart.id)));
+    assert_eq!(editor.set_flags(&[99], flags).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 #[test]
