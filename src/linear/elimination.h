@@ -10,9 +10,8 @@
 
 namespace beltrami {
 
-/// Per vertex of a mesh its rank in an order that leaves few fill-ins. Of a part of the mesh, cut
-/// open along edges or with vertices taken out, it leaves few as well: what has no way through the
-/// whole has none there.
+/// Per vertex of a mesh its rank in an order that leaves few fill-ins. It leaves few as well where
+/// the mesh is cut open along edges, or vertices are taken out.
 std::vector<Index> elimination_ranks(const std::vector<Vec3>& positions,
                                      const std::vector<Triangle>& faces, const Work& work);
 

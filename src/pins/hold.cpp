@@ -305,7 +305,10 @@ WayToPins::End WayToPins::walk(bool simple, std::vector<Vec2>& uvs) const {
   for (int step = 0; step < most && short_steps < kMostShortSteps; ++step) {
     const Work inner = work_.part(kThere * step / most, kThere * step / most);
     inner.report(0);
-    const std::vector<Vec2> direction = field.extend(uvs, remaining(uvs));
+    const std::vector<Vec2> direction =
+        field.extend(uvs, remaining(uvs), [&](const std::vector<Vec2>& map) {
+          return mean_energy(options_.energy, mesh_.faces, rest_, map, work_);
+        });
     const auto move = [&](double length) {
       for (std::size_t v = 0; v < uvs.size(); ++v) trial[v] = uvs[v] + length * direction[v];
       if (length == 1) put_in_place(trial);

@@ -39,14 +39,15 @@ bool is_gentle(const Matrix2& slope) {
   return det > kLeastSqueeze * map.squaredNorm() / (1 + kLeastSqueeze * kLeastSqueeze);
 }
 
-/// The least squares fit; the mean alone where that would fold or squeeze.
-Affine fit(const std::vector<Vec2>& places, const std::vector<Vec2>& displacements) {
+/// The mean shift, and with `affinely` the least squares fit where that neither folds nor squeezes.
+Affine fit(const std::vector<Vec2>& places, const std::vector<Vec2>& displacements, bool affinely) {
   Affine affine;
   const auto count = static_cast<double>(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     affine.centre += places[i] / count;
     affine.mean += displacements[i] / count;
   }
+  if (!affinely) return affine;
   Matrix2 moments = Matrix2::Zero(), mixed = Matrix2::Zero();
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec2 z = places[i] - affine.centre, d = displacements[i] - affine.mean;
@@ -111,11 +112,11 @@ std::vector<Vec2> cone_heights(const std::vector<Vec2>& places, std::vector<Vec2
 PinField::PinField(const DiskMesh& mesh, const std::vector<Index>& pins, const Work& work)
     : mesh_(mesh), pins_(pins), work_(work) {}
 
-std::vector<Vec2> PinField::by_cones(const std::vector<Vec2>& uvs,
-                                     std::vector<Vec2> displacements) const {
+std::vector<Vec2> PinField::by_cones(const std::vector<Vec2>& uvs, std::vector<Vec2> displacements,
+                                     bool affinely) const {
   std::vector<Vec2> places;
   for (const Index v : pins_) places.push_back(uvs[v]);
-  const Affine affine = fit(places, displacements);
+  const Affine affine = fit(places, displacements, affinely);
   std::vector<Vec2> rest;
   for (std::size_t i = 0; i < places.size(); ++i) {
     displacements[i] -= affine.at(places[i]);
@@ -175,11 +176,21 @@ std::vector<Vec2> PinField::harmonic(const std::vector<Vec2>& displacements) {
 }
 
 std::vector<Vec2> PinField::extend(const std::vector<Vec2>& uvs,
-                                   const std::vector<Vec2>& displacements) {
-  std::vector<Vec2> field =
-      pins_.size() <= kMostCones ? by_cones(uvs, displacements) : harmonic(displacements);
-  for (std::size_t i = 0; i < pins_.size(); ++i) field[pins_[i]] = displacements[i];
-  return field;
+                                   const std::vector<Vec2>& displacements,
+                                   const std::function<double(const std::vector<Vec2>&)>& energy) {
+  const auto at_pins = [&](std::vector<Vec2> field) {
+    for (std::size_t i = 0; i < pins_.size(); ++i) field[pins_[i]] = displacements[i];
+    return field;
+  };
+  if (pins_.size() > kMostCones) return at_pins(harmonic(displacements));
+  const auto energy_after = [&](const std::vector<Vec2>& field) {
+    std::vector<Vec2> moved = uvs;
+    for (std::size_t v = 0; v < uvs.size(); ++v) moved[v] += field[v];
+    return energy(moved);
+  };
+  std::vector<Vec2> affinely = at_pins(by_cones(uvs, displacements, true));
+  std::vector<Vec2> shifted = at_pins(by_cones(uvs, displacements, false));
+  return energy_after(shifted) < energy_after(affinely) ? shifted : affinely;
 }
 
 }  // namespace beltrami

@@ -6,7 +6,6 @@
 #include "atlas/open.h"
 #include "base/interrupt.h"
 #include "base/vectors.h"
-#include "linear/elimination.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -57,7 +56,6 @@ Ground make_ground(const std::vector<Vec3>& positions, std::vector<Triangle> fac
   ground.exponent = bring_to_unit(admitted.surface, work);
   ground.inside = edges_inside(admitted, options);
   ground.fill_limit = options.fill_limit;
-  ground.ranks = elimination_ranks(admitted.surface.positions, admitted.surface.faces, work);
   ground.face_of.assign(faces.size(), kNone);
   for (Index f = 0; f < ground.face_count(); ++f) ground.face_of[admitted.input_face[f]] = f;
   for (Index h = 0; h < size_of(admitted.surface.twin); ++h) {

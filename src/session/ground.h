@@ -20,7 +20,6 @@ struct Ground {
   std::vector<Triangle> input_faces;
   EdgeMarks inside;            ///< edges inside polygons, which are not to be cut; or none
   double fill_limit = 0.5;     ///< as AtlasOptions has it
-  std::vector<Index> ranks;    ///< of elimination, per vertex of the surface
   std::vector<Index> face_of;  ///< per face of the input that of the surface, or kNone
   /// Half-edges by the ends of their edge, vertices of the input as they were welded, the lesser
   /// one first: in order, those of one edge next to each other.

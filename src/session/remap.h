@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "atlas/open.h"
@@ -26,9 +27,9 @@ struct RemapTask {
   bool fit_pins = false;       ///< the map is turned and scaled to where its pins fit best
   std::vector<bool> held;      ///< per vertex, whether it may not move
   int steps = 0;               ///< Newton steps from a start; 0: to the minimum
-  std::vector<Index> ranks;    ///< of elimination, per vertex
-  bool presses = false;        ///< as Known has it
-  std::uint8_t flags = 0;      ///< of ChartFlags
+  std::span<const Index> ranks = {};  ///< of elimination, per vertex
+  bool presses = false;               ///< as Known has it
+  std::uint8_t flags = 0;             ///< of ChartFlags
 };
 
 /// A map before it is rounded.

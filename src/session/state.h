@@ -50,8 +50,11 @@ struct SessionChart {
   Index first = 0;                               ///< the least of its faces, of the input
   std::shared_ptr<const AtlasChart> part;        ///< of the ground, in its unit
   std::shared_ptr<const std::vector<Vec2>> uvs;  ///< one per vertex, as delivered
-  bool placed = false;                           ///< `uvs` say where it lies
-  double scale = 1;  ///< lengths in the plane per length on the ground that it is to have
+  /// Per vertex its rank in an order of elimination, from its first map on. Charts that are cut
+  /// from it go on with the order.
+  std::shared_ptr<const std::vector<Index>> ranks = nullptr;
+  bool placed = false;  ///< `uvs` say where it lies
+  double scale = 1;     ///< lengths in the plane per length on the ground that it is to have
   Due due = Due::kCold;
   bool presses = false;  ///< the boundary of its map on itself
   Outcome outcome = Outcome::kNotConverged;

@@ -14,6 +14,7 @@
 #include "base/vectors.h"
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
+#include "linear/elimination.h"
 #include "mesh/surface.h"
 #include "pins/hold.h"
 #include "session/carry.h"
@@ -48,17 +49,6 @@ bool is_met(const ChartPin& pin, const Vec2& w) {
   const Vec2 normal = HeldVertex{pin.vertex, pin.place, pin.kind, pin.along}.normal();
   if (normal.isZero(0)) return w == pin.place;
   return std::abs(normal.dot(pin.place - w)) <= kOnLine * (w.norm() + pin.place.norm());
-}
-
-/// Per vertex of a chart the rank that it has on the ground; what closes a hole comes last.
-std::vector<Index> ranks_in(const Ground& ground, const AtlasChart& part) {
-  const Chart& chart = part.chart;
-  std::vector<Index> ranks(chart.mesh.positions.size(), size_of(ground.ranks));
-  for (Index f = 0; f < part.real_faces; ++f) {
-    const Triangle& on_ground = ground.admitted.surface.faces[chart.input_face[f]];
-    for (int k = 0; k < 3; ++k) ranks[chart.mesh.faces[f][k]] = ground.ranks[on_ground[k]];
-  }
-  return ranks;
 }
 
 Eigen::AlignedBox2d box_of(const std::vector<Vec2>& uvs) {
@@ -101,6 +91,31 @@ EdgeMarks Updater::standing(const std::vector<Index>& faces) const {
   return standing;
 }
 
+/// The order of charts one after another, each with its own; what meets of two has the later rank,
+/// and what closes a hole the last. None where one has no order.
+std::shared_ptr<const std::vector<Index>> Updater::ranks_after_cut(const AtlasChart& part) const {
+  const Chart& chart = part.chart;
+  std::vector<Index> ranks(chart.mesh.positions.size(), kNone);
+  std::map<Index, Index> first;  // the rank that each old chart begins with
+  Index count = 0;
+  for (Index f = 0; f < part.real_faces; ++f) {
+    const Index old = next_.chart_of_face[chart.input_face[f]];
+    const SessionChart& before = next_.charts[old];
+    if (!before.ranks) return nullptr;
+    const auto [at, is_new] = first.try_emplace(old, count);
+    if (is_new) count += size_of(*before.ranks);
+    for (int k = 0; k < 3; ++k) {
+      const Index of_old = (*before.ranks)[next_.vertices_in_chart(chart.input_face[f])[k]];
+      Index& rank = ranks[chart.mesh.faces[f][k]];
+      rank = std::max(rank, at->second + of_old);
+    }
+  }
+  for (Index& rank : ranks) {
+    if (rank == kNone) rank = count;
+  }
+  return std::make_shared<const std::vector<Index>>(std::move(ranks));
+}
+
 void Updater::cut() {
   if (next_.toggled.empty()) return;
   const Ground& ground = session_.ground_;
@@ -131,6 +146,7 @@ void Updater::cut() {
     chart.scale = carried.scale;
     chart.due = carried.warm ? Due::kWarm : Due::kCold;
     chart.presses = carried.presses;
+    chart.ranks = ranks_after_cut(part);
     chart.pins = std::move(carried.pins);
     chart.uvs = std::make_shared<const std::vector<Vec2>>(std::move(carried.uvs));
     chart.first = first_input_face(part, ground.admitted);
@@ -224,7 +240,10 @@ std::vector<Updater::Job> Updater::jobs(std::vector<Pins> pins) const {
   for (Index c = 0; c < size_of(next_.charts); ++c) {
     const SessionChart& chart = next_.charts[c];
     if (chart.due == Due::kNothing) continue;
-    Job job{c, std::move(pins[c]), held_vertices(next_, *chart.part), {}, {}};
+    Job job{.chart = c,
+            .pins = std::move(pins[c]),
+            .held = held_vertices(next_, *chart.part),
+            .ranks = chart.ranks};
     for (const ChartPin& pin : job.pins) {
       if (!job.held[pin.vertex] || is_met(pin, (*chart.uvs)[pin.vertex])) continue;
       throw unmet(next_.pins[pin.pin],
@@ -240,6 +259,11 @@ void Updater::map(Job& job, const Work& work) const {
   std::vector<MetPin> met = met_pins(job.pins);
   const bool same_pins = std::equal(met.begin(), met.end(), chart.pins.begin(), chart.pins.end(),
                                     [](const MetPin& a, const MetPin& b) { return a.is_like(b); });
+  if (!job.ranks) {
+    const DiskMesh& mesh = chart.mesh();
+    job.ranks = std::make_shared<const std::vector<Index>>(
+        elimination_ranks(mesh.positions, mesh.faces, work));
+  }
   const RemapTask task{.part = *chart.part,
                        .start = *chart.uvs,
                        .placed = chart.placed,
@@ -249,7 +273,7 @@ void Updater::map(Job& job, const Work& work) const {
                        .fit_pins = !same_pins,
                        .held = job.held,
                        .steps = steps_,
-                       .ranks = ranks_in(session_.ground_, *chart.part),
+                       .ranks = *job.ranks,
                        .presses = chart.presses,
                        .flags = next_.flags_of(chart)};
   try {
@@ -300,6 +324,7 @@ std::vector<Vec2> Updater::places(const std::vector<Job>& jobs) const {
 
 void Updater::take(Job& job, const Vec2& shift) {
   SessionChart& chart = next_.charts[job.chart];
+  chart.ranks = job.ranks;
   if (!job.draft) {  // it waits for the next update
     const Remapped judged = judge_as_is(*chart.part, *chart.uvs, chart.scale, work_.aside());
     chart.outcome = std::max(judged.outcome, Outcome::kNotConverged);

@@ -1,6 +1,7 @@
 // What an update of a session does: cut, carry over, map.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -35,12 +36,14 @@ class Updater {
     Index chart = 0;
     Pins pins;
     std::vector<bool> held;
-    std::optional<Draft> draft;
-    std::optional<Error> error;
+    std::shared_ptr<const std::vector<Index>> ranks = nullptr;
+    std::optional<Draft> draft = {};
+    std::optional<Error> error = {};
   };
 
   void cut();
   std::vector<bool> affected() const;
+  std::shared_ptr<const std::vector<Index>> ranks_after_cut(const AtlasChart& part) const;
   EdgeMarks standing(const std::vector<Index>& faces) const;
   void replace(const std::vector<bool>& affected, std::vector<SessionChart> fresh);
   void number(std::vector<SessionChart>& fresh);

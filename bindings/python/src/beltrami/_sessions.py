@@ -14,7 +14,6 @@ from ._native import ffi, lib
 from ._surfaces import Surface
 from ._tables import AtlasCertificate
 
-
 # Those of keep_frame, keep_scale, align and stack.
 CHART_FLAGS: tuple[int, ...] = (
     lib.BELTRAMI_CHART_KEEP_FRAME,

@@ -117,12 +117,12 @@ fn locked_and_unselected_faces_stay() {
 fn charts_keep_what_their_flags_say() {
     let mut editor = editor(6);
     editor.open_seams(&across(6)).unwrap();
-    editor.update().unwrap();
+    editor.update().unwrap().raw();
     let flags = ChartFlags { align: true, stack: true, ..ChartFlags::default() };
     editor.set_flags(&ids(&editor), flags).unwrap();
     assert!(editor.charts().iter().all(|chart| chart.due && chart.flags == flags));
-    editor.update().unwrap();
-    editor.pack().unwrap();
+    editor.update().unwrap().raw();
+    assert_eq!(editor.pack().unwrap(), Status::Injective);
     assert!(editor.charts().iter().all(|chart| chart.stacked_on != Some(chart.id)));
     assert_eq!(editor.set_flags(&[99], flags).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
