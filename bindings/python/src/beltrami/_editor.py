@@ -17,7 +17,7 @@ from ._errors import NotInjectiveWarning
 from ._library import UNWRAP
 from ._polygons import Faces
 from ._progress import Progress, hook_for
-from ._sessions import CHART_FLAGS, SessionChart, SessionContext, SessionReport
+from ._sessions import SessionChart, SessionContext, SessionReport
 from ._surfaces import Surface
 from ._tables import AtlasCertificate, UnwrapOptions
 
@@ -278,9 +278,8 @@ class Editor:
         InvalidArgumentError, TypeError, ValueError
             For charts that there are not, and other arrays.
         """
-        on = (keep_frame, keep_scale, align, stack)
-        flags = sum(flag for flag, is_on in zip(CHART_FLAGS, on, strict=True) if is_on)
-        self._context.edit("set_flags", _integers("charts", charts, None), flags)
+        flags = {"keep_frame": keep_frame, "keep_scale": keep_scale, "align": align, "stack": stack}
+        self._context.set_flags(_integers("charts", charts, None), flags)
 
     def renew(self, charts: npt.ArrayLike, cold: bool = False) -> None:
         """Have the next update map charts anew, where they are.

@@ -14,14 +14,6 @@ from ._native import ffi, lib
 from ._surfaces import Surface
 from ._tables import AtlasCertificate
 
-# Those of keep_frame, keep_scale, align and stack.
-CHART_FLAGS: tuple[int, ...] = (
-    lib.BELTRAMI_CHART_KEEP_FRAME,
-    lib.BELTRAMI_CHART_KEEP_SCALE,
-    lib.BELTRAMI_CHART_ALIGN,
-    lib.BELTRAMI_CHART_STACK,
-)
-
 
 @dataclass(frozen=True)
 class SessionReport:
@@ -123,6 +115,11 @@ class SessionContext(Context):
         name = getattr(lib, f"beltrami_session_{function}")
         self._check(name(self._context, view, len(array), *arguments))
 
+    def set_flags(self, charts: Array, flags: dict[str, bool]) -> None:
+        """Give charts the flags that are True, by the names that C has for them in lower case."""
+        given = sum(getattr(lib, f"BELTRAMI_CHART_{name.upper()}") for name in flags if flags[name])
+        self.edit("set_flags", charts, given)
+
     def set_pins(self, corners: Array, uvs: Array) -> None:
         """Set all pins."""
         views = (ffi.new("beltrami_buffer*", buffer(array)) for array in (corners, uvs))
@@ -185,7 +182,10 @@ class SessionContext(Context):
                     int(out.first_face),
                     float(out.symmetric_dirichlet),
                     float(out.scale),
-                    *(bool(out.flags & flag) for flag in CHART_FLAGS),
+                    bool(out.flags & lib.BELTRAMI_CHART_KEEP_FRAME),
+                    bool(out.flags & lib.BELTRAMI_CHART_KEEP_SCALE),
+                    bool(out.flags & lib.BELTRAMI_CHART_ALIGN),
+                    bool(out.flags & lib.BELTRAMI_CHART_STACK),
                     None if out.stacked_on == 2**64 - 1 else int(out.stacked_on),
                 )
             )
