@@ -95,6 +95,7 @@ def read(thing: Any, how: Reading) -> Part:
             chosen,
             np.where(np.isfinite(uvs), uvs, np.float32(0)),
             pinned,
+            _selected_edges(thing, mesh, layer, how),
         )
 
 
@@ -237,6 +238,24 @@ def _selected_in_uvs(mesh: Any, layer: Any, sizes: Array) -> Array:
     if selected is None or len(selected.data) != len(sizes):
         return np.ones(len(sizes), bool)
     return _values(selected.data, "value", bool)
+
+
+def _selected_edges(thing: Any, mesh: Any, layer: Any, how: Reading) -> Array:
+    """Return the edges that are selected, (e,) bool; of UVs those with a side that is."""
+    if thing.mode != "EDIT":
+        return np.zeros(len(mesh.edges), bool)
+    if not how.by_uvs or layer is None:
+        return _values(mesh.edges, "select", bool)
+    selected = np.zeros(len(mesh.edges), bool)
+    if hasattr(layer, "edge_selection"):  # before Blender 5.0
+        sides = _values(layer.edge_selection, "value", bool)
+    else:
+        attribute = mesh.attributes.get(".uv_select_edge")
+        if attribute is None or len(attribute.data) != len(mesh.loops):
+            return _values(mesh.edges, "select", bool)
+        sides = _values(attribute.data, "value", bool)
+    selected[_values(mesh.loops, "edge_index", np.int32)[sides]] = True
+    return selected
 
 
 def _select_uvs(edited: Any, faces: Array) -> None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The beltrami authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: Unwrap, Auto Unwrap, Pack and Check."""
+"""The operators: Unwrap, Auto Unwrap, Straighten, Pack and Check."""
 
 # Blender evaluates annotations where a class is registered: they must be no strings.
 
@@ -14,7 +14,7 @@ import numpy as np
 from . import bridge, properties
 from .properties import with_options, with_switches
 from .running import RunningMixin, shown
-from .uv_logic import measuring, packing, settings, unwrapping
+from .uv_logic import measuring, packing, settings, straightening, unwrapping
 from .uv_logic.jobs import Progress
 from .uv_logic.parts import Part, RefusedError, joined
 from .uv_logic.unwrapping import Request
@@ -168,6 +168,44 @@ class UV_OT_beltrami_auto(UnwrapMixin, bpy.types.Operator):
         return Request("auto", self.materials, False, given, count, tell_seams=self.mark_seams)
 
 
+@with_switches("keep_pins", "mark_seams", "scaled")
+@with_options(settings.STRAIGHTEN_OPTIONS)
+class UV_OT_beltrami_straighten(UnwrapMixin, bpy.types.Operator):
+    """Flatten islands anew with quads as grids or with straight edges, and pack them."""
+
+    bl_idname = "uv.beltrami_straighten"
+    bl_label = "Straighten (beltrami)"
+    names = settings.STRAIGHTEN_OPTIONS
+
+    straight: properties.straight()
+
+    def request(self, context: Any) -> Request:
+        """Return what to do."""
+        given = settings.given(properties.values_of(self, self.names), "unwrap")
+        count = properties.threads(context)
+        kinds = "" if self.straight == "grids" else self.straight
+        if not kinds:
+            given["rectify"] = "grids"
+        if kinds in ("u", "v"):
+            given["pack_turns"] = "none"  # a quarter turn would make one of the other
+        return Request(
+            "islands", "ignore", self.keep_pins, given, count, self.mark_seams, straight=kinds
+        )
+
+    def prepare(self, context: Any) -> Callable[[Progress], Any]:
+        """Read meshes, and return the work: of selected faces, or of islands of selected edges."""
+        edges = self.straight != "grids"
+        how = bridge.Reading(scaled=self.scaled, by_uvs=bridge.by_uvs(context), everything=edges)
+        self.targets = read_all(context, how)
+        if edges:
+            for target in self.targets:
+                target.part = straightening.with_islands_of_edges(target.part)
+            straightening.require_edges([target.part for target in self.targets])
+        parts = [target.part for target in self.targets]
+        request = self.request(context)
+        return lambda progress: unwrapping.unwrap(parts, request, progress)
+
+
 @with_switches("keep_pins", "scaled")
 @with_options(settings.PAGE_OPTIONS)
 class UV_OT_beltrami_pack(RunningMixin, bpy.types.Operator):
@@ -290,6 +328,7 @@ def draw_properties(layout: Any, operator: Any) -> None:
 CLASSES = (
     UV_OT_beltrami_unwrap,
     UV_OT_beltrami_auto,
+    UV_OT_beltrami_straighten,
     UV_OT_beltrami_pack,
     UV_OT_beltrami_check,
 )

@@ -14,12 +14,13 @@ from .operators import (
     UV_OT_beltrami_auto,
     UV_OT_beltrami_check,
     UV_OT_beltrami_pack,
+    UV_OT_beltrami_straighten,
     UV_OT_beltrami_unwrap,
 )
 from .running import shown
 from .uv_logic import settings
 
-_ICONS = ("MOD_UVPROJECT", "UV", "PACKAGE", "CHECKMARK")
+_ICONS = ("MOD_UVPROJECT", "UV", "UV_EDGESEL", "PACKAGE", "CHECKMARK")
 _HAND_SET = ("target_energy", "preset", "effort")
 
 
@@ -70,6 +71,10 @@ class IMAGE_PT_beltrami(bpy.types.Panel):
             column.prop(held, name, slider=name == "target_energy")
         handed = ("keep_seams", *_COMMON, *settings.AUTO_OPTIONS)
         self._button(UV_OT_beltrami_auto, "Auto Unwrap", handed, held)
+        layout.separator()
+        layout.column().prop(held, "straight")
+        handed = ("straight", "keep_pins", "mark_seams", "scaled", *settings.STRAIGHTEN_OPTIONS)
+        self._button(UV_OT_beltrami_straighten, "Straighten", handed, held)
         layout.separator()
         self._button(
             UV_OT_beltrami_pack, "Pack", ("keep_pins", "scaled", *settings.PAGE_OPTIONS), held

@@ -82,6 +82,21 @@ def materials(most: int) -> Any:
     return EnumProperty(items=items, default="ignore", **words)
 
 
+STRAIGHT = [
+    ("grids", "Quads", "Selected faces that are rows and columns of quads become grids"),
+    ("axes", "Edges", "Selected edges become straight, along the axes that are nearer to them"),
+    ("u", "Edges at One U", "Selected edges become straight and upright"),
+    ("v", "Edges at One V", "Selected edges become straight and level"),
+    ("line", "Edges in Any Direction", "Selected edges become straight"),
+]
+
+
+def straight() -> Any:
+    """Return the property that says what becomes straight."""
+    words = {"name": "Straighten", "description": "What becomes straight"}
+    return EnumProperty(items=STRAIGHT, default="grids", **words)
+
+
 def switch(name: str, description: str, default: bool) -> Any:
     """Return a property that is on or off."""
     return BoolProperty(name=name, description=description, default=default)
@@ -133,6 +148,7 @@ class BeltramiSettings(bpy.types.PropertyGroup):
 
     cut: islands()
     materials: materials(len(MATERIALS))
+    straight: straight()
 
 
 class BeltramiPreferences(bpy.types.AddonPreferences):

@@ -47,6 +47,8 @@ class Part:
         The UVs that it has.
     pinned : (c,) array of bool
         The corners whose UVs are to stay.
+    selected : (e,) array of bool
+        The edges that are to be straight, where that is asked for.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Part:
     chosen: Array
     uvs: Array
     pinned: Array
+    selected: Array
 
     def chosen_corners(self) -> Array:
         """Return which corners are of faces that are chosen, (c,) bool."""
@@ -81,6 +84,8 @@ class Surface:
         Its edges, by vertices of the surface.
     seams : (e,) array of bool
         Those to cut along.
+    selected : (e,) array of bool
+        As of a part.
     origins : (n,) array of integers
         The vertex of its part that each vertex is.
     """
@@ -94,6 +99,7 @@ class Surface:
     pinned: Array
     edges: Array
     seams: Array
+    selected: Array
     origins: Array
 
     def faces(self) -> Any:
@@ -122,6 +128,7 @@ class Surface:
             self.pinned[corners],
             self.edges,
             self.seams,
+            self.selected,
             self.origins,
         )
 
@@ -140,7 +147,7 @@ def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
     Raises RefusedError where one of their vertices is nowhere.
     """
     vertices, corners, sizes, materials, numbers = [], [], [], [], []
-    uvs, pinned, edges, seams, origins = [], [], [], [], []
+    uvs, pinned, edges, seams, selected, origins = [], [], [], [], [], []
     before = 0
     for number, part in enumerate(parts):
         faces = part.chosen == chosen
@@ -160,6 +167,7 @@ def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
         pinned.append(part.pinned[of_faces])
         edges.append(new[part.edges[within]])
         seams.append(part.seams[within])
+        selected.append(part.selected[within])
         before += int(used.sum())
     points = np.concatenate(vertices) if vertices else np.empty((0, 3))
     if len(points):
@@ -174,6 +182,7 @@ def joined(parts: Sequence[Part], chosen: bool = True) -> Surface:
         np.concatenate(pinned),
         np.concatenate(edges).astype(np.int64).reshape(-1, 2),
         np.concatenate(seams),
+        np.concatenate(selected),
         np.concatenate(origins),
     )
 
@@ -189,6 +198,7 @@ def both(one: Surface, other: Surface) -> Surface:
         np.concatenate([one.uvs, other.uvs]),
         np.concatenate([one.pinned, other.pinned]),
         np.empty((0, 2), np.int64),
+        np.empty(0, bool),
         np.empty(0, bool),
         np.concatenate([one.origins, other.origins]),
     )

@@ -21,6 +21,7 @@ PAGE_OPTIONS = (
     "pack_block",
 )
 UNWRAP_OPTIONS = ("energy", "hard_angle", "fill_holes", *PAGE_OPTIONS)
+STRAIGHTEN_OPTIONS = ("energy", "fill_holes", *PAGE_OPTIONS)
 AUTO_OPTIONS = (
     "target_energy",
     "preset",

@@ -13,7 +13,7 @@ import numpy as np
 
 import beltrami
 
-from . import measuring, packing
+from . import measuring, packing, straightening
 from .jobs import Progress, part_of, silent
 from .parts import Array, Part, RefusedError, Surface, both, joined, layout, regions, spread
 from .settings import PAGE_OPTIONS
@@ -40,6 +40,9 @@ class Request:
         How many to use.
     tell_seams : bool
         Whether the seams of the result are wanted.
+    straight : {"", "axes", "u", "v", "line"}
+        How edges that are selected become straight: not, along the nearer axis, at one U, at one V,
+        or in any direction.
     """
 
     cut: str = "given"
@@ -48,6 +51,7 @@ class Request:
     options: Mapping[str, object] = field(default_factory=dict)
     threads: int = 1
     tell_seams: bool = False
+    straight: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +153,11 @@ def _atlas_of(
         options["face_labels"] = surface.materials
     elif request.materials == "seek" and request.cut == "auto":
         options["materials"] = surface.materials
+    if request.straight:
+        edges = surface.edges[surface.selected]
+        axes = request.straight == "axes"
+        kinds = straightening.kinds(surface) if axes else [request.straight] * len(edges)
+        options["straight"] = (edges, kinds)
     pins = np.flatnonzero(surface.pinned)
     if request.keep_pins and len(pins):
         options["pins"] = (pins, surface.uvs[pins])
@@ -190,13 +199,14 @@ def _at_scale_of_uvs(surface: Surface, request: Request) -> Surface:
     scale = _scales(surface, region)
     vertices = surface.vertices[used % count] * scale[used // count][:, None]
     # Each region has the edges that it uses; an edge between two of them is of both.
-    edges, cuts = [], []
+    edges, cuts, selected = [], [], []
     for end in np.unique(region):
         place = np.searchsorted(used, end * count + surface.edges)
         place = np.minimum(place, len(used) - 1)
         mine = (used[place] == end * count + surface.edges).all(axis=1)
         edges.append(place[mine])
         cuts.append(surface.seams[mine])
+        selected.append(surface.selected[mine])
     return Surface(
         vertices.astype(np.float32),
         corners.astype(np.int64),
@@ -207,6 +217,7 @@ def _at_scale_of_uvs(surface: Surface, request: Request) -> Surface:
         surface.pinned,
         np.concatenate(edges),
         np.concatenate(cuts),
+        np.concatenate(selected),
         surface.origins[used % count],
     )
 

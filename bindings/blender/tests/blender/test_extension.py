@@ -16,7 +16,13 @@ from conftest import MODULE, ZIP, bpy
 
 HERE = Path(__file__).resolve().parents[2]
 PATIENCE = 30  # seconds after which what waits has failed
-OPERATORS = ("beltrami_unwrap", "beltrami_auto", "beltrami_pack", "beltrami_check")
+OPERATORS = (
+    "beltrami_unwrap",
+    "beltrami_auto",
+    "beltrami_straighten",
+    "beltrami_pack",
+    "beltrami_check",
+)
 
 
 def test_blender_finds_the_zip_valid():
@@ -63,6 +69,7 @@ def test_operators_have_the_options_of_the_library(scene, installed):
     for name, options in (
         ("beltrami_unwrap", installed.settings.UNWRAP_OPTIONS),
         ("beltrami_auto", installed.settings.AUTO_OPTIONS),
+        ("beltrami_straighten", installed.settings.STRAIGHTEN_OPTIONS),
         ("beltrami_pack", installed.settings.PAGE_OPTIONS),
     ):
         properties = getattr(scene.ops.uv, name).get_rna_type().properties

@@ -241,6 +241,43 @@ def test_less_distortion_takes_more_islands_or_seams(scene, monkey):
     assert counts[0] > counts[1]
 
 
+def grid(scene):
+    """Add a sheet of 8 by 8 quads with a hump, unwrapped, and edit it."""
+    scene.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8)
+    thing = scene.context.object
+    for vertex in thing.data.vertices:
+        vertex.co.z = 0.5 * np.exp(-6 * (vertex.co.x**2 + vertex.co.y**2))
+    edit(thing)
+    scene.ops.uv.beltrami_unwrap()
+    return thing
+
+
+def test_straighten_makes_grids_of_selected_quads(scene, installed):
+    thing = grid(scene)
+    assert scene.ops.uv.beltrami_straighten() == {"FINISHED"}
+    assert verdict(thing).injective
+    for quad in uvs_of(thing).reshape(-1, 4, 2):
+        assert [np.unique(quad[:, axis]).size for axis in (0, 1)] == [2, 2]
+
+
+def test_straighten_takes_the_islands_of_selected_edges(scene, installed):
+    thing = grid(scene)
+    with pytest.raises(RuntimeError, match="no edge is selected"):
+        scene.ops.mesh.select_all(action="DESELECT")
+        scene.ops.uv.beltrami_straighten(straight="axes")
+    scene.context.tool_settings.mesh_select_mode = (False, True, False)
+    edited = bmesh.from_edit_mesh(thing.data)
+    low = {vertex.index for vertex in edited.verts if vertex.co.y < -0.999}
+    for edge in edited.edges:
+        edge.select_set({vertex.index for vertex in edge.verts} <= low)
+    bmesh.update_edit_mesh(thing.data)
+    scene.ops.uv.beltrami_straighten(straight="v")
+    assert verdict(thing).injective
+    leave()
+    on_side = np.array([loop.vertex_index in low for loop in thing.data.loops])
+    assert np.unique(uvs_of(thing)[on_side][:, 1]).size == 1
+
+
 def test_pack_keeps_shapes_and_what_is_not_selected(scene, monkey):
     scene.ops.uv.beltrami_auto(effort="quick")
     first = uvs_of(monkey)

@@ -33,6 +33,7 @@ def part(vertices: np.ndarray, faces: np.ndarray, **given: object) -> Part:
         "chosen": np.ones(len(faces), bool),
         "uvs": np.zeros((corners, 2), np.float32),
         "pinned": np.zeros(corners, bool),
+        "selected": np.zeros(len(edges), bool),
     }
     return Part(**{**values, **given})
 
