@@ -262,7 +262,7 @@ def test_straighten_makes_grids_of_selected_quads(scene, installed):
 
 def test_straighten_takes_the_islands_of_selected_edges(scene, installed):
     thing = grid(scene)
-    with pytest.raises(RuntimeError, match="no edge is selected"):
+    with pytest.raises(RuntimeError, match="No edge is selected"):
         scene.ops.mesh.select_all(action="DESELECT")
         scene.ops.uv.beltrami_straighten(straight="axes")
     scene.context.tool_settings.mesh_select_mode = (False, True, False)
