@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The extension of Blender: unwraps, packs and checks UVs with beltrami."""
 
-from . import operators, panels, properties, running
+from . import following, operators, panels, properties, running
 
 
 def register() -> None:
@@ -15,6 +15,7 @@ def register() -> None:
 def unregister() -> None:
     """Take all of it back."""
     running.unregister()
+    following.unregister()
     panels.unregister()
     operators.unregister()
     properties.unregister()

@@ -138,6 +138,12 @@ def with_switches(*names: str) -> Callable[[Class], Class]:
     return give
 
 
+def _switch_live(_held: Any, context: Any) -> None:
+    from . import following  # which needs this module
+
+    following.switch(context)
+
+
 ALL_OPTIONS = tuple(dict.fromkeys((*settings.AUTO_OPTIONS, *settings.UNWRAP_OPTIONS)))
 
 
@@ -149,6 +155,12 @@ class BeltramiSettings(bpy.types.PropertyGroup):
     cut: islands()
     materials: materials(len(MATERIALS))
     straight: straight()
+    live: BoolProperty(
+        name="Live Unwrap",
+        description="While a mesh is edited, its islands follow seams and pins",
+        default=False,
+        update=_switch_live,
+    )
 
 
 class BeltramiPreferences(bpy.types.AddonPreferences):

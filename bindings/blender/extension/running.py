@@ -23,8 +23,8 @@ _LAST = 10.0  # seconds that a thread has for its end, when Blender quits
 #: What is refused or fails with a sentence for users.
 _FAILURES = (beltrami.BeltramiError, ValueError, MemoryError)
 
-#: What panels show: the job under way, and what the last check said.
-shown: dict[str, Any] = {"job": None, "check": ()}
+#: What panels show: the job under way, what the last check said, and what live unwrapping says.
+shown: dict[str, Any] = {"job": None, "check": (), "live": ""}
 
 
 class RunningMixin:
@@ -125,7 +125,7 @@ class RunningMixin:
         context.window_manager.progress_update(percent)
         text = f"{self.bl_label}: {percent}%, {self._job.stage}    Esc: cancel"
         context.workspace.status_text_set(text)
-        _redraw(context)
+        redraw(context)
 
     def _hide(self, context: Any) -> None:
         shown["job"] = None
@@ -133,7 +133,7 @@ class RunningMixin:
         manager.event_timer_remove(self._timer)
         manager.progress_end()
         context.workspace.status_text_set(None)
-        _redraw(context)
+        redraw(context)
 
 
 def unregister() -> None:
@@ -141,8 +141,9 @@ def unregister() -> None:
     end_all(_LAST)
 
 
-def _redraw(context: Any) -> None:
+def redraw(context: Any) -> None:
+    """Have the editors of pictures drawn anew, with their panels."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR":
-                area.tag_redraw()
+                area.tagredraw()

@@ -44,7 +44,15 @@ def installed() -> Any:
     assert done == {"FINISHED"}
     import importlib
 
-    names = ("bridge", "operators", "panels", "properties", "running", "uv_logic.settings")
+    names = (
+        "bridge",
+        "following",
+        "operators",
+        "panels",
+        "properties",
+        "running",
+        "uv_logic.settings",
+    )
     modules = {name.split(".")[-1]: importlib.import_module(f"{MODULE}.{name}") for name in names}
     return SimpleNamespace(**modules)
 

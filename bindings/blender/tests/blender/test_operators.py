@@ -9,6 +9,7 @@ import conftest
 import numpy as np
 import pytest
 from conftest import edit, leave, uvs_of, verdict
+from mathutils import Vector
 
 
 def faces_of(thing, name, dtype=bool):
@@ -276,6 +277,52 @@ def test_straighten_takes_the_islands_of_selected_edges(scene, installed):
     leave()
     on_side = np.array([loop.vertex_index in low for loop in thing.data.loops])
     assert np.unique(uvs_of(thing)[on_side][:, 1]).size == 1
+
+
+def rest(scene, installed):
+    """Let live unwrapping come to rest."""
+    scene.context.view_layer.update()
+    for _ in range(30):
+        installed.following.step(scene.context)
+
+
+def test_islands_follow_seams_and_pins_while_live_unwrapping_is_on(scene, installed):
+    thing = grid(scene)
+    settings = scene.context.scene.beltrami
+    settings.live = True
+    assert scene.app.timers.is_registered(installed.following._tick)
+    rest(scene, installed)
+    before = uvs_of(thing)
+    edit(thing)
+    edited = bmesh.from_edit_mesh(thing.data)
+    for edge in edited.edges:
+        edge.seam = all(abs(v.co.x) < 1e-6 and v.co.y < 0.1 for v in edge.verts)
+    marked = sum(edge.seam for edge in edited.edges)
+    bmesh.update_edit_mesh(thing.data)
+    rest(scene, installed)
+    opened = uvs_of(thing)
+    assert marked > 0
+    assert (opened != before).any()
+    assert verdict(thing).injective
+
+    edit(thing)
+    edited = bmesh.from_edit_mesh(thing.data)
+    layer = edited.loops.layers.uv.verify()
+    edited.faces.ensure_lookup_table()
+    corner = edited.faces[0].loops[0]
+    place = corner[layer].uv.copy() + Vector((-0.05, -0.05))
+    for loop in corner.vert.link_loops:
+        loop[layer].uv = place
+        loop[layer].pin_uv = True
+    bmesh.update_edit_mesh(thing.data)
+    rest(scene, installed)
+    assert verdict(thing).injective
+    np.testing.assert_array_equal(uvs_of(thing)[0], np.array(place, np.float32))
+    assert (uvs_of(thing) != opened).all(axis=1).mean() > 0.9  # one pin takes all along
+
+    edit(thing)
+    settings.live = False
+    assert not scene.app.timers.is_registered(installed.following._tick)
 
 
 def test_pack_keeps_shapes_and_what_is_not_selected(scene, monkey):
