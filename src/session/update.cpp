@@ -15,6 +15,8 @@
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
 #include "linear/elimination.h"
+#include "mesh/chart.h"
+#include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
 #include "pins/hold.h"
 #include "session/carry.h"

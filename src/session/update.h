@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "atlas/open.h"
 #include "atlas/pins.h"
 #include "base/error.h"
 #include "base/types.h"

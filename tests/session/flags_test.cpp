@@ -8,8 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "atlas/pins.h"
+#include "base/error.h"
+#include "base/types.h"
+#include "base/vectors.h"
+#include "base/work.h"
 #include "chart/flattening.h"
 #include "exact/atlas_certificate.h"
+#include "pack/types.h"
 #include "session/session.h"
 #include "session/state.h"
 #include "support/meshes.h"
