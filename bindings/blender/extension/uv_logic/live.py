@@ -12,7 +12,7 @@ import beltrami
 
 from .parts import Array, Part, RefusedError, Surface, joined, spread
 
-_STEPS = 2  # of Newton's method at a time: what is left follows at the next call
+_STEPS = 1  # of Newton's method at a time: what is left follows at the next call
 
 
 class Live:
