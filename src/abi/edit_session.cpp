@@ -86,7 +86,40 @@ EditSession::EditSession(const beltrami_surface& header, const Options& options,
   find_sources();
 }
 
-/// A corner of a face that is in no chart follows another one of its vertex.
+/// Copies follow the face that they are copies of, corner by corner. What has no area is a point:
+/// other corners of a polygon follow the first of it that is in a chart. If none is, all follow a
+/// corner of a face beside it.
+void EditSession::follow_others(const std::vector<Index>& of_vertex) {
+  const Ground& ground = session_.ground();
+  const Polygons& polygons = surface_.polygons;
+  const std::vector<Triangle>& triangles = surface_.triangulation.triangles;
+  const auto welded = [&](Index corner) {
+    return ground.admitted.welded(polygons.corners[corner]);
+  };
+  for (const Admitted::Copy& copy : ground.admitted.copies) {
+    for (const Index corner : triangles[copy.face]) {
+      for (const Index other : triangles[copy.first]) {
+        if (source_[corner] == kNone && welded(corner) == welded(other)) {
+          source_[corner] = source_[other];
+        }
+      }
+    }
+  }
+  for (Index face = 0; face < polygons.count(); ++face) {
+    Index beside = kNone;
+    const auto find = [&](const auto& source_of) {
+      for (Index c = polygons.begin(face); beside == kNone && c < polygons.end(face); ++c) {
+        beside = source_of(c);
+      }
+    };
+    find([&](Index corner) { return source_[corner]; });
+    find([&](Index corner) { return of_vertex[welded(corner)]; });
+    for (Index c = polygons.begin(face); c < polygons.end(face); ++c) {
+      if (source_[c] == kNone) source_[c] = std::max(beside, 0);
+    }
+  }
+}
+
 void EditSession::find_sources() {
   const Ground& ground = session_.ground();
   const std::vector<Index>& vertex = surface_.polygons.corners;
@@ -101,12 +134,9 @@ void EditSession::find_sources() {
       if (known == kNone) known = 3 * f + k;
     }
   }
+  follow_others(of_vertex);
   start_.assign(3 * static_cast<std::size_t>(ground.face_count()) + 1, 0);
-  for (std::size_t c = 0; c < source_.size(); ++c) {
-    if (source_[c] == kNone) source_[c] = of_vertex[ground.admitted.welded(vertex[c])];
-    if (source_[c] == kNone) source_[c] = 0;
-    ++start_[source_[c] + 1];
-  }
+  for (const Index source : source_) ++start_[source + 1];
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
   std::vector<Index> next = start_;
   followers_.resize(source_.size());

@@ -60,6 +60,7 @@ class EditSession {
 
  private:
   void find_sources();
+  void follow_others(const std::vector<Index>& of_vertex);
   /// There is room for all: the session has changed already, so this must not fail.
   void find_changes() noexcept;
 

@@ -199,6 +199,25 @@ TEST(Sessions, OtherCallsOfTheContextLeaveItAlone) {
   EXPECT_TRUE(same_bits(session_uvs(context), uvs));
 }
 
+// Its corners were once in three places of the border, a triangle of an area that covered others.
+TEST(Sessions, FacesWithoutAreaArePoints) {
+  TriangleList mesh = meshes::grid(3, 3);
+  mesh.faces.push_back({0, 2, 1});
+  mesh.positions[1] = 0.5 * (mesh.positions[0] + mesh.positions[2]);
+  for (Vec3& p : mesh.positions) p.z() = 0.1 * p.x() * p.y();
+  const Context context = begun(mesh);
+  const auto uvs = session_uvs(context);
+  const std::size_t first = uvs.size() - 3;
+  EXPECT_EQ(uvs[first], uvs[first + 1]);
+  EXPECT_EQ(uvs[first], uvs[first + 2]);
+  bool is_shared = false;
+  for (std::size_t c = 0; c < first; ++c) is_shared = is_shared || uvs[c] == uvs[first];
+  EXPECT_TRUE(is_shared);
+  auto certificate = sized<beltrami_atlas_certificate>();
+  EXPECT_EQ(beltrami_session_check(context.get(), &certificate), BELTRAMI_OK);
+  EXPECT_NE(certificate.injective, 0);
+}
+
 TEST(Sessions, TheSurfaceIsCopied) {
   TriangleList mesh = meshes::bumps(6, 6);
   const Context context = begun(mesh), other = begun(mesh);
