@@ -49,7 +49,8 @@ class Reading:
 def objects(context: Any) -> list[Any]:
     """Return the objects to work on, each mesh once: those that are edited, or are selected."""
     if context.mode == "EDIT_MESH":
-        found = context.objects_in_mode_unique_data
+        # Timers have no screen, whose context would list them.
+        found = [thing for thing in context.view_layer.objects if thing.mode == "EDIT"]
     elif context.mode == "OBJECT":
         found = context.selected_objects
     else:

@@ -46,12 +46,14 @@ def step(context: Any) -> None:
 
 
 def switch(context: Any) -> None:
-    """Begin or end, as the setting of the scene says."""
+    """Begin or end, as the setting says."""
     is_on = bpy.app.timers.is_registered(_tick)
-    if context.scene.beltrami.live and not is_on:
+    if context.window_manager.beltrami_live and not is_on:
         bpy.app.timers.register(_tick, first_interval=_INTERVAL, persistent=True)
         bpy.app.handlers.depsgraph_update_post.append(_told)
-    elif is_on and not context.scene.beltrami.live:
+        for handlers in _of_undo():
+            handlers.append(_undone)
+    elif is_on and not context.window_manager.beltrami_live:
         unregister()
 
 
@@ -61,11 +63,14 @@ def unregister() -> None:
         bpy.app.timers.unregister(_tick)
     if _told in bpy.app.handlers.depsgraph_update_post:
         bpy.app.handlers.depsgraph_update_post.remove(_told)
+    for handlers in _of_undo():
+        if _undone in handlers:
+            handlers.remove(_undone)
     _forget()
 
 
 def _tick() -> float | None:
-    if not bpy.context.scene.beltrami.live:  # another file, or an undo
+    if not bpy.context.window_manager.beltrami_live:  # another file
         unregister()
         return None
     step(bpy.context)
@@ -80,6 +85,15 @@ def _told(_scene: Any, depsgraph: Any) -> None:
             thing = thing.data
         if isinstance(thing, bpy.types.Mesh):
             _changed.add(thing.name)
+
+
+@persistent
+def _undone(_scene: Any, _depsgraph: Any = None) -> None:
+    _forget()  # what is there now was not made here
+
+
+def _of_undo() -> tuple[Any, Any]:
+    return bpy.app.handlers.undo_post, bpy.app.handlers.redo_post
 
 
 def _forget() -> None:

@@ -65,7 +65,7 @@ class IMAGE_PT_beltrami(bpy.types.Panel):
             column.prop(held, name)
         handed = ("cut", "keep_pins", *_COMMON, *settings.UNWRAP_OPTIONS)
         self._button(UV_OT_beltrami_unwrap, "Unwrap", handed, held)
-        layout.prop(held, "live", toggle=True)
+        layout.prop(context.window_manager, "beltrami_live", toggle=True)
         if shown["live"]:
             layout.label(text=shown["live"], icon="ERROR")
         layout.separator()

@@ -155,12 +155,6 @@ class BeltramiSettings(bpy.types.PropertyGroup):
     cut: islands()
     materials: materials(len(MATERIALS))
     straight: straight()
-    live: BoolProperty(
-        name="Live Unwrap",
-        description="While a mesh is edited, its islands follow seams and pins",
-        default=False,
-        update=_switch_live,
-    )
 
 
 class BeltramiPreferences(bpy.types.AddonPreferences):
@@ -197,10 +191,18 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Scene.beltrami = PointerProperty(type=BeltramiSettings)
+    # Of the window manager, which no undo changes and no file keeps.
+    bpy.types.WindowManager.beltrami_live = BoolProperty(
+        name="Live Unwrap",
+        description="While a mesh is edited, its islands follow seams and pins",
+        default=False,
+        update=_switch_live,
+    )
 
 
 def unregister() -> None:
     """Unregister."""
+    del bpy.types.WindowManager.beltrami_live
     del bpy.types.Scene.beltrami
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -288,8 +288,8 @@ def rest(scene, installed):
 
 def test_islands_follow_seams_and_pins_while_live_unwrapping_is_on(scene, installed):
     thing = grid(scene)
-    settings = scene.context.scene.beltrami
-    settings.live = True
+    manager = scene.context.window_manager
+    manager.beltrami_live = True
     assert scene.app.timers.is_registered(installed.following._tick)
     rest(scene, installed)
     before = uvs_of(thing)
@@ -321,7 +321,7 @@ def test_islands_follow_seams_and_pins_while_live_unwrapping_is_on(scene, instal
     assert (uvs_of(thing) != opened).all(axis=1).mean() > 0.9  # one pin takes all along
 
     edit(thing)
-    settings.live = False
+    manager.beltrami_live = False
     assert not scene.app.timers.is_registered(installed.following._tick)
 
 

@@ -174,6 +174,45 @@ def story(running: Any) -> Iterator[None]:
     yield from until(lambda: shown["job"] is None)
     assert shown["check"]
     print("window: the check says", ", ".join(shown["check"]))
+    yield from live()
+
+
+def live() -> Iterator[None]:
+    """Have islands follow a seam that is marked, and undo and redo."""
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=20, y_subdivisions=20)
+    thing = bpy.context.object
+    for vertex in thing.data.vertices:
+        vertex.co.z = 0.5 * np.exp(-6 * (vertex.co.x**2 + vertex.co.y**2))
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    with bpy.context.temp_override(**view()):
+        bpy.ops.uv.beltrami_unwrap("EXEC_DEFAULT", True)
+    yield
+    before = uvs_of(bpy.context.object)
+    bpy.context.window_manager.beltrami_live = True
+    bpy.ops.ed.undo_push(message="live")
+    for _ in range(50):
+        yield
+    np.testing.assert_array_equal(uvs_of(bpy.context.object), before)
+    edited = bmesh.from_edit_mesh(bpy.context.object.data)
+    for edge in edited.edges:
+        edge.seam = all(abs(v.co.x) < 1e-6 and v.co.y < 0.1 for v in edge.verts)
+    bmesh.update_edit_mesh(bpy.context.object.data)
+    bpy.ops.ed.undo_push(message="mark a seam")
+    yield from until(lambda: (uvs_of(bpy.context.object) != before).any())
+    print("window: live, a seam has opened")
+    yield from key("Z", "ctrl")
+    yield from until(lambda: np.array_equal(uvs_of(bpy.context.object), before))
+    for _ in range(50):
+        yield
+    np.testing.assert_array_equal(uvs_of(bpy.context.object), before)
+    print("window: live, undo has closed it")
+    yield from key("Z", "ctrl", "shift")
+    yield from until(lambda: (uvs_of(bpy.context.object) != before).any())
+    print("window: live, redo has opened it again")
+    bpy.context.window_manager.beltrami_live = False
+    yield
 
 
 def main() -> None:
