@@ -13,6 +13,7 @@
 #include "abi/pins.h"
 #include "abi/unwrapped.h"
 #include "admit/admit.h"
+#include "admit/triangulate.h"
 #include "atlas/pins.h"
 #include "atlas/types.h"
 #include "base/error.h"
