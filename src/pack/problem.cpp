@@ -36,6 +36,12 @@ constexpr int kMostOfPage = 2;
 /// Of a cell: by how much borders may be off in masks, which makes up for it.
 constexpr double kThin = 1.0 / 16;
 
+/// Of so many turns a chart with few of its own takes each in the place of all up to its next one,
+/// which is so many further.
+int turns_at_once(const PackChart& chart, int turns) {
+  return chart.own_turns == 0 ? 1 : std::max(1, turns / chart.own_turns);
+}
+
 /// A density that none exceeds whose charts fit into the pages.
 double greatest_density(const PackOptions& options, double area) {
   if (options.texels_per_unit > 0) return options.texels_per_unit;
@@ -181,9 +187,7 @@ double Problem::radius() const {
 }
 
 Vec2 Problem::turn(Index c, int k) const {
-  // What has few turns has each in the place of all up to the next one.
-  const int own = charts_[c].own_turns;
-  if (own > 0) k -= k % std::max(1, turns_ / own);
+  k -= k % turns_at_once(charts_[c], turns_);
   Vec2 step;
   if (4 * k % turns_ == 0) {
     const std::array<Vec2, 4> quarters{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
@@ -206,8 +210,8 @@ Masks Problem::masks(double texels_per_unit, double spare) const {
       const int quarter = turns_ % 4 == 0 ? turns_ / 4 : turns_;
       masks[c].reserve(turns_);
       for (int k = 0; k < turns_; ++k) {
-        if (k > 0 && charts_[c].own_turns == 1) {
-          masks[c].push_back(masks[c][0]);
+        if (k % turns_at_once(charts_[c], turns_) != 0) {
+          masks[c].push_back(masks[c].back());
           continue;
         }
         if (k >= 2 * quarter) {
@@ -216,10 +220,6 @@ Masks Problem::masks(double texels_per_unit, double spare) const {
         }
         if (k >= quarter) {
           masks[c].push_back(quarter_turned(masks[c][k - quarter]));
-          continue;
-        }
-        if (k > 0 && charts_[c].own_turns == 4) {
-          masks[c].push_back(masks[c][0]);
           continue;
         }
         masks[c].push_back(mask_of(thinned_[c], turn(c, k), density,

@@ -23,9 +23,9 @@ class PinField {
   PinField(const DiskMesh& mesh, const std::vector<Index>& pins, const Work& work);
 
   /// One displacement per vertex; those of the pins are the `displacements` themselves. `uvs`:
-  /// where the vertices are. `energy` of a map chooses between the affine map, which pins near each
-  /// other give a slope that the whole has to bear, and the shift. Precondition: no two pins at one
-  /// place. Throws Error SOLVER.
+  /// where the vertices are. Of the affine map and the shift that is taken whose map has the less
+  /// `energy`: pins near each other determine an affine map that shears all the rest. Precondition:
+  /// no two pins at one place. Throws Error SOLVER.
   std::vector<Vec2> extend(const std::vector<Vec2>& uvs, const std::vector<Vec2>& displacements,
                            const std::function<double(const std::vector<Vec2>&)>& energy);
 

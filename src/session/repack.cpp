@@ -57,21 +57,22 @@ class Repacker {
 void Repacker::stack(const Work& work) {
   on_.assign(next_.charts.size(), kNone);
   vertices_on_.resize(next_.charts.size());
-  std::vector<Index> first;  // of each shape
+  std::vector<std::pair<Index, ChartShape>> first;  // of each shape
   for (Index c = 0; c < size_of(next_.charts); ++c) {
     const SessionChart& chart = next_.charts[c];
     const Index below = next_.stacked_on(chart);
     if (!moves_[c] && below != kNone && !moves_[below]) on_[c] = below;
     if ((next_.flags_of(chart) & kStack) == 0) continue;
-    for (const Index other : first) {
+    ChartShape shape = shape_of(*chart.part, work);
+    for (const auto& [other, below_it] : first) {
       if (!moves_[c]) break;
-      auto vertices = vertices_on(*chart.part, *next_.charts[other].part, work);
+      auto vertices = vertices_on(shape, below_it);
       if (!vertices) continue;
       on_[c] = other;
       vertices_on_[c] = *std::move(vertices);
       break;
     }
-    if (on_[c] == kNone) first.push_back(c);
+    if (on_[c] == kNone) first.emplace_back(c, std::move(shape));
   }
 }
 

@@ -7,10 +7,7 @@
 #include "session/carry.h"
 
 namespace beltrami {
-namespace {
-
-/// Its real faces, as pieces are compared.
-SurfacePiece piece_of(const AtlasChart& chart, const Work& work) {
+ChartShape shape_of(const AtlasChart& chart, const Work& work) {
   const DiskMesh& mesh = chart.chart.mesh;
   SurfacePiece piece;
   piece.real_faces = chart.real_faces;
@@ -21,19 +18,17 @@ SurfacePiece piece_of(const AtlasChart& chart, const Work& work) {
     if (twin >= 3 * chart.real_faces) twin = kNone;
   }
   piece.exponent = bring_to_unit(piece.surface, work);
-  return piece;
+  return {&chart, std::move(piece)};
 }
 
-}  // namespace
-
-std::optional<std::vector<Index>> vertices_on(const AtlasChart& chart, const AtlasChart& other,
-                                              const Work& work) {
-  if (chart.real_faces != other.real_faces) return std::nullopt;
-  const std::optional<Laid> laid = laid_onto(piece_of(chart, work), piece_of(other, work), false);
+std::optional<std::vector<Index>> vertices_on(const ChartShape& shape, const ChartShape& other) {
+  if (shape.piece.real_faces != other.piece.real_faces) return std::nullopt;
+  const std::optional<Laid> laid = laid_onto(shape.piece, other.piece, false);
   if (!laid) return std::nullopt;
-  std::vector<Index> vertices(chart.chart.mesh.positions.size(), kNone);
+  const DiskMesh &mesh = shape.chart->chart.mesh, &below = other.chart->chart.mesh;
+  std::vector<Index> vertices(mesh.positions.size(), kNone);
   for (Index h = 0; h < size_of(laid->onto); ++h) {
-    vertices[chart.chart.mesh.origin(h)] = other.chart.mesh.origin(laid->onto[h]);
+    vertices[mesh.origin(h)] = below.origin(laid->onto[h]);
   }
   return vertices;
 }

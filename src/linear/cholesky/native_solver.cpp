@@ -50,17 +50,11 @@ class NativeSolver final : public SpdSolver {
     const Graph graph = graph_of(lower, block, work_);
     poll_interrupt();
     std::vector<int> order(given.begin(), given.end());
-    bool doubtful = false;
-    if (!order.empty()) {
-      symbolic_ = analyze_pattern(graph, order, block, work_);
-      pattern_ = permute_pattern(lower, symbolic_, work_);
-      return;
-    }
-    if (static_cast<int>(places.size()) == graph.count() && graph.count() >= kLeastDissected &&
-        all_finite(places)) {
+    const bool has_places = static_cast<int>(places.size()) == graph.count() && all_finite(places);
+    const bool doubtful = order.empty() && has_places && graph.count() >= kLeastDissected;
+    if (doubtful) {
       order = nested_dissection_order(graph, places, work_);
-      doubtful = true;
-    } else {
+    } else if (order.empty()) {
       order = minimum_degree_order(graph);
     }
     poll_interrupt();

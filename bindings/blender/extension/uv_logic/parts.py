@@ -238,11 +238,17 @@ def labels(count: int, pairs: Array) -> Array:
         label = new
 
 
-def sides(surface: Surface) -> tuple[Array, Array]:
-    """Return the sides of all faces as (c, 2) pairs, lesser vertex first, and the face of each."""
+def next_corners(surface: Surface) -> Array:
+    """Return the corner that follows each corner around its face, (c,)."""
     ends = np.cumsum(surface.sizes)
     following = np.arange(len(surface.corners)) + 1
     following[ends - 1] = ends - surface.sizes
+    return following
+
+
+def sides(surface: Surface) -> tuple[Array, Array]:
+    """Return the sides of all faces as (c, 2) pairs, lesser vertex first, and the face of each."""
+    following = next_corners(surface)
     pairs = np.sort(np.column_stack([surface.corners, surface.corners[following]]), axis=1)
     return pairs, surface.face_of_corner()
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .parts import Array, Part, RefusedError, Surface, joined, labels, layout, sides
+from .parts import Array, Part, RefusedError, Surface, joined, labels, layout, next_corners, sides
 
 _LONG = 2.0  # a run of edges so many times as long as wide in the UVs has one direction
 
@@ -45,10 +45,7 @@ def kinds(surface: Surface) -> list[str]:
     edges = surface.edges[surface.selected].astype(np.int64)
     run = labels(len(surface.vertices), edges)[edges[:, 0]]
     at, _ = _sides_that_are_selected(surface)
-    ends = np.cumsum(surface.sizes)
-    following = np.arange(len(surface.corners)) + 1
-    following[ends - 1] = ends - surface.sizes
-    places = np.stack([surface.uvs[at], surface.uvs[following[at]]]).astype(np.float64)
+    places = np.stack([surface.uvs[at], surface.uvs[next_corners(surface)[at]]]).astype(np.float64)
     extent = np.abs(places[1] - places[0])
     edge = _places(np.sort(edges, axis=1), sides(surface)[0][at], len(surface.vertices))
     of_edge = np.zeros((len(edges), 2))
