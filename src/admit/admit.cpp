@@ -10,6 +10,7 @@
 
 #include "admit/orient.h"
 #include "admit/weld.h"
+#include "admit/whole_polygons.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
@@ -109,18 +110,25 @@ std::vector<Size> sizes_of(const std::vector<Vec3>& positions, const std::vector
   return sizes;
 }
 
-/// Keeps the faces with area, in their order, and notes the others.
-std::vector<Triangle> faces_with_area(const std::vector<Vec3>& positions,
-                                      const std::vector<Triangle>& faces, const Work& work,
+/// Which faces of the input the surface lacks, and which polygons are pieces by themselves.
+struct Fate {
+  std::vector<bool> without;  ///< per face, whether it has no area
+  std::vector<bool> apart;    ///< per face, whether its polygon is
+};
+
+/// Keeps the faces with area, in their order, and notes the others. Polygons apart keep all, with
+/// vertices that are not welded. `given`: before welding.
+std::vector<Triangle> faces_with_area(const std::vector<Triangle>& given,
+                                      const std::vector<Triangle>& faces, const Fate& fate,
                                       Admitted& admitted) {
-  const std::vector<bool> without = faces_without_area(positions, faces, work);
   std::vector<Triangle> kept;
   kept.reserve(faces.size());
   PollSometimes poll;
   for (Index f = 0; f < size_of(faces); ++f) {
     poll();
-    if (!without[f]) {
-      kept.push_back(faces[f]);
+    const bool is_apart = fate.apart[f] && !names_twice(given[f]);
+    if (!fate.without[f] || is_apart) {
+      kept.push_back(is_apart ? given[f] : faces[f]);
       admitted.input_face.push_back(f);
       continue;
     }
@@ -197,11 +205,12 @@ struct Layers {
   std::vector<bool> is_copy;  ///< per face, whether its whole polygon is made of copies
 };
 
-/// Puts every polygon into one layer, so that it stays in one piece. Of one that lies on itself
-/// each face gets a layer of its own, below 0, for its sides would be glued to each other.
-/// `firsts`: per face, the first with its vertices.
+/// Puts every polygon into one layer, so that it stays in one piece. Of one that is apart, or lies
+/// on itself, each face gets a layer of its own, below 0, for its sides would be glued to each
+/// other. `firsts`: per face, the first with its vertices.
 Layers layer_polygons(const std::vector<Triangle>& faces, const std::vector<Index>& polygons,
-                      const std::vector<Index>& firsts) {
+                      const std::vector<Index>& firsts, const Fate& fate,
+                      const Admitted& admitted) {
   Layers layers{std::vector<Index>(faces.size(), 0), std::vector<bool>(faces.size(), false)};
   std::vector<Index> next(faces.size(), 0);  // per first face, the layer above all that lie there
   for (Index begin = 0, end = 0; begin < size_of(faces); begin = end) {
@@ -212,7 +221,8 @@ Layers layer_polygons(const std::vector<Triangle>& faces, const std::vector<Inde
       layer = std::max(layer, next[firsts[f]]);
       copies += firsts[f] != f ? 1 : 0;
     }
-    const bool is_folded = copies > 0 && has_twins(faces, begin, end);
+    const bool is_folded =
+        fate.apart[admitted.input_face[begin]] || (copies > 0 && has_twins(faces, begin, end));
     for (Index f = begin; f < end; ++f) {
       layers.of_face[f] = is_folded ? -1 - f : layer;
       layers.is_copy[f] = copies == end - begin;
@@ -222,8 +232,8 @@ Layers layer_polygons(const std::vector<Triangle>& faces, const std::vector<Inde
   return layers;
 }
 
-/// Glues the faces of polygons that lie on themselves where these were cut. `faces`: the input's,
-/// whose vertices are not welded.
+/// Glues the faces of polygons that are apart, or lie on themselves, where these were cut. `faces`:
+/// the input's, whose vertices are not welded.
 void glue_folded_polygons(const std::vector<Triangle>& faces, const PolygonParts& polygons,
                           const Admitted& admitted, const std::vector<Index>& layers,
                           std::vector<Index>& twin) {
@@ -283,6 +293,41 @@ void count_pieces(const Admitted& admitted, AdmitCounts& counts) {
   }
 }
 
+struct Names {
+  const std::vector<Triangle>&given, &welded;
+};
+
+/// All that follows welding, whose notes are in `admitted`.
+Admitted admit_welded(const std::vector<Vec3>& positions, const Names& faces, const Fate& fate,
+                      const AdmitOptions& options, Admitted admitted, const Work& work) {
+  AdmitCounts& counts = admitted.counts;
+  std::vector<Triangle> kept = faces_with_area(faces.given, faces.welded, fate, admitted);
+  const std::vector<Index> firsts = firsts_of(size_of(positions), kept, work, admitted);
+  std::vector<Index> polygons = polygons_of(admitted, options);
+  Layers layers = layer_polygons(kept, polygons, firsts, fate, admitted);
+  if (options.share_copies && counts.copies > 0) {
+    drop_copies(kept, layers, admitted);
+    polygons = polygons_of(admitted, options);
+  }
+  Gluing gluing = glue(positions, kept, layers.of_face, polygons, work);
+  glue_folded_polygons(faces.given, options.polygons, admitted, layers.of_face, gluing.twin);
+  counts.crowded_edges = gluing.crowded_edges;
+  Orientation orientation = orient(kept, gluing.twin, polygons, work, &positions);
+  counts.one_sided_edges = orientation.one_sided_edges;
+  admitted.reversed = std::move(orientation.reversed);
+  if (gluing.joined_in_crowds) part_double_edges(kept, gluing.twin);
+  SplitSurface split = split_fans(positions, kept, gluing.twin, work);
+  admitted.surface = std::move(split.surface);
+  admitted.input_vertex = std::move(split.vertex);
+  if (!polygons.empty()) {
+    regularize(admitted, options.polygons, fate.apart, fate.without, admitted.surface);
+  }
+  admitted.topology = topology_of(admitted.surface, work);
+  count_pieces(admitted, counts);
+  for (Index& v : admitted.input_vertex) v = admitted.welded(v);
+  return admitted;
+}
+
 }  // namespace
 
 std::vector<bool> faces_without_area(const std::vector<Vec3>& positions,
@@ -299,36 +344,17 @@ std::vector<bool> faces_without_area(const std::vector<Vec3>& positions,
 
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work) {
-  const Index vertex_count = size_of(positions);
-  validate_indices(vertex_count, faces, RepeatedVertices::kAllowed, work);
+  validate_indices(size_of(positions), faces, RepeatedVertices::kAllowed, work);
   validate_positions(positions, work);
-  Admitted admitted;
-  AdmitCounts& counts = admitted.counts;
-  counts.unused_vertices = unused_vertices(vertex_count, faces);
-  std::vector<Triangle> kept =
-      faces_with_area(positions, welded(positions, faces, options, work, admitted), work, admitted);
-  const std::vector<Index> firsts = firsts_of(vertex_count, kept, work, admitted);
-  std::vector<Index> polygons = polygons_of(admitted, options);
-  Layers layers = layer_polygons(kept, polygons, firsts);
-  if (options.share_copies && counts.copies > 0) {
-    drop_copies(kept, layers, admitted);
-    polygons = polygons_of(admitted, options);
+  Admitted start;
+  start.counts.unused_vertices = unused_vertices(size_of(positions), faces);
+  const std::vector<Triangle> named = welded(positions, faces, options, work, start);
+  Fate fate{faces_without_area(positions, named, work), std::vector<bool>(faces.size(), false)};
+  // Most files need one round. What parts in one may tear others, though none twice.
+  for (;;) {
+    Admitted admitted = admit_welded(positions, {faces, named}, fate, options, start, work);
+    if (!mark_torn(admitted, options.polygons, fate.apart)) return admitted;
   }
-  Gluing gluing = glue(positions, kept, layers.of_face, polygons, work);
-  if (counts.copies > 0) {
-    glue_folded_polygons(faces, options.polygons, admitted, layers.of_face, gluing.twin);
-  }
-  counts.crowded_edges = gluing.crowded_edges;
-  Orientation orientation = orient(kept, gluing.twin, polygons, work, &positions);
-  counts.one_sided_edges = orientation.one_sided_edges;
-  admitted.reversed = std::move(orientation.reversed);
-  if (gluing.joined_in_crowds) part_double_edges(kept, gluing.twin);
-  SplitSurface split = split_fans(positions, kept, gluing.twin, work);
-  admitted.surface = std::move(split.surface);
-  admitted.input_vertex = std::move(split.vertex);
-  admitted.topology = topology_of(admitted.surface, work);
-  count_pieces(admitted, counts);
-  return admitted;
 }
 
 }  // namespace beltrami

@@ -33,7 +33,10 @@ struct AdmitOptions {
   std::span<const Index> bodies = {};
   /// Copies are no faces of the surface: they are to share what the first of them gets.
   bool share_copies = false;
-  PolygonParts polygons = {};  ///< they stay in one piece
+  /// They stay in one piece. One that would be torn is a piece by itself; where a triangle of it
+  /// has no area, as in one that crosses itself, the surface has a regular polygon of its area
+  /// instead.
+  PolygonParts polygons = {};
 };
 
 /// What was done to the input. Faces and vertices are the input's.

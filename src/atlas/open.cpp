@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "admit/fill.h"
+#include "admit/whole_polygons.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
@@ -220,17 +221,6 @@ class Numbering {
 };
 
 }  // namespace
-
-bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h,
-                       Index twin) {
-  const auto is_diagonal = [&](Index of) {
-    const Index face = of / 3;
-    const int k = admitted.reversed[face] ? 2 - of % 3 : of % 3;
-    return polygons.is_diagonal(admitted.input_face[face], k);
-  };
-  const auto polygon = [&](Index of) { return polygons.polygon[admitted.input_face[of / 3]]; };
-  return polygon(h) == polygon(twin) && is_diagonal(h) && is_diagonal(twin);
-}
 
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted) {
   Index first = admitted.input_face[chart.chart.input_face[0]];

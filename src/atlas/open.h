@@ -46,10 +46,6 @@ struct InputHints {
 /// The least of its faces, of the input.
 Index first_input_face(const AtlasChart& chart, const Admitted& admitted);
 
-/// Whether an edge of the surface, by its half-edges, lies inside a polygon: not where a side of it
-/// meets another side of the same. Precondition: polygons are given.
-bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin);
-
 /// Scales the surface by the power of two that brings it to about unit area, and returns its
 /// exponent.
 int bring_to_unit(Surface& surface, const Work& work);

@@ -100,44 +100,6 @@ TEST(AbiAtlas, UnwrapsACubeOfQuads) {
   EXPECT_NE(message(context).find("there is no chart 1"), std::string::npos) << message(context);
 }
 
-// Three crooked polygons, whose diagonals are edges of each other.
-TEST(AbiAtlas, PolygonsOnOneEdgeMayHaveItAsADiagonal) {
-  const std::vector<std::array<double, 3>> positions = {
-      {0.05, 0.66, -0.06}, {0.93, -0.48, -1.65},  {0.25, 1.34, 0.09},  {-0.07, -0.21, 0.48},
-      {0.35, 0.6, -1.67},  {-0.81, -1.04, -1.31}, {-1.45, -0.86, 1.14}};
-  const std::vector<std::uint32_t> corners = {4, 2, 6, 0, 3, 1, 3, 4, 0, 1, 3, 4, 1, 0, 6, 2};
-  const std::vector<std::uint32_t> sizes = {6, 4, 6};
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = 7;
-  surface.face_count = 3;
-  surface.corner_count = 16;
-  surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {corners.data(), 0, BELTRAMI_U32, 0};
-  surface.face_sizes = {sizes.data(), 0, BELTRAMI_U32, 0};
-  const Context context = create();
-  EXPECT_GE(unwrap(context, surface), BELTRAMI_OK) << message(context);
-}
-
-// Welded, the hexagon is folded up to a tetrahedron: its sides are sewn to each other.
-TEST(AbiAtlas, APolygonThatIsSewnToItselfIsCutAlongItsSides) {
-  const std::vector<std::array<double, 3>> positions = {{2, 1, 2}, {0, 3, 0}, {2, 1, 2},
-                                                        {2, 0, 2}, {2, 1, 2}, {0, 0, 3}};
-  const std::vector<std::uint32_t> corners = {0, 1, 2, 3, 4, 5};
-  const std::uint32_t size = 6;
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = surface.corner_count = 6;
-  surface.face_count = 1;
-  surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {corners.data(), 0, BELTRAMI_U32, 0};
-  surface.face_sizes = {&size, 0, BELTRAMI_U32, 0};
-  const Context context = with_minimal_cut();
-  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_WELD, BELTRAMI_WELD_ON), BELTRAMI_OK);
-  ASSERT_EQ(unwrap(context, surface), BELTRAMI_OK) << message(context);
-  const beltrami_atlas atlas = atlas_of(context);
-  EXPECT_EQ(atlas.closed_components, 1u);
-  EXPECT_EQ(atlas.charts, 1u);
-}
-
 TEST(AbiAtlas, UvVerticesAreAVertexBuffer) {
   // A soup: welded for the charts, and yet each UV vertex is a copy of one input vertex.
   const TriangleList mesh = meshes::soup(meshes::cube());
