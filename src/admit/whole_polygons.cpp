@@ -7,6 +7,7 @@
 #include "base/interrupt.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {
