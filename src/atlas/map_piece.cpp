@@ -244,9 +244,10 @@ std::vector<std::array<Vec2, 3>> corners_of(const SurfacePiece& piece, const Map
 }
 
 /// Whether a chart is to be split.
-bool has_hopeless(const Mapped& mapped, const Work& work) {
+bool has_hopeless(const Mapped& mapped, const SeamTarget& target, const Work& work) {
+  const double most = beyond_reason(target);
   for (std::size_t c = 0; c < mapped.maps.size(); ++c) {
-    if (is_hopeless(mapped.opened.charts[c], mapped.maps[c], work)) return true;
+    if (is_hopeless(mapped.opened.charts[c], mapped.maps[c], most, work)) return true;
   }
   return false;
 }
@@ -316,8 +317,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   std::optional<Mapped> flat =
       map_unfolded(task, piece, missed ? kAnyLength : most, work.part(kSearchedAll, 1), stages);
   if (!flat || misses(*flat, target)) return searched;
-  const bool is_simpler =
-      missed && (flat->maps.size() <= searched.maps.size() || has_hopeless(searched, work.aside()));
+  const bool is_simpler = missed && (flat->maps.size() <= searched.maps.size() ||
+                                     has_hopeless(searched, target, work.aside()));
   const bool is_short = seam_length(flat->opened.charts, vertex) <= most;
   return is_simpler || is_short ? *std::move(flat) : std::move(searched);
 }
@@ -331,8 +332,8 @@ void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& st
   const PolygonParts& polygons = options.admit.polygons;
   run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
     bool is_any = false;
-    while (split_hopeless(task.admitted, polygons, options.chart, inner.untimed(),
-                          mapped.opened.charts, mapped.maps)) {
+    while (split_hopeless(task.admitted, polygons, beyond_reason(options.target), options.chart,
+                          inner.untimed(), mapped.opened.charts, mapped.maps)) {
       is_any = true;
     }
     if (is_any) measure(inner, mapped);

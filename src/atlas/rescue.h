@@ -1,6 +1,7 @@
 // Charts that cannot be mapped within reason, split until they can: two triangles always can.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "admit/admit.h"
@@ -8,13 +9,17 @@
 #include "atlas/open.h"
 #include "base/types.h"
 #include "base/work.h"
+#include "cut/seam_target.h"
 #include "multilevel/options.h"
 
 namespace beltrami {
 
+/// The mean energy above which a chart's map is of no use. `target`: that of the search, or none.
+double beyond_reason(const std::optional<SeamTarget>& target);
+
 /// Whether a chart has a map that is of no use: none, one that is not injective, or one whose mean
-/// energy is above kBeyondReason.
-bool is_hopeless(const AtlasChart& chart, const MappedChart& map, const Work& work);
+/// energy is above `most`.
+bool is_hopeless(const AtlasChart& chart, const MappedChart& map, double most, const Work& work);
 
 /// Splits each of the charts `which` (increasing) in two halves of about the same size, or more
 /// where these are no disks, and maps the parts. Charts come out by their least face of the input.
@@ -24,8 +29,8 @@ bool split_charts(const Admitted& admitted, const PolygonParts& polygons,
                   const std::vector<Index>& which, const ChartOptions& options, const Work& work,
                   std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
 
-/// The same for all charts that are hopeless.
-bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons,
+/// The same for all charts that are hopeless above `most`.
+bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons, double most,
                     const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
                     std::vector<MappedChart>& maps);
 

@@ -100,6 +100,20 @@ TEST(AbiAtlas, UnwrapsACubeOfQuads) {
   EXPECT_NE(message(context).find("there is no chart 1"), std::string::npos) << message(context);
 }
 
+// Of an axe: five triangles wind around a vertex, the sixth continues one of them. No cut is found,
+// and the map in one piece is pressed together.
+TEST(AbiAtlas, AFewTrianglesThatMissTheTargetByFarAreSplit) {
+  TriangleList mesh;
+  mesh.positions = {{0.303259, 1.906898, 0.000943},   {0.310494, -8.42216, 0.017841},
+                    {0.313138, 3.616659, -0.017874},  {0.309484, 2.945865, -0.014868},
+                    {0.289586, -2.983799, -0.243538}, {0.283413, 0.063814, -0.172005},
+                    {0.287758, -1.053373, 0.139758}};
+  mesh.faces = {{0, 3, 2}, {0, 5, 3}, {0, 1, 4}, {0, 4, 5}, {2, 6, 3}, {2, 3, 5}};
+  const Context context = create();
+  ASSERT_EQ(unwrap(context, surface_view(mesh)), BELTRAMI_OK) << message(context);
+  EXPECT_EQ(atlas_of(context).reached, 1);
+}
+
 TEST(AbiAtlas, UvVerticesAreAVertexBuffer) {
   // A soup: welded for the charts, and yet each UV vertex is a copy of one input vertex.
   const TriangleList mesh = meshes::soup(meshes::cube());
