@@ -89,6 +89,10 @@ struct Admitted {
 Admitted admit(const std::vector<Vec3>& positions, const std::vector<Triangle>& faces,
                const AdmitOptions& options, const Work& work);
 
+/// Whether an edge of the surface, by its half-edges, lies inside a polygon: not where a side of it
+/// meets another side of the same. Precondition: polygons are given.
+bool is_inside_polygon(const Admitted& admitted, const PolygonParts& polygons, Index h, Index twin);
+
 /// Per face whether it has no area on the surface, as admit sets aside: no more than 1e-14 of the
 /// largest face, or of the square of its longest edge, or a vertex named twice.
 std::vector<bool> faces_without_area(const std::vector<Vec3>& positions,

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "admit/fill.h"
-#include "admit/whole_polygons.h"
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"

@@ -6,7 +6,6 @@
 #include <queue>
 #include <utility>
 
-#include "admit/whole_polygons.h"
 #include "atlas/chart_parts.h"
 #include "atlas/measure.h"
 #include "atlas/types.h"

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "admit/whole_polygons.h"
 #include "atlas/chart_parts.h"
 #include "atlas/measure.h"
 #include "atlas/pack_maps.h"

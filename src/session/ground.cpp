@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "admit/arrange_admitted.h"
-#include "admit/whole_polygons.h"
 #include "atlas/open.h"
 #include "base/interrupt.h"
 #include "base/vectors.h"
