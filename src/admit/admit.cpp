@@ -365,14 +365,13 @@ bool mark_torn(const Admitted& admitted, const PolygonParts& polygons, std::vect
 void regularize(const PolygonParts& polygons, const Fate& fate, Admitted& admitted) {
   Surface& surface = admitted.surface;
   for_each_polygon(admitted, polygons, [&](Index begin, Index end) {
-    const auto is_flat = [&](Index f) { return fate.without[admitted.input_face[f]]; };
     if (!fate.apart[admitted.input_face[begin]]) return;
     double area = 0;
     bool is_bad = false;
     for (Index f = begin; f < end; ++f) {
       const auto [i, j, k] = surface.faces[f];
       area += triangle_area(surface.positions[i], surface.positions[j], surface.positions[k]);
-      is_bad = is_bad || is_flat(f);
+      is_bad = is_bad || fate.without[admitted.input_face[f]];
     }
     const std::vector<Index> ring = is_bad ? ring_of(surface, begin, end) : std::vector<Index>();
     if (ring.empty()) return;
@@ -389,6 +388,7 @@ void regularize(const PolygonParts& polygons, const Fate& fate, Admitted& admitt
   });
 }
 
+/// The corners of the input's faces, before welding and after it.
 struct Names {
   const std::vector<Triangle>&given, &welded;
 };

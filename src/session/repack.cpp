@@ -64,9 +64,9 @@ void Repacker::stack(const Work& work) {
     if (!moves_[c] && below != kNone && !moves_[below]) on_[c] = below;
     if ((next_.flags_of(chart) & kStack) == 0) continue;
     ChartShape shape = shape_of(*chart.part, work);
-    for (const auto& [other, below_it] : first) {
+    for (const auto& [other, shape_of_other] : first) {
       if (!moves_[c]) break;
-      auto vertices = vertices_on(shape, below_it);
+      auto vertices = vertices_on(shape, shape_of_other);
       if (!vertices) continue;
       on_[c] = other;
       vertices_on_[c] = *std::move(vertices);

@@ -79,8 +79,7 @@ class Session {
   /// those with pins. The sizes of charts to each other are kept; where all are packed they are
   /// scaled as one to what fits, or to what is asked for. Where there is no room for them elsewhere
   /// they stay where they are, if that is on the pages and injective. By their flags charts keep
-  /// their turn or size, or are stacked. Throws Error NO_ROOM or what
-  /// pack_uvs does.
+  /// their turn or size, or are stacked. Throws Error NO_ROOM or what pack_uvs does.
   Outcome pack(std::span<const Index> ids, const PackOptions& options, const Work& work);
 
   /// The exact verdict on all charts together but for those that are stacked on others, in the
