@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -49,6 +50,20 @@ Struct sized() {
   Struct value{};
   value.struct_size = sizeof value;
   return value;
+}
+
+/// Of polygons of any sizes, which must outlive it.
+inline beltrami_surface polygon_view(const std::vector<Vec3>& positions,
+                                     const std::vector<std::uint32_t>& corners,
+                                     const std::vector<std::uint32_t>& sizes) {
+  auto surface = sized<beltrami_surface>();
+  surface.vertex_count = positions.size();
+  surface.face_count = sizes.size();
+  surface.corner_count = corners.size();
+  surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {corners.data(), 0, BELTRAMI_U32, 0};
+  surface.face_sizes = {sizes.data(), 0, BELTRAMI_U32, 0};
+  return surface;
 }
 
 inline std::string message(const Context& context) {

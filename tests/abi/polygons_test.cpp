@@ -3,35 +3,26 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
 #include "abi/host.h"
+#include "base/vectors.h"
 #include "support/disks.h"
 
 namespace beltrami::host {
 namespace {
 
 struct Polygons {
-  std::vector<std::array<double, 3>> positions;
+  std::vector<Vec3> positions;
   std::vector<std::uint32_t> corners, sizes;
 
   void add(const std::vector<std::uint32_t>& polygon) {
     corners.insert(corners.end(), polygon.begin(), polygon.end());
     sizes.push_back(static_cast<std::uint32_t>(polygon.size()));
   }
-  beltrami_surface view() const {
-    auto surface = sized<beltrami_surface>();
-    surface.vertex_count = positions.size();
-    surface.face_count = sizes.size();
-    surface.corner_count = corners.size();
-    surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
-    surface.indices = {corners.data(), 0, BELTRAMI_U32, 0};
-    surface.face_sizes = {sizes.data(), 0, BELTRAMI_U32, 0};
-    return surface;
-  }
+  beltrami_surface view() const { return polygon_view(positions, corners, sizes); }
 };
 
 beltrami_atlas unwrapped(const Polygons& polygons, std::int64_t weld) {

@@ -38,13 +38,7 @@ struct Sheet {
   }
 
   beltrami_surface view() const {
-    auto surface = sized<beltrami_surface>();
-    surface.vertex_count = positions.size();
-    surface.face_count = sizes.size();
-    surface.corner_count = corners.size();
-    surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
-    surface.indices = {corners.data(), 0, BELTRAMI_U32, 0};
-    surface.face_sizes = {sizes.data(), 0, BELTRAMI_U32, 0};
+    beltrami_surface surface = polygon_view(positions, corners, sizes);
     if (!seams.empty()) surface.seams = {seams.data(), 0, BELTRAMI_U32, 0};
     surface.seam_count = seams.size() / 2;
     return surface;
