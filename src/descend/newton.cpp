@@ -31,7 +31,8 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
                          .max_iterations = options.max_iterations,
                          .proxy_steps = options.contact ? 0 : options.proxy_steps,
                          .comparable = comparable_energy<Density>,
-                         .smooth = Density::kSmooth};
+                         .smooth = Density::kSmooth,
+                         .hopeless = from_dirichlet<Density>(options.hopeless)};
   const auto take_step = [&](bool proxy, double before) {
     if (options.contact) {
       stepper.fit_contact(uvs, to_dirichlet<Density>(before), comparable_energy<Density>(before));
@@ -47,8 +48,10 @@ NewtonResult minimise(const std::vector<Triangle>& faces, const std::vector<Rest
   };
   result.converged =
       stepper.free_count() == 0 || run_newton(run, work, result.energies, take_step, give_up);
-  result.is_cut_short =
-      !result.converged && (result.iterations() >= options.max_iterations || work.out_of_time());
+  result.is_hopeless = !result.converged && result.iterations() >= newton::kHopefulSteps &&
+                       result.energies.back() > run.hopeless;
+  result.is_cut_short = !result.converged && (result.iterations() >= options.max_iterations ||
+                                              result.is_hopeless || work.out_of_time());
   if (!result.refused) result.admitted.clear();
   return result;
 }

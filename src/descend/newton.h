@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct NewtonOptions {
   double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
   int proxy_steps = newton::kProxySteps;  ///< 0: composite majorization alone
+  /// Symmetric Dirichlet energy of the mean face beyond which a run that crawls is given up.
+  double hopeless = std::numeric_limits<double>::infinity();
   /// Keeps the boundary from touching itself: its barrier joins the energy, a share of it that
   /// falls with the energy, and steps end before the first touch. The boundary must be simple at
   /// the start. Null: it may cross itself.
@@ -40,7 +43,8 @@ struct NewtonResult {
   /// of its sum with the barrier.
   std::vector<double> energies;
   bool converged = false;
-  bool is_cut_short = false;   ///< ended by the limit of steps or of time
+  bool is_cut_short = false;   ///< ended by the limit of steps or of time, or given up
+  bool is_hopeless = false;    ///< given up
   bool in_contact = false;     ///< boundary parts press on each other at the end
   bool refused = false;        ///< the map at the end is not admissible; then
   std::vector<Vec2> admitted;  ///< the last one that was, empty if none

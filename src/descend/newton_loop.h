@@ -2,6 +2,7 @@
 // when it ends.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "base/work.h"
@@ -38,6 +39,9 @@ inline constexpr double kLeap = 10;
 inline constexpr int kPatience = 5;
 inline constexpr double kNothing = 1e-3;  ///< share of the tolerance that is no gain at any length
 inline constexpr double kLittleLeft = 0.05;  ///< predicted decrease, relative to the energy, then
+/// A run that has not got below the energy where it has hope after so many steps is not going to,
+/// or crawls: of 1,240 starts above 1e3, on 176 files, 95% are below it then, most after one step.
+inline constexpr int kHopefulSteps = 25;
 
 }  // namespace newton
 
@@ -57,6 +61,8 @@ struct NewtonRun {
   int proxy_steps = newton::kProxySteps;
   double (*comparable)(double energy) = nullptr;  ///< what gains at an energy are relative to
   bool smooth = true;  ///< the energy: of another one the model knows less
+  /// Mean energy above which a run ends after kHopefulSteps.
+  double hopeless = std::numeric_limits<double>::infinity();
   /// Whether steps of the proxy and blocked ones that gain little count towards the patience as
   /// well, which then ends the run as converged, whatever the model still promises.
   bool impatient = false;
@@ -83,6 +89,7 @@ bool run_newton(const NewtonRun& run, const Work& work, std::vector<double>& ene
     if (done >= run.max_iterations || work.out_of_time()) return false;
     work.report(done / (done + 12.0));  // their number is not known; ordinary meshes take twelve
     const double before = energies.back();
+    if (done >= newton::kHopefulSteps && before > run.hopeless) return false;
     const bool proxy = proxy_steps > 0;
     const NewtonStep made = step(proxy, before);
     if (made.length > 0) energies.push_back(made.energy);

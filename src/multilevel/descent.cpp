@@ -225,6 +225,7 @@ Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     newton.admissible = nullptr;
     newton.max_iterations -= free.newton.iterations();
     uvs.swap(free.newton.admitted);
+    if (free.newton.is_hopeless) return ended(free, 0, std::move(uvs));
     start_nearer(mesh, rest, free.newton.energies.back(), options, work, uvs);
   }
   newton.contact = &contact;
