@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -66,16 +67,18 @@ bool was_chart(const Chart& chart, const LocalMaps& before) {
   return old.input_vertex.size() == chart.input_vertex.size() && old.input_face == chart.input_face;
 }
 
-std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injectivity injectivity,
-                            double tolerance, const Work& work) {
+/// From `start`, where that serves.
+std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, const MapSetting& setting,
+                            KnownMaps& known, const Work& work) {
   DiskMesh mesh = chart.mesh;
   const Normalisation frame = normalise(mesh.positions, mesh.faces, work);
   ChartOptions options;
-  options.injectivity = injectivity;
-  options.tolerance = tolerance;
+  options.injectivity = setting.injectivity;
+  options.tolerance = setting.tolerance;
   options.is_trial = true;
   for (Vec2& w : start) w *= std::ldexp(1.0, frame.exponent);
   Descent done;
+  bool is_new = false;
   if (!start.empty() && non_positive_faces(mesh.faces, start, work).empty()) {
     const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
     NewtonOptions newton = newton_options(options);
@@ -83,9 +86,12 @@ std::vector<Vec2> map_chart(const Chart& chart, std::vector<Vec2> start, Injecti
     const bool simple = keeps_boundary_simple(options);
     done = descend(mesh, rest, std::move(start), newton, simple, options, work);
   } else {
-    done = minimise_from_scratch(mesh, tolerance, options, work);
+    if (std::optional<std::vector<Vec2>> same = known.find(chart, setting)) return *same;
+    done = minimise_from_scratch(mesh, setting.tolerance, options, work);
+    is_new = !work.out_of_time();
   }
   for (Vec2& w : done.uvs) w *= std::ldexp(1.0, -frame.exponent);
+  if (is_new) known.keep(chart, setting, done.uvs);
   return std::move(done.uvs);
 }
 
@@ -114,7 +120,8 @@ void measure(Index real_faces, LocalMaps& maps) {
 }  // namespace
 
 LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
-                      double tolerance, const LocalMaps* before, const Work& work) {
+                      double tolerance, const LocalMaps* before, KnownMaps& known,
+                      const Work& work) {
   LocalMaps maps;
   maps.cut = cut_into_charts(surface, seams, work);
   Corners corners;
@@ -124,17 +131,17 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
     const Chart& chart = maps.cut.charts[c];
     std::vector<Vec2> start;
     if (before != nullptr) start = map_before(chart, corners);
-    const bool is_known = !start.empty() && was_chart(chart, *before);
-    maps.uvs[c] =
-        is_known ? std::move(start)
-                 : map_chart(chart, std::move(start), Injectivity::kLocal, tolerance, work.aside());
+    const bool was_there = !start.empty() && was_chart(chart, *before);
+    const MapSetting setting{Injectivity::kLocal, tolerance};
+    maps.uvs[c] = was_there ? std::move(start)
+                            : map_chart(chart, std::move(start), setting, known, work.aside());
   });
   measure(real_faces, maps);
   return maps;
 }
 
 LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const LocalMaps* before,
-                       const Work& work) {
+                       KnownMaps& known, const Work& work) {
   std::vector<std::size_t> crossing;
   for (std::size_t c = 0; c < maps.uvs.size(); ++c) {
     if (!is_simple(maps.cut.charts[c].mesh.boundary, maps.uvs[c])) crossing.push_back(c);
@@ -145,18 +152,18 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
   parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
     const std::size_t c = crossing[i];
     const Chart& chart = maps.cut.charts[c];
-    std::vector<Vec2> known;
-    if (before != nullptr) known = map_before(chart, corners);
-    if (!known.empty() && was_chart(chart, *before)) {
-      maps.uvs[c] = std::move(known);  // it crossed itself then, too, and was mended or left so
+    std::vector<Vec2> start;
+    if (before != nullptr) start = map_before(chart, corners);
+    if (!start.empty() && was_chart(chart, *before)) {
+      maps.uvs[c] = std::move(start);  // it crossed itself then, too, and was mended or left so
       return;
     }
     if (open_touching_sides(chart.mesh, work.aside(), maps.uvs[c])) return;
-    const bool serves = !known.empty() && (is_simple(chart.mesh.boundary, known) ||
-                                           open_touching_sides(chart.mesh, work.aside(), known));
-    if (!serves) known.clear();
-    std::vector<Vec2> uvs =
-        map_chart(chart, std::move(known), Injectivity::kGlobal, tolerance, work.aside());
+    const bool serves = !start.empty() && (is_simple(chart.mesh.boundary, start) ||
+                                           open_touching_sides(chart.mesh, work.aside(), start));
+    if (!serves) start.clear();
+    const MapSetting setting{Injectivity::kGlobal, tolerance};
+    std::vector<Vec2> uvs = map_chart(chart, std::move(start), setting, known, work.aside());
     if (is_simple(chart.mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
   });
   measure(real_faces, maps);

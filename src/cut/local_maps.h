@@ -9,6 +9,7 @@
 #include "base/work.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
+#include "cut/known_maps.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -25,15 +26,16 @@ struct LocalMaps {
 
 /// Flattens every chart of the surface cut along `seams`, by composite majorization to `tolerance`.
 /// Charts that were cut out of those of `before` start from their maps, or keep them where they are
-/// the same. `real_faces`: those after
-/// them weigh nothing in the energy. Precondition: all pieces are disks. Throws Error SOLVER.
+/// the same. `known`: of charts of this surface, used and added to. `real_faces`: those after them
+/// weigh nothing in the energy. Precondition: all pieces are disks. Throws Error SOLVER.
 LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks& seams,
-                      double tolerance, const LocalMaps* before, const Work& work);
+                      double tolerance, const LocalMaps* before, KnownMaps& known,
+                      const Work& work);
 
 /// The maps, those that lie on themselves replaced by others that do not, where these are found:
 /// the boundary is kept simple by contact. Their energies are what such charts cost in truth.
 /// `before`: the same of other seams, or null: charts that were among its keep their maps.
 LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const LocalMaps* before,
-                       const Work& work);
+                       KnownMaps& known, const Work& work);
 
 }  // namespace beltrami

@@ -146,10 +146,11 @@ double Attempt::promised() const {
   return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, kLeastShare)));
 }
 
-SeamRefinement::SeamRefinement(const SeamSurface& coarse, AnchoredSeams seams, const Start& start,
-                               const SeamTarget& target, const SearchEffort& effort,
-                               const Work& work, const Mirror* mirror)
+SeamRefinement::SeamRefinement(const SeamSurface& coarse, KnownMaps& known, AnchoredSeams seams,
+                               const Start& start, const SeamTarget& target,
+                               const SearchEffort& effort, const Work& work, const Mirror* mirror)
     : coarse_(coarse),
+      known_(known),
       mirror_(mirror),
       start_(start),
       target_(target),
@@ -230,7 +231,7 @@ double SeamRefinement::tolerance() const {
 
 LocalMaps SeamRefinement::map(const LocalMaps* before) const {
   return map_locally(coarse_.surface, coarse_.real_faces, tree_.seams(), tolerance(), before,
-                     here());
+                     known_, here());
 }
 
 /// Parts the charts that lie on themselves on more of their area. Whether there was one.
@@ -304,7 +305,7 @@ bool SeamRefinement::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
       return true;
     }
     apart = with_contact(maps, coarse_.real_faces, tolerance(),
-                         apart_.uvs.empty() ? nullptr : &apart_, here());
+                         apart_.uvs.empty() ? nullptr : &apart_, known_, here());
     apart_ = apart;
     contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;

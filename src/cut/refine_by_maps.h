@@ -6,6 +6,7 @@
 
 #include "base/vectors.h"
 #include "base/work.h"
+#include "cut/known_maps.h"
 #include "cut/local_maps.h"
 #include "cut/mirror.h"
 #include "cut/seam_surface.h"
@@ -42,11 +43,12 @@ struct Attempt {
 /// at.
 class SeamRefinement {
  public:
-  /// `seams` open the surface into disks. `mirror`: the seams are symmetric to it and to stay so,
-  /// or null. Keeps references to `coarse`, `target`, `effort` and the mirror.
-  SeamRefinement(const SeamSurface& coarse, AnchoredSeams seams, const Start& start,
-                 const SeamTarget& target, const SearchEffort& effort, const Work& work,
-                 const Mirror* mirror = nullptr);
+  /// `seams` open the surface into disks. `known`: of charts of it. `mirror`: the seams are
+  /// symmetric to it and to stay so, or null. Keeps references to `coarse`, `known`, `target`,
+  /// `effort` and the mirror.
+  SeamRefinement(const SeamSurface& coarse, KnownMaps& known, AnchoredSeams seams,
+                 const Start& start, const SeamTarget& target, const SearchEffort& effort,
+                 const Work& work, const Mirror* mirror = nullptr);
 
   /// By the model alone.
   Attempt sketch();
@@ -85,6 +87,7 @@ class SeamRefinement {
   void vary(int rounds, Attempt& best);
 
   const SeamSurface& coarse_;
+  KnownMaps& known_;
   const Mirror* mirror_;  ///< or null
   const Start start_;
   const SeamTarget& target_;

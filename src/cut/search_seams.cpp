@@ -13,6 +13,7 @@
 
 #include "base/parallel.h"
 #include "cut/cut_into_charts.h"
+#include "cut/known_maps.h"
 #include "cut/mirror.h"
 #include "cut/mirrored_seams.h"
 #include "cut/open_minimal.h"
@@ -74,7 +75,7 @@ Attempt best_of(std::vector<Attempt> made) {
 
 /// Where the coarse surface has many faces, starts are sketched on one of fewer; `mirror`: whose
 /// plane seams are drawn to, or null. Without seams where the time was up before any were judged.
-Attempt search_coarse(const SeamSurface& coarse, const SeamTarget& target,
+Attempt search_coarse(const SeamSurface& coarse, KnownMaps& known, const SeamTarget& target,
                       const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
                       const Work& work) {
   std::vector<Start> starts;
@@ -97,7 +98,7 @@ Attempt search_coarse(const SeamSurface& coarse, const SeamTarget& target,
   const std::vector<Attempt> sketches =
       attempts(work.part(kSketching, kSketched), starts, [&](const Start& start, const Work& part) {
         if (part.out_of_time()) return Attempt();
-        return SeamRefinement(sketched, open, start, target, effort, part).sketch();
+        return SeamRefinement(sketched, known, open, start, target, effort, part).sketch();
       });
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), 0);
@@ -114,7 +115,8 @@ Attempt search_coarse(const SeamSurface& coarse, const SeamTarget& target,
     const bool is_open = is_rough || coarse.locked.empty() ||
                          cut_into_charts(surface, carried.seams, part.part(0, 0)).non_disks.empty();
     if (!is_open) carried = opened(coarse, part.part(0, 0));
-    return SeamRefinement(coarse, std::move(carried), starts[i], target, effort, part).run(is_open);
+    return SeamRefinement(coarse, known, std::move(carried), starts[i], target, effort, part)
+        .run(is_open);
   };
   return best_of(attempts(work.part(kSketched, 1), order, finish));
 }
@@ -139,9 +141,10 @@ double length_of(const Surface& surface, const EdgeMarks& marks) {
 /// What half of the seams and its image make, as one that reaches the target, or comes as near to
 /// it as they do; they themselves where that costs more than `most` times as much, by `cost`, or
 /// breaks another bound that they keep. Whether it did not.
-bool make_symmetric(const SeamSurface& coarse, const Mirror& mirror, const SeamTarget& target,
-                    const SearchEffort& effort, const std::vector<double>& cost, double most,
-                    const Work& work, Attempt& found) {
+bool make_symmetric(const SeamSurface& coarse, KnownMaps& known, const Mirror& mirror,
+                    const SeamTarget& target, const SearchEffort& effort,
+                    const std::vector<double>& cost, double most, const Work& work,
+                    Attempt& found) {
   const EdgeMarks& seams = found.seams.seams;
   if (!any_of(seams)) return true;
   const std::vector<double> path_cost = path_costs(coarse);
@@ -151,7 +154,7 @@ bool make_symmetric(const SeamSurface& coarse, const Mirror& mirror, const SeamT
         mirrored_seams(coarse.surface, mirror, found.seams, side, path_cost, coarse.locked, part);
     half.seams = straighten(coarse.surface, half.seams, coarse.cost, half.anchors, coarse.locked,
                             coarse.straightness, part);
-    return SeamRefinement(coarse, std::move(half), Start(), target, effort, part, &mirror)
+    return SeamRefinement(coarse, known, std::move(half), Start(), target, effort, part, &mirror)
         .run(true);
   }));
   if (best.seams.seams.empty()) return false;
@@ -175,20 +178,23 @@ bool make_symmetric(const SeamSurface& coarse, const Mirror& mirror, const SeamT
 }
 
 /// On the coarse surface from nothing; `mirror`: whose plane seams are drawn to, or null.
-Attempt search_anew(const SeamSurface& coarse, const SeamTarget& target, const SearchEffort& effort,
-                    const SeamWeights& weights, const Mirror* mirror, const Work& work) {
+Attempt search_anew(const SeamSurface& coarse, KnownMaps& known, const SeamTarget& target,
+                    const SearchEffort& effort, const SeamWeights& weights, const Mirror* mirror,
+                    const Work& work) {
   AnchoredSeams open = opened(coarse, work.part(0, 0));
   if (!any_of(open.seams)) {
-    Attempt whole = SeamRefinement(coarse, open, Start(), target, effort, work.aside()).judged();
+    Attempt whole =
+        SeamRefinement(coarse, known, open, Start(), target, effort, work.aside()).judged();
     if (whole.excess <= 1) return whole;
   }
   const double searched = effort.improves ? kSearched : 1;
-  Attempt found = search_coarse(coarse, target, effort, weights, mirror, work.part(0, searched));
+  Attempt found =
+      search_coarse(coarse, known, target, effort, weights, mirror, work.part(0, searched));
   if (found.seams.seams.empty()) found.seams = std::move(open);
   if (effort.improves) {
     const Index rounds =
         std::clamp(effort.varied_faces / coarse.surface.face_count(), kLeastRounds, kMostRounds);
-    SeamRefinement(coarse, found.seams, Start(), target, effort, work.part(searched, 1))
+    SeamRefinement(coarse, known, found.seams, Start(), target, effort, work.part(searched, 1))
         .improve(effort.varied_faces > 0 ? rounds : 0, found);
   }
   return found;
@@ -222,10 +228,12 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
                            const SeamHints& hints, const BegunSearch& begun, const Work& work) {
   SearchedSeams searched;
   BegunSearch& search = searched.search;
-  search = {begun.coarse, {}, begun.mirror};
+  search = {
+      begun.coarse, {}, begun.mirror, begun.maps ? begun.maps : std::make_shared<KnownMaps>()};
+  KnownMaps& known = *search.maps;
   Attempt found;
   if (begun.coarse && !begun.seams.seams.empty()) {
-    SeamRefinement again(*begun.coarse, begun.seams, Start(), target, effort,
+    SeamRefinement again(*begun.coarse, known, begun.seams, Start(), target, effort,
                          work.part(kCoarser, kFound), begun.mirror.get());
     found = effort.improves ? again.run_calibrated(0) : again.run(true);
     if (found.seams.seams.empty()) found.seams = begun.seams;
@@ -239,15 +247,17 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       if (weights.symmetry > 0) search.mirror = drawn_to_mirror(coarse, work);
       search.coarse = std::make_shared<const SeamSurface>(std::move(coarse));
     }
-    found = search_anew(*search.coarse, target, effort, weights, search.mirror.get(),
+    found = search_anew(*search.coarse, known, target, effort, weights, search.mirror.get(),
                         work.part(kCoarser, kFound));
-    if (search.mirror && !make_symmetric(*search.coarse, *search.mirror, target, effort, cost,
-                                         1 + weights.symmetry, work.part(kFound, 0.96), found)) {
+    if (search.mirror &&
+        !make_symmetric(*search.coarse, known, *search.mirror, target, effort, cost,
+                        1 + weights.symmetry, work.part(kFound, 0.96), found)) {
       search.mirror.reset();
       SeamSurface coarse = *search.coarse;
       coarse.cost = std::move(cost);
       search.coarse = std::make_shared<const SeamSurface>(std::move(coarse));
-      found = search_anew(*search.coarse, target, effort, weights, nullptr, work.part(0.96, 0.97));
+      found = search_anew(*search.coarse, known, target, effort, weights, nullptr,
+                          work.part(0.96, 0.97));
     }
   }
   searched.energy = found.energy;
@@ -267,10 +277,11 @@ SearchedSeams search_seams(const Surface& surface, Index real_faces, const Topol
       !search.mirror && cut_into_charts(surface, carried.seams, work).non_disks.empty()) {
     auto whole = std::make_shared<const SeamSurface>(make_seam_surface(
         surface, real_faces, topology, locked, surface.face_count(), weights, hints, work));
-    found =
-        SeamRefinement(*whole, carried, Start(), target, effort, work.aside()).run_calibrated(0);
+    auto maps = std::make_shared<KnownMaps>();
+    found = SeamRefinement(*whole, *maps, carried, Start(), target, effort, work.aside())
+                .run_calibrated(0);
     if (found.excess <= 1) {
-      search = {std::move(whole), found.seams, {}};
+      search = {std::move(whole), found.seams, {}, std::move(maps)};
       searched.energy = found.energy;
       searched.seams = std::move(found.seams.seams);
       searched.maps = std::move(found.maps);

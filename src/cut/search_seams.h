@@ -8,6 +8,7 @@
 #include "base/vectors.h"
 #include "base/work.h"
 #include "cut/edge_marks.h"
+#include "cut/known_maps.h"
 #include "cut/mirror.h"
 #include "cut/seam_costs.h"
 #include "cut/seam_surface.h"
@@ -22,6 +23,7 @@ struct BegunSearch {
   std::shared_ptr<const SeamSurface> coarse;  ///< on which seams were decided; null: none were
   AnchoredSeams seams;  ///< what was found there; empty where no coarser one was searched
   std::shared_ptr<const Mirror> mirror;  ///< that the seams are symmetric to; null: none
+  std::shared_ptr<KnownMaps> maps;       ///< of charts of the coarse surface; null: none yet
 };
 
 struct SearchedSeams {

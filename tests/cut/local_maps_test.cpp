@@ -77,7 +77,9 @@ void expect_sound(const Surface& surface, const LocalMaps& maps) {
 
 LocalMaps mapped(const Surface& surface, const EdgeMarks& seams, const LocalMaps* before = nullptr,
                  int threads = 1) {
-  return map_locally(surface, surface.face_count(), seams, kTolerance, before, Work(threads));
+  KnownMaps known;
+  return map_locally(surface, surface.face_count(), seams, kTolerance, before, known,
+                     Work(threads));
 }
 
 TEST(LocalMaps, AreNotFoldedAndJudgedFaceByFace) {
@@ -106,14 +108,17 @@ TEST(LocalMaps, ContactKeepsThemOffThemselvesAtACost) {
     return is_simple(of.cut.charts[0].mesh.boundary, of.uvs[0]);
   };
   ASSERT_FALSE(is_injective(maps));
-  const LocalMaps apart = with_contact(maps, surface.face_count(), kTolerance, nullptr, Work(1));
+  KnownMaps known;
+  const LocalMaps apart =
+      with_contact(maps, surface.face_count(), kTolerance, nullptr, known, Work(1));
   EXPECT_TRUE(is_injective(apart));
   EXPECT_GT(apart.energy, maps.energy);
   expect_sound(surface, apart);
   // What lies on itself nowhere stays to the bit.
   const Surface grid = built(meshes::grid(5, 4));
   const LocalMaps flat = mapped(grid, EdgeMarks(grid.twin.size(), false));
-  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, nullptr, Work(1)).uvs, flat.uvs);
+  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, nullptr, known, Work(1)).uvs,
+            flat.uvs);
 }
 
 TEST(LocalMaps, ChartsThatStayKeepTheirMaps) {
@@ -140,6 +145,29 @@ TEST(LocalMaps, ChartsThatStayKeepTheirMaps) {
   EXPECT_EQ(after.uvs[0], before.uvs[0]);
   EXPECT_NE(after.uvs[1].size(), before.uvs[1].size());
   EXPECT_LE(after.energy, before.energy);
+}
+
+TEST(LocalMaps, AreKnownOnceTheyAreMade) {
+  for (const TriangleList& mesh : surfaces()) {
+    const Surface surface = built(mesh);
+    const EdgeMarks seams = opened(surface);
+    KnownMaps known;
+    const auto map = [&] {
+      return map_locally(surface, surface.face_count(), seams, kTolerance, nullptr, known, Work(1));
+    };
+    const LocalMaps first = map();
+    const MapSetting setting{Injectivity::kLocal, kTolerance};
+    const MapSetting other{Injectivity::kGlobal, kTolerance};
+    for (std::size_t c = 0; c < first.uvs.size(); ++c) {
+      EXPECT_EQ(known.find(first.cut.charts[c], setting), first.uvs[c]);
+      EXPECT_FALSE(known.find(first.cut.charts[c], other));
+      Chart turned = first.cut.charts[c];
+      std::swap(turned.mesh.faces[0][0], turned.mesh.faces[0][1]);
+      EXPECT_FALSE(known.find(turned, setting));
+    }
+    EXPECT_EQ(map().uvs, first.uvs);
+    EXPECT_EQ(mapped(surface, seams).uvs, first.uvs);
+  }
 }
 
 TEST(LocalMaps, MoreSeamsDistortLess) {
@@ -171,7 +199,9 @@ TEST(LocalMaps, VirtualFacesWeighNothing) {
   const EdgeMarks none(surface.twin.size(), false);
   const Index real_faces = 70;
   const LocalMaps all = mapped(surface, none);
-  const LocalMaps some = map_locally(surface, real_faces, none, kTolerance, nullptr, Work(1));
+  KnownMaps known;
+  const LocalMaps some =
+      map_locally(surface, real_faces, none, kTolerance, nullptr, known, Work(1));
   EXPECT_EQ(some.uvs, all.uvs);
   double sum = 0, whole = 0;
   for (Index f = 0; f < surface.face_count(); ++f) {
