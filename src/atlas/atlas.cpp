@@ -12,6 +12,7 @@
 #include "admit/arrange_admitted.h"
 #include "atlas/assemble.h"
 #include "atlas/chart_parts.h"
+#include "atlas/fit_page.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/open_and_map.h"
@@ -91,21 +92,27 @@ Index most_charts(const AtlasOptions& options, const Admitted& admitted) {
   return std::max(options.target->max_charts, admitted.counts.components);
 }
 
-/// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
-/// their pages.
-double pack_onto_pages(const AtlasInput& input, const Admitted& admitted, int exponent,
-                       const AtlasOptions& options, const SplitCharts& charts, const Work& work,
-                       Atlas& atlas) {
+/// For the maps of a surface that was scaled by 2^exponent.
+PackOptions pack_options(const AtlasOptions& options, int exponent) {
   PackOptions pack = *options.pack;
   pack.effort *= options.effort.packing;
   // The frame of a map is nobody's choice: upright its borders are more likely to lie along texels.
   pack.upright = true;
-  if (pack.snap) align_to_borders(charts.charts, charts.maps);
   if (pack.texels_per_unit > 0) {
     // 0 would leave the scale open.
     const double scaled = std::ldexp(pack.texels_per_unit, -exponent);
     pack.texels_per_unit = std::clamp(scaled, kLeastDensity, 1 / kLeastDensity);
   }
+  return pack;
+}
+
+/// Packs the maps of a surface that was scaled by 2^exponent. Returns the scale that they have on
+/// their pages.
+double pack_onto_pages(const AtlasInput& input, const Admitted& admitted, int exponent,
+                       const AtlasOptions& options, const SplitCharts& charts, const Work& work,
+                       Atlas& atlas) {
+  const PackOptions pack = pack_options(options, exponent);
+  if (pack.snap) align_to_borders(charts.charts, charts.maps);
   const bool is_painted = !input.hints.vertex_paint.empty() || !input.hints.edge_paint.empty();
   SplitRules rules{.price = is_painted ? 0 : options.fill_weight,
                    .most_charts = most_charts(options, admitted),
@@ -119,12 +126,30 @@ double pack_onto_pages(const AtlasInput& input, const Admitted& admitted, int ex
   return scale > 0 ? scale : 1;
 }
 
+/// Whether charts may be split for their places: not where their number is bound, or pins hold
+/// them, nor those of a baseline, which is shown as it is.
+bool may_split(const AtlasInput& input, const Admitted& admitted, const AtlasOptions& options) {
+  return promises(options.chart) && input.pins.empty() && most_charts(options, admitted) == 0;
+}
+
+/// Splits the charts whose maps, scaled as they will be, are larger than a page at the density that
+/// is asked for. Whether there is one.
+bool split_for_pages(const AtlasInput& input, const Admitted& admitted, int exponent,
+                     const AtlasOptions& options, const std::vector<MappedChart>& scaled,
+                     const Work& work, MappedSurface& mapped) {
+  if (!options.pack || options.pack->texels_per_unit == 0) return false;
+  if (!may_split(input, admitted, options)) return false;
+  const std::vector<Index> which =
+      larger_than_page(mapped.charts, scaled, pack_options(options, exponent));
+  return !which.empty() && split_charts(admitted, options.admit.polygons, which, options.chart,
+                                        work.untimed(), mapped.charts, mapped.maps);
+}
+
 /// Splits the charts that are sound, but not in the numbers of the places that they were given.
 /// Whether there is one.
 bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOptions& options,
             const std::vector<MappedChart>& placed, const Work& work, MappedSurface& mapped) {
-  if (!promises(options.chart)) return false;  // a baseline is shown as it is
-  if (!input.pins.empty() || most_charts(options, admitted) > 0) return false;
+  if (!may_split(input, admitted, options)) return false;
   if (placed.size() != mapped.maps.size()) return false;  // they were split for their pages
   std::vector<Index> which;
   for (Index c = 0; c < size_of(placed); ++c) {
@@ -165,8 +190,10 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     std::vector<MappedChart> placed;
     std::vector<double> scales;
     for (int round = 0;; ++round) {
-      placed = mapped.maps;
-      scales = scale_by_density(input.densities, admitted, mapped.charts, placed);
+      do {
+        placed = mapped.maps;
+        scales = scale_by_density(input.densities, admitted, mapped.charts, placed);
+      } while (split_for_pages(input, admitted, exponent, options, placed, inner.aside(), mapped));
       if (options.pack && input.pins.empty()) {
         page_scale = pack_onto_pages(input, admitted, exponent, options,
                                      {mapped.charts, placed, scales}, inner, atlas);

@@ -42,7 +42,7 @@ constexpr double kSearchInFaces = 300'000;
 constexpr double kFlat = 2.005;
 /// How many times as long as the seams along which a piece unfolds its creases may be, for it to be
 /// tried: those of a cube are 1.7 times as long. Where searched seams miss their target, flat ones
-/// that are longer than that have to leave no more charts, or to save one from being split: a
+/// that are longer than that have to leave no more charts than those, split where they need it: a
 /// terrain of voxels would fall into thousands.
 constexpr double kUnfolded = 3;
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
@@ -243,15 +243,6 @@ std::vector<std::array<Vec2, 3>> corners_of(const SurfacePiece& piece, const Map
   return corners;
 }
 
-/// Whether a chart is to be split.
-bool has_hopeless(const Mapped& mapped, const SeamTarget& target, const Work& work) {
-  const double most = beyond_reason(target);
-  for (std::size_t c = 0; c < mapped.maps.size(); ++c) {
-    if (is_hopeless(mapped.opened.charts[c], mapped.maps[c], most, work)) return true;
-  }
-  return false;
-}
-
 bool is_flat(const Mapped& mapped) {
   return mapped.broken == 0 && mapped.energy.symmetric_dirichlet < kFlat;
 }
@@ -303,26 +294,6 @@ std::optional<Mapped> map_unfolded(const Task& task, const SurfacePiece& piece, 
   return is_flat(joined) ? std::move(joined) : std::move(apart);
 }
 
-/// What is mapped along seams that were searched for, or else along creases, where that leaves
-/// faces flat and the seams are not much longer.
-Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
-                      const Work& work, std::vector<StageStatistics>& stages) {
-  Mapped searched = map_searched(task, piece, target, work.part(0, kSearchedAll), stages);
-  const bool missed = misses(searched, target);
-  if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
-  if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
-  const std::vector<Index>& vertex = task.admitted.input_vertex;
-  const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
-  const double most = times * seam_length(searched.opened.charts, vertex);
-  std::optional<Mapped> flat =
-      map_unfolded(task, piece, missed ? kAnyLength : most, work.part(kSearchedAll, 1), stages);
-  if (!flat || misses(*flat, target)) return searched;
-  const bool is_simpler = missed && (flat->maps.size() <= searched.maps.size() ||
-                                     has_hopeless(searched, target, work.aside()));
-  const bool is_short = seam_length(flat->opened.charts, vertex) <= most;
-  return is_simpler || is_short ? *std::move(flat) : std::move(searched);
-}
-
 /// Splits what cannot be mapped within reason, round after round, until all can.
 void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& stages,
             Mapped& mapped) {
@@ -338,6 +309,28 @@ void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& st
     }
     if (is_any) measure(inner, mapped);
   });
+}
+
+/// What is mapped along seams that were searched for, or else along creases, where that leaves
+/// faces flat and the seams are not much longer.
+Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                      const Work& work, std::vector<StageStatistics>& stages) {
+  Mapped searched = map_searched(task, piece, target, work.part(0, kSearchedAll), stages);
+  if (misses(searched, target)) {
+    rescue(task, work.part(kSearchedAll, kSearchedAll), stages, searched);
+  }
+  const bool missed = misses(searched, target);
+  if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
+  if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
+  const std::vector<Index>& vertex = task.admitted.input_vertex;
+  const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
+  const double most = times * seam_length(searched.opened.charts, vertex);
+  std::optional<Mapped> flat =
+      map_unfolded(task, piece, missed ? kAnyLength : most, work.part(kSearchedAll, 1), stages);
+  if (!flat || misses(*flat, target)) return searched;
+  const bool is_simpler = missed && flat->maps.size() <= searched.maps.size();
+  const bool is_short = seam_length(flat->opened.charts, vertex) <= most;
+  return is_simpler || is_short ? *std::move(flat) : std::move(searched);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr double kPinned = 1e7;
 /// What virtual faces weigh of their area: with nothing the sheet there would be infinitely soft.
 constexpr double kVirtualArea = 1e-3;
 /// The least area of a vertex, of their mean.
-constexpr double kLeastArea = 1e-6;
+constexpr double kLeastArea = 1e-4;
 
 /// Energies are compared over such a distance, in roots of the area, but over this many edges at
 /// most.

@@ -18,6 +18,7 @@
 #include "base/error.h"
 #include "chart/flattening.h"
 #include "support/atlases.h"
+#include "support/disks.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 
@@ -162,6 +163,31 @@ TEST(Pages, AreAsManyAsADensityTakes) {
     // So that single precision holds it with the page's corner and without.
     EXPECT_EQ(Vec2(on_page.cast<float>().cast<double>()), on_page);
   }
+}
+
+TEST(Pages, TakeChartsInPartsThatAreLargerThanThem) {
+  const TriangleList mesh = disks::blob(3);
+  PackOptions pack = small_page();
+  const auto on_pages = [&](int most_charts) {
+    AtlasOptions options = packed(pack);
+    options.target.emplace();
+    options.target->max_charts = most_charts;
+    return unwrapped(mesh, options);
+  };
+  const Atlas one = on_pages(0);
+  ASSERT_EQ(one.pages->count, 1);
+  pack.texels_per_unit = 2 * one.pages->texels_per_unit;
+  pack.max_pages = 100;
+  const Atlas atlas = on_pages(0);
+  expect_sound(mesh, atlas);
+  EXPECT_GT(atlas.pages->count, 3);  // four times the area
+  EXPECT_GT(atlas.charts.size(), one.charts.size());
+  EXPECT_NEAR(atlas.pages->texels_per_unit, pack.texels_per_unit, 1e-9 * pack.texels_per_unit);
+  EXPECT_GE(atlas.pages->margin, 2);
+  // Where their number is bound, and where no page holds a face, there is no way.
+  EXPECT_THROW(on_pages(1), Error);
+  pack.texels_per_unit *= 1000;
+  EXPECT_THROW(on_pages(0), Error);
 }
 
 TEST(Pages, HoldSinglePrecision) {

@@ -1,0 +1,70 @@
+#include "atlas/fit_page.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "atlas/pack_maps.h"
+#include "base/vectors.h"
+#include "pack/outline.h"
+
+namespace beltrami {
+namespace {
+
+/// Texels that a chart takes on each axis beyond its own: it is drawn into whole ones, and may be
+/// moved onto one.
+constexpr double kWholeTexels = 3;
+
+using Box = Eigen::AlignedBox2d;
+
+/// Of the part on its page: the least of all boxes where any turn is tried.
+Vec2 sizes_of(const PackChart& part, bool is_turned) {
+  Vec2 turn(1, 0);
+  if (is_turned) turn = turn_to_least_box(outline_of(part).hull);
+  Box box;
+  for (const Vec2& p : part.points) {
+    box.extend(Vec2(turn.x() * p.x() - turn.y() * p.y(), turn.y() * p.x() + turn.x() * p.y()));
+  }
+  return box.sizes();
+}
+
+/// Length of the longest edge, and the area.
+struct Extent {
+  double edge = 0, area = 0;
+};
+
+Extent extent_of(const PackChart& part) {
+  Extent extent;
+  for (const auto& [i, j, k] : part.faces) {
+    const Vec2 a = part.points[j] - part.points[i], b = part.points[k] - part.points[i];
+    extent.edge = std::max({extent.edge, a.norm(), b.norm(), (b - a).norm()});
+    extent.area += std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return extent;
+}
+
+}  // namespace
+
+std::vector<Index> larger_than_page(const std::vector<AtlasChart>& charts,
+                                    const std::vector<MappedChart>& maps,
+                                    const PackOptions& options) {
+  const double side = options.resolution;
+  const double room = (side - options.margin - kWholeTexels) / options.texels_per_unit;
+  const double page = side / options.texels_per_unit;
+  std::vector<Index> larger;
+  double area = 0;
+  for (Index c = 0; c < size_of(charts); ++c) {
+    if (maps[c].error) continue;
+    const PackChart part = real_part(charts[c], maps[c].uvs);
+    const Extent extent = extent_of(part);
+    area += extent.area;
+    if (extent.edge > std::numbers::sqrt2 * page) return {};
+    const bool is_turned = options.turns > 4 && !maps[c].aligned;
+    if (sizes_of(part, is_turned || options.upright).maxCoeff() > room) larger.push_back(c);
+  }
+  if (area > options.max_pages * page * page) return {};
+  return larger;
+}
+
+}  // namespace beltrami
