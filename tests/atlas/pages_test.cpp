@@ -18,7 +18,7 @@
 #include "base/error.h"
 #include "chart/flattening.h"
 #include "support/atlases.h"
-#include "support/disks.h"
+#include "support/cuts.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
 

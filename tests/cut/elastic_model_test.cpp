@@ -14,6 +14,7 @@
 #include "base/portable_math.h"
 #include "base/vectors.h"
 #include "cut/edge_marks.h"
+#include "cut/known_maps.h"
 #include "cut/local_maps.h"
 #include "cut/open_minimal.h"
 #include "cut/seam_costs.h"
