@@ -91,17 +91,20 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   Descent first = descend(mesh, rest, std::move(uvs), newton, simple, options, work);
   if (!is_hopeless(first, options) || work.out_of_time()) return first;
   std::vector<Vec2> other = start_from_coarser(mesh, rest, options, work);
+  std::optional<Descent> again;
   if (!other.empty()) {
-    Descent again = descend(mesh, rest, std::move(other), newton, simple, options, work);
-    if (!is_hopeless(again, options)) return again;
-    if (again.energy < first.energy) first = std::move(again);
+    again = descend(mesh, rest, std::move(other), newton, simple, options, work);
+    if (!is_hopeless(*again, options)) return *std::move(again);
   }
-  if (first.converged || work.out_of_time()) return first;
-  newton.hopeless = std::numeric_limits<double>::infinity();
-  newton.max_iterations -= first.iterations;
-  Descent crawled = descend(mesh, rest, first.uvs, newton, simple, options, work);
-  crawled.iterations += first.iterations;
-  return crawled.energy < first.energy ? crawled : first;
+  // What comes from a coarser mesh presses on itself more often, where steps are shorter still.
+  if (!first.converged && !work.out_of_time()) {
+    newton.hopeless = std::numeric_limits<double>::infinity();
+    newton.max_iterations -= first.iterations;
+    const int before = first.iterations;
+    first = descend(mesh, rest, std::move(first.uvs), newton, simple, options, work);
+    first.iterations += before;
+  }
+  return again && again->energy < first.energy ? *std::move(again) : first;
 }
 
 ChartMap cm_mode(const DiskMesh& mesh, const char* name, const std::vector<Vec2>& start,

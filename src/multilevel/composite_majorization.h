@@ -11,8 +11,8 @@
 namespace beltrami {
 
 /// A start, then composite majorization to `tolerance`. Where it crawls at an enormous energy, from
-/// a coarser mesh instead, and on from the better of both maps where that crawls as well. A start
-/// with flips is returned as it is, its energy 0.
+/// a coarser mesh instead, and to the end where that crawls as well; the better map is kept. A
+/// start with flips is returned as it is, its energy 0.
 Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const ChartOptions& options,
                               const Work& work);
 
