@@ -60,8 +60,8 @@ std::vector<Index> larger_than_page(const std::vector<AtlasChart>& charts,
     const Extent extent = extent_of(part);
     area += extent.area;
     if (extent.edge > std::numbers::sqrt2 * page) return {};
-    const bool is_turned = options.turns > 4 && !maps[c].aligned;
-    if (sizes_of(part, is_turned || options.upright).maxCoeff() > room) larger.push_back(c);
+    const bool is_turned = (options.turns > 4 || options.upright) && !maps[c].aligned;
+    if (sizes_of(part, is_turned).maxCoeff() > room) larger.push_back(c);
   }
   if (area > options.max_pages * page * page) return {};
   return larger;

@@ -28,7 +28,10 @@ constexpr double kPinned = 1e7;
 /// What virtual faces weigh of their area: with nothing the sheet there would be infinitely soft.
 constexpr double kVirtualArea = 1e-3;
 /// The least area of a vertex, of their mean.
-constexpr double kLeastArea = 1e-4;
+constexpr double kLeastArea = 1e-6;
+/// The cotangents of the angles of slivers, at most: they are squared, and with 1e7 the factor
+/// keeps nothing of the rest.
+constexpr double kMostCotangent = 1e3;
 
 /// Energies are compared over such a distance, in roots of the area, but over this many edges at
 /// most.
@@ -81,7 +84,9 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   std::vector<Eigen::Triplet<double>> entries;
   for (Index f = 0; f < size_of(delaunay.faces); ++f) {
     const Triangle& face = delaunay.faces[f];
-    add_stiffness(edge_weights(delaunay.cotangents[f], 0.5), [&](int i, int j, const auto& entry) {
+    Cotangents bounded = delaunay.cotangents[f];
+    for (double& c : bounded) c = std::clamp(c, -kMostCotangent, kMostCotangent);
+    add_stiffness(edge_weights(bounded, 0.5), [&](int i, int j, const auto& entry) {
       entries.emplace_back(face[i], face[j], entry(0, 0));
       if (i != j) entries.emplace_back(face[j], face[i], entry(0, 0));
     });

@@ -103,6 +103,38 @@ TEST(ElasticModel, NothingIsStressedAtPins) {
   }
 }
 
+/// With a vertex in every fourth face, next to a corner or to an edge of it.
+TriangleList with_slivers(TriangleList mesh, double near) {
+  const Index count = size_of(mesh.faces);
+  for (Index f = 0; f < count; f += 4) {
+    const auto [a, b, c] = mesh.faces[f];
+    const std::vector<Vec3>& p = mesh.positions;
+    const double of_b = f % 8 == 0 ? near : 0.5;
+    const Vec3 place = (1 - near - of_b) * p[a] + of_b * p[b] + near * p[c];
+    const Index v = size_of(mesh.positions);
+    mesh.positions.push_back(place);
+    mesh.faces[f] = {a, b, v};
+    mesh.faces.push_back({b, c, v});
+    mesh.faces.push_back({c, a, v});
+  }
+  return mesh;
+}
+
+TEST(ElasticModel, SliversDoNotStiffenIt) {
+  const TriangleList mesh = disks::blob(4);
+  const auto energy = [](const TriangleList& of) {
+    const Surface surface = built(of);
+    ElasticModel model(surface, surface.face_count(), Work(1));
+    model.pin(only(surface, {0, surface.faces[0][1]}));
+    return model.energy();
+  };
+  const double excess = energy(mesh) - 2;
+  ASSERT_GT(excess, 0.1);
+  for (const double near : {1e-3, 1e-5, 1e-7}) {
+    EXPECT_NEAR((energy(with_slivers(mesh, near)) - 2) / excess, 1, 0.1) << near;
+  }
+}
+
 TEST(ElasticModel, WhatIsFlatOrDevelopableIsNotDistorted) {
   const TriangleList cylinder = meshes::moved(meshes::grid(12, 9), [](const Vec3& p) {
     return Vec3(portable::cos(4 * p.x()), portable::sin(4 * p.x()), p.y());
