@@ -12,9 +12,9 @@
 namespace beltrami {
 namespace {
 
-/// Texels that a chart takes on each axis beyond its own: it is drawn into whole ones, and may be
-/// moved onto one.
-constexpr double kWholeTexels = 3;
+/// Texels that a chart takes on each axis beyond its own and the margin: it is drawn into whole
+/// ones.
+constexpr double kWholeTexels = 1;
 
 using Box = Eigen::AlignedBox2d;
 
