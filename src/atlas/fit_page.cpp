@@ -18,7 +18,7 @@ constexpr double kWholeTexels = 1;
 
 using Box = Eigen::AlignedBox2d;
 
-/// Of the part on its page: the least of all boxes where any turn is tried.
+/// Of the box of a part as it stands, or `is_turned` of its least one, in the unit of the map.
 Vec2 sizes_of(const PackChart& part, bool is_turned) {
   Vec2 turn(1, 0);
   if (is_turned) turn = turn_to_least_box(outline_of(part).hull);

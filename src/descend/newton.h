@@ -22,7 +22,8 @@ struct NewtonOptions {
   double tolerance = 1e-4;  ///< relative energy decrease of a step of at least 1/2 that ends it
   int max_iterations = 500;
   int proxy_steps = newton::kProxySteps;  ///< 0: composite majorization alone
-  /// Symmetric Dirichlet energy of the mean face beyond which a run that crawls is given up.
+  /// Mean energy, counted as symmetric Dirichlet (to_dirichlet), above which a run is given up
+  /// after newton::kHopefulSteps.
   double hopeless = std::numeric_limits<double>::infinity();
   /// Keeps the boundary from touching itself: its barrier joins the energy, a share of it that
   /// falls with the energy, and steps end before the first touch. The boundary must be simple at

@@ -119,7 +119,8 @@ TEST(LocalMaps, ContactKeepsThemOffThemselvesAtACost) {
   // What lies on itself nowhere stays to the bit.
   const Surface grid = built(meshes::grid(5, 4));
   const LocalMaps flat = mapped(grid, EdgeMarks(grid.twin.size(), false));
-  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, nullptr, known, Work(1)).uvs,
+  KnownMaps of_grid;
+  EXPECT_EQ(with_contact(flat, grid.face_count(), kTolerance, nullptr, of_grid, Work(1)).uvs,
             flat.uvs);
 }
 
