@@ -19,6 +19,7 @@
 #include "files/polygons.h"
 #include "picture/stb_in_one_place.h"
 #include "picture/webp.h"
+#include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -116,10 +117,7 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
       baked_.push_back({merged.use, {}, {}, {}});
     }
   } else {
-    for (TextureUse& use : libraries_ ? libraries_->textures() : gltf_textures(file)) {
-      require_image(use);
-      baked_.push_back({std::move(use), {}, {}, {}});
-    }
+    list_textures(libraries_ ? libraries_->textures() : gltf_textures(file));
   }
   name_files(output);
   if (!libraries_ || baked_.empty()) return;
@@ -131,8 +129,22 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
   }
 }
 
+void TextureBake::list_textures(std::vector<TextureUse> uses) {
+  for (TextureUse& use : uses) {
+    const std::string path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
+    if (!path.empty() && !fs::exists(path)) {
+      missing_.push_back(std::move(use));
+    } else {
+      require_image(use);
+      baked_.push_back({std::move(use), {}, {}, {}});
+    }
+  }
+  // A bake of nothing is not what was asked for.
+  if (baked_.empty() && !missing_.empty()) require_image(missing_.front());
+}
+
 std::string TextureBake::image_of(const TextureUse& use) const {
-  return libraries_ ? libraries_->image(use) : gltf_image(file_, use);
+  return libraries_ ? read_file(libraries_->image_path(use)) : gltf_image(file_, use);
 }
 
 void TextureBake::require_image(const TextureUse& use) const {
@@ -371,6 +383,11 @@ void TextureBake::run(beltrami_context* context, int side, const BakeProgress& p
     bake_one(i, context, side, part, report);
   }
   report.textures = {baked_.size(), texels_, without_source_};
+  for (const TextureUse& use : missing_) {
+    report.notes.push_back(use.image + " (" + use.name +
+                           ") is missing: its name stays, and nothing is baked for it; put the "
+                           "image beside the input and bake again");
+  }
   if (merge_ && !merge_->note.empty()) report.notes.push_back(merge_->note);
   if (baked_.empty()) {
     report.notes.emplace_back("no material has a texture, so that --bake has nothing to do");

@@ -25,7 +25,8 @@ namespace beltrami::cli {
 class TextureBake {
  public:
   /// Lists the textures of `file`, looks into each image, and finds names beside `output` for the
-  /// new ones. Throws Failure for images that cannot be read, and for formats without materials.
+  /// new ones. Those without an image file are left out, and noted by run(). Throws Failure for
+  /// images that cannot be read, where all are missing, and for formats without materials.
   /// `file` must outlive the object, with its vertices as they are. `output` is of its format.
   /// `merges` materials, of glTF.
   TextureBake(const MeshFile& file, const std::string& output, bool merges);
@@ -49,6 +50,7 @@ class TextureBake {
  private:
   struct Places;  ///< of the triangles of one texture
 
+  void list_textures(std::vector<TextureUse> uses);
   std::string image_of(const TextureUse& use) const;
   Pixels pixels_of(const TextureUse& use) const;
   void require_image(const TextureUse& use) const;
@@ -65,6 +67,7 @@ class TextureBake {
   std::string library_path_;                      ///< of the new one
   std::vector<double> obj_uvs_;                   ///< u v of each corner of the faces, of OBJ
   std::vector<BakedTexture> baked_;
+  std::vector<TextureUse> missing_;     ///< those whose images are not there
   std::optional<MaterialMerge> merge_;  ///< its textures are those of baked_
   std::vector<std::uint32_t> corners_;  ///< three for each triangle, in the winding of the file
   std::vector<double> new_uvs_;         ///< u v for each of these

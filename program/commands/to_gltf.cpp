@@ -24,6 +24,7 @@
 #include "files/texture_use.h"
 #include "files/triangulate.h"
 #include "picture/stb_in_one_place.h"
+#include "process/descriptor.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
 
@@ -210,7 +211,7 @@ class ToGltf {
     for (const TextureUse& use : uses) {
       std::string bytes;
       try {
-        bytes = libraries.image(use);
+        bytes = read_file(libraries.image_path(use));
       } catch (const Failure& failure) {
         if (failure.exit_code == kExitCancelled) throw;
       }

@@ -235,13 +235,13 @@ std::vector<TextureUse> MaterialLibraries::textures() const {
   return uses;
 }
 
-std::string MaterialLibraries::image(const TextureUse& use) const {
+std::string MaterialLibraries::image_path(const TextureUse& use) const {
   const std::string& library = materials_[use.material].library;
-  const NamedFile named = follow_name(library, use.image, file_.reach);
+  NamedFile named = follow_name(library, use.image, file_.reach);
   if (named.path.empty()) {
     throw Failure(library + ": '" + one_line(use.image) + "' " + named.refusal);
   }
-  return read_file(named.path);
+  return std::move(named.path);
 }
 
 std::vector<std::string> MaterialLibraries::sources() const {

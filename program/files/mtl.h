@@ -29,8 +29,8 @@ class MaterialLibraries {
   std::vector<TextureUse> textures_of(std::uint64_t material) const;
   /// Per face, whether it has this material.
   std::vector<bool> faces_of(std::uint64_t material) const;
-  /// The bytes of the image of a texture. Throws Failure where there is none within reach.
-  std::string image(const TextureUse& use) const;
+  /// The file of the image of a texture, there or not. Throws Failure where it is out of reach.
+  std::string image_path(const TextureUse& use) const;
   /// The files that were read, and those of images.
   std::vector<std::string> sources() const;
   /// One library of all of them, that names the files of `baked` where a texture was.

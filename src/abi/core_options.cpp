@@ -196,9 +196,8 @@ AtlasOptions atlas_options(const Options& options) {
     atlas.pack = pack_options(options);
     atlas.pack->snap = options.snap_texels;
   }
-  // Seams that are given, along hard edges or symmetric are to stay so.
-  const bool is_free = options.cut == BELTRAMI_CUT_AUTO && options.weights.symmetry == 0 &&
-                       options.preset != BELTRAMI_PRESET_HARD_SURFACE;
+  // Seams that are given or symmetric are to stay so.
+  const bool is_free = options.cut == BELTRAMI_CUT_AUTO && options.weights.symmetry == 0;
   if (is_free && options.texels_per_unit == 0) atlas.fill_weight = options.fill_weight;
   atlas.chart = chart_options(options);
   atlas.unit_square = std::exchange(atlas.chart.unit_square, false);
@@ -257,10 +256,6 @@ void require_effect_on_atlas(const Options& options, bool pins) {
   }
   if (options.weights.symmetry > 0) {
     refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT, "symmetric seams", "or do without them");
-  }
-  if (options.preset == BELTRAMI_PRESET_HARD_SURFACE) {
-    refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT,
-                  written(*find_option(BELTRAMI_OPTION_PRESET), options), "or take another");
   }
   if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
     if (options.texels_per_unit > 0) {

@@ -60,7 +60,7 @@ std::vector<Index> larger_than_page(const std::vector<AtlasChart>& charts,
     const Extent extent = extent_of(part);
     area += extent.area;
     if (extent.edge > std::numbers::sqrt2 * page) return {};
-    const bool is_turned = (options.turns > 4 || options.upright) && !maps[c].aligned;
+    const bool is_turned = (options.turns > 4 || options.upright) && maps[c].own_turns == 0;
     if (sizes_of(part, is_turned).maxCoeff() > room) larger.push_back(c);
   }
   if (area > options.max_pages * page * page) return {};

@@ -24,7 +24,9 @@ struct MappedChart {
   std::vector<bool> held = {};
   double scale = 1;          ///< of a map with pins, see hold_pins; else 1
   bool fits_single = true;   ///< on a page: injective when it is stored in single precision, too
-  bool aligned = false;      ///< what is straight of it runs along the axes, which it keeps
+  /// What is straight of it runs along the axes: 4, quarter turns alone keep it there; 2, half
+  /// turns, since one coordinate of it was asked for; 0: it may be turned anyhow.
+  int own_turns = 0;
   Index failed_pin = kNone;  ///< in the list of all pins: could not be met with those before it
 
   bool pinned() const { return !held.empty(); }

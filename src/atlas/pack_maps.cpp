@@ -56,7 +56,7 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
   for (std::size_t c = 0; c < charts.size(); ++c) {
     if (maps[c].error) continue;
     parts.push_back(real_part(charts[c], maps[c].uvs));
-    if (maps[c].aligned) parts.back().own_turns = 4;
+    parts.back().own_turns = maps[c].own_turns;
     chart_of_part.push_back(static_cast<Index>(c));
   }
   Pages pages;

@@ -37,7 +37,8 @@ int exponent_of_square(const std::vector<Vec2>& corners, const std::vector<Vec2>
 /// The turn (cosine, sine) that lays the longer side of a map's least box along x.
 Vec2 upright(const AtlasChart& chart, const MappedChart& map) {
   if (map.error) return {1, 0};
-  if (map.aligned) {
+  if (map.own_turns == 2) return {1, 0};
+  if (map.own_turns == 4) {
     const Vec2 sizes = box_of(map.uvs).sizes();
     return sizes.x() < sizes.y() ? Vec2(0, 1) : Vec2(1, 0);
   }

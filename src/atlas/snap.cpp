@@ -145,13 +145,13 @@ std::optional<Vec2> turn_to_borders(const DiskMesh& mesh, const std::vector<Vec2
 void align_to_borders(const std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
   for (std::size_t c = 0; c < charts.size(); ++c) {
     MappedChart& map = maps[c];
-    if (map.aligned || map.error || map.pinned()) continue;
+    if (map.own_turns > 0 || map.error || map.pinned()) continue;
     const std::optional<Vec2> turn = turn_to_borders(charts[c].chart.mesh, map.uvs);
     if (!turn) continue;
     for (Vec2& w : map.uvs) {
       w = {turn->x() * w.x() - turn->y() * w.y(), turn->y() * w.x() + turn->x() * w.y()};
     }
-    map.aligned = true;
+    map.own_turns = 4;
   }
 }
 

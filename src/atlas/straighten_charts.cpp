@@ -101,7 +101,15 @@ class Straightening {
       : input_(input), admitted_(admitted), options_(options), work_(work), mapped_(mapped) {
     for (Index i = 0; i < size_of(input.straight); ++i) {
       const StraightEdge& edge = input.straight[i];
-      asked_[in_order(admitted.welded(edge.from), admitted.welded(edge.to))].push_back(i);
+      std::vector<Index>& same = asked_[in_order(admitted.welded(edge.from),
+                                                 admitted.welded(edge.to))];
+      if (!same.empty() && input.straight[same.front()].kind != edge.kind) {
+        throw Error(Fault::kInvalidArgument,
+                    "straight edges " + std::to_string(same.front()) + " and " + std::to_string(i) +
+                        " are the same edge, and it is to lie along two directions: leave one out",
+                    vertex(edge.from));
+      }
+      same.push_back(i);
     }
     found_.assign(input.straight.size(), false);
     rectangle_of_.assign(mapped.charts.size(), kNone);
@@ -247,7 +255,14 @@ class Straightening {
     std::vector<Vec2> start = mapped_.maps[c].uvs;
     scale_by_power(exponent, start);
     StraightMap map = straighten(mesh, start, paths, options_.chart, work_);
-    if (take(c, exponent, std::move(map))) return;
+    if (take(c, exponent, std::move(map))) {
+      const auto is_along_axis = [](const StraightPath& path) {
+        return path.kind == PinKind::kU || path.kind == PinKind::kV;
+      };
+      // A quarter turn would make one U of one V.
+      if (std::any_of(paths.begin(), paths.end(), is_along_axis)) mapped_.maps[c].own_turns = 2;
+      return;
+    }
     const Index input = input_vertex(mapped_.charts[c], admitted_, paths.front().vertices.front());
     throw Error(Fault::kPins,
                 "the straight edges at vertex " + std::to_string(input) +
@@ -276,7 +291,7 @@ class Straightening {
     if (!certify(mesh.faces, mesh.boundary, uvs, work_).injective()) return false;
     mapped_.maps[c].uvs = std::move(uvs);
     mapped_.maps[c].outcome = Outcome::kOk;
-    mapped_.maps[c].aligned = true;
+    mapped_.maps[c].own_turns = 4;
     return true;
   }
 

@@ -29,8 +29,8 @@ struct PackChart {
   std::vector<Triangle> faces;         ///< may be folded or overlap: what they cover counts
   double scale = 1;                    ///< its density to that of the others, > 0
   std::optional<Placement> kept = {};  ///< where it stays
-  int own_turns = 0;                   ///< 4: quarter turns alone are tried, from what it is; 1: it
-                                       ///< is not turned; 0: as the others
+  int own_turns = 0;                   ///< 4: quarter turns alone are tried, from what it is; 2:
+                                       ///< half turns; 1: it is not turned; 0: as the others
 };
 
 struct PackOptions {

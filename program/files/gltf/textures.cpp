@@ -347,25 +347,32 @@ std::vector<std::string> gltf_sources(const MeshFile& file) {
   return found;
 }
 
-std::string gltf_image(const MeshFile& file, const TextureUse& use) {
+std::string gltf_image_path(const MeshFile& file, const TextureUse& use) {
   const gltf::Document& document = gltf::model_of(file).document;
   if (use.number == gltf::kNone) {
     throw Failure(document.path + ": " + use.name + ": its texture has no image that is known");
   }
   const gltf::Item image = document.entry("images", use.number);
   const std::string uri = image.text("uri");
+  if (uri.empty() || gltf::is_data(uri)) return {};
+  NamedFile named = follow_uri(document.path, uri, file.reach);
+  if (named.path.empty()) image.fail("its uri '" + one_line(uri) + "' " + named.refusal);
+  return std::move(named.path);
+}
+
+std::string gltf_image(const MeshFile& file, const TextureUse& use) {
+  const std::string path = gltf_image_path(file, use);
+  if (!path.empty()) return read_file(path);
+  const gltf::Document& document = gltf::model_of(file).document;
+  const gltf::Item image = document.entry("images", use.number);
+  const std::string uri = image.text("uri");
   if (uri.empty()) {
     const gltf::BufferView view = gltf::buffer_view(document, image.required("bufferView"));
     return document.buffers[view.buffer].substr(view.offset, view.length);
   }
-  if (gltf::is_data(uri)) {
-    std::optional<std::string> data = gltf::decode_data(uri);
-    if (!data) image.fail("its uri is no data in base 64: export the file again");
-    return *std::move(data);
-  }
-  const NamedFile named = follow_uri(document.path, uri, file.reach);
-  if (named.path.empty()) image.fail("its uri '" + one_line(uri) + "' " + named.refusal);
-  return read_file(named.path);
+  std::optional<std::string> data = gltf::decode_data(uri);
+  if (!data) image.fail("its uri is no data in base 64: export the file again");
+  return *std::move(data);
 }
 
 }  // namespace beltrami::cli

@@ -12,7 +12,7 @@ from . import _trimesh
 from ._atlas import Atlas
 from ._cancel import CancelToken
 from ._library import Hook
-from ._pack import Packing, packed
+from ._pack import Packing, UvMesh, packed
 from ._tables import UnwrapOptions
 
 #: Options of `beltrami.pack`: those of every call, and those of pages.
@@ -42,14 +42,26 @@ def options(given: dict[str, object]) -> tuple[dict[str, object], dict[str, obje
 
 
 def onto_common_pages(
+    scene: Any,
     atlases: Mapping[str, Atlas],
     meshes: Mapping[str, Any],
     given: dict[str, object],
     hook: Hook,
     cancel: CancelToken | None = None,
 ) -> dict[str, Atlas]:
-    """Return atlases that share pages. What they say of pages and of overlaps is on all of them."""
-    packing = packed(list(atlases.values()), given, False, hook, cancel)
+    """Return atlases that share pages. What they say of pages and of overlaps is on all of them.
+
+    Areas are those that the scene shows: nodes scale their meshes.
+    """
+    placed = [
+        UvMesh(
+            atlas.uvs,
+            atlas.uv_triangles,
+            _trimesh.at_largest_place(scene, name, atlas.vertices[atlas.origins]),
+        )
+        for name, atlas in atlases.items()
+    ]
+    packing = packed(placed, given, False, hook, cancel)
     return {
         name: _placed(atlas, packing, number, meshes[name])
         for number, (name, atlas) in enumerate(atlases.items())

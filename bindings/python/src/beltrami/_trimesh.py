@@ -138,6 +138,16 @@ def joined(scene: Any) -> Any:
     )
 
 
+def at_largest_place(scene: Any, name: str, vertices: Array) -> Array:
+    """Return vertices of a mesh where a scene has it at the largest size, or as they are."""
+    matrices = [scene.graph[node][0] for node in scene.graph.geometry_nodes.get(name, ())]
+    if not matrices:
+        return vertices
+    matrix = max(matrices, key=lambda m: abs(float(np.linalg.det(m[:3, :3]))))
+    placed: Array = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    return placed
+
+
 def with_meshes(scene: Any, meshes: dict[str, Any]) -> Any:
     """Return a copy of a scene with other meshes in the place of some."""
     copied = scene.copy()

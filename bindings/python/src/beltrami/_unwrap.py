@@ -200,8 +200,9 @@ def unwrap(
         With ``cut="auto"`` numbers or words: seams are drawn to where they differ, and cost
         `material_seams` of their length there.
     share_page : bool, default False
-        Of a scene: True packs all of its meshes onto the same pages, at one scale, instead of a
-        page for each. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`.
+        Of a scene: True packs all of its meshes onto the same pages, instead of a page for each,
+        with equally many texels for equal areas of the scene: of a mesh at several places, where
+        it is largest. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`.
     progress : bool or callable, optional
         As for `parameterize`.
     cancel : CancelToken, optional
@@ -555,7 +556,7 @@ def _unwrap_scene(
             before += share
         if share_page and atlases:
             rest = _part_of(hook, before, 1 - before)
-            atlases = _sharing.onto_common_pages(atlases, meshes, pack_options, rest, cancel)
+            atlases = _sharing.onto_common_pages(scene, atlases, meshes, pack_options, rest, cancel)
     for name, atlas in atlases.items():
         _warn(atlas, f"{name}: ", callers=3)
     textured = {name: atlas.mesh for name, atlas in atlases.items()}
