@@ -105,8 +105,8 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
     libraries_ = std::make_unique<MaterialLibraries>(file, true);
   } else if (format != MeshFormat::kGltf || format_of(output) != MeshFormat::kGltf) {
     throw Failure(
-        "--bake: textures are those of materials of OBJ and glTF, and OUT has the format "
-        "of IN: write .obj for .obj, and .gltf or .glb for glTF");
+        "--bake: textures are those of materials of OBJ and glTF: write .obj, .gltf or .glb for "
+        ".obj, and .gltf or .glb for glTF");
   }
   if (merges) {
     merge_ = gltf_merge(file);
@@ -133,14 +133,16 @@ void TextureBake::list_textures(std::vector<TextureUse> uses) {
   for (TextureUse& use : uses) {
     const std::string path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
     if (!path.empty() && !fs::exists(path)) {
-      missing_.push_back(std::move(use));
+      missing_.push_back(path + " (" + use.name +
+                         ") is missing: its name stays, and nothing is baked for it; put the "
+                         "image there and bake again");
     } else {
       require_image(use);
       baked_.push_back({std::move(use), {}, {}, {}});
     }
   }
   // A bake of nothing is not what was asked for.
-  if (baked_.empty() && !missing_.empty()) require_image(missing_.front());
+  if (baked_.empty() && !uses.empty()) require_image(uses.front());
 }
 
 std::string TextureBake::image_of(const TextureUse& use) const {
@@ -383,11 +385,7 @@ void TextureBake::run(beltrami_context* context, int side, const BakeProgress& p
     bake_one(i, context, side, part, report);
   }
   report.textures = {baked_.size(), texels_, without_source_};
-  for (const TextureUse& use : missing_) {
-    report.notes.push_back(use.image + " (" + use.name +
-                           ") is missing: its name stays, and nothing is baked for it; put the "
-                           "image beside the input and bake again");
-  }
+  report.notes.insert(report.notes.end(), missing_.begin(), missing_.end());
   if (merge_ && !merge_->note.empty()) report.notes.push_back(merge_->note);
   if (baked_.empty()) {
     report.notes.emplace_back("no material has a texture, so that --bake has nothing to do");

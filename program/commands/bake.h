@@ -67,7 +67,7 @@ class TextureBake {
   std::string library_path_;                      ///< of the new one
   std::vector<double> obj_uvs_;                   ///< u v of each corner of the faces, of OBJ
   std::vector<BakedTexture> baked_;
-  std::vector<TextureUse> missing_;     ///< those whose images are not there
+  std::vector<std::string> missing_;    ///< images that are not there, a note for each
   std::optional<MaterialMerge> merge_;  ///< its textures are those of baked_
   std::vector<std::uint32_t> corners_;  ///< three for each triangle, in the winding of the file
   std::vector<double> new_uvs_;         ///< u v for each of these

@@ -179,13 +179,26 @@ class Unwrapping {
       materials_ = face_labels(file_, arguments_.materials, "--materials", "draw seams");
     }
     if (!arguments_.paint.empty()) paint_ = read_paint(arguments_.paint, file_);
-    if (!arguments_.seams.empty()) seams_ = read_seams(arguments_.seams, file_);
+    if (!arguments_.seams.empty()) {
+      seams_ = read_seams(arguments_.seams, file_);
+      note_seams_without_edge();
+    }
     if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
     if (!arguments_.straighten.empty()) straight_ = read_straight(arguments_.straighten, file_);
     report_.vertices = file_.vertex_count();
     report_.faces = file_.polygons.size();
     report_.short_faces = file_.short_faces;
     clock.finish();
+  }
+
+  void note_seams_without_edge() {
+    const SeamsWithoutEdge none = seams_without_edge(seams_, file_);
+    if (none.count == 0) return;
+    report_.notes.push_back(arguments_.seams + ": " + std::to_string(none.count) + " of " +
+                            std::to_string(seams_.size() / 2) +
+                            " seams join vertices that no face has side by side, the first " +
+                            std::to_string(none.from) + " and " + std::to_string(none.to) +
+                            ": nothing is cut there (vertices count from 0)");
   }
 
   void unwrap() {
@@ -243,6 +256,11 @@ class Unwrapping {
           options_.integer(BELTRAMI_OPTION_MAX_CHARTS), options_.real(BELTRAMI_OPTION_SEAM_BUDGET)};
     }
     if (atlas.pages > 0) report_pages(context, report_);
+    const bool stacks = options_.integer(BELTRAMI_OPTION_STACK) != BELTRAMI_STACK_NONE;
+    if (stacks && atlas.stacked_parts == 0) {
+      report_.notes.emplace_back(
+          "no part has the shape of another, as --stack asks: nothing is stacked");
+    }
     report_.triangles = atlas.triangles;
     report_.area = atlas.area;
     report_.unreferenced_vertices = atlas.unused_vertices;

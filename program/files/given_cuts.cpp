@@ -4,9 +4,12 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "files/column.h"
@@ -129,6 +132,31 @@ std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& f
                   std::to_string(ends.size()) + " numbers");
   }
   return ends;
+}
+
+SeamsWithoutEdge seams_without_edge(const std::vector<std::uint32_t>& seams, const MeshFile& file) {
+  using Place = std::array<double, 3>;
+  const auto place = [&](std::uint32_t v) {
+    const double* p = &file.positions[3 * std::size_t{v}];
+    return Place{p[0], p[1], p[2]};
+  };
+  const auto between = [&](std::uint32_t a, std::uint32_t b) -> std::pair<Place, Place> {
+    return std::minmax({place(a), place(b)});
+  };
+  std::set<std::pair<Place, Place>> missing;
+  for (std::size_t i = 0; i < seams.size(); i += 2) missing.insert(between(seams[i], seams[i + 1]));
+  for (std::uint64_t f = 0; f < file.polygons.size(); ++f) {
+    const std::span<const std::uint32_t> corners = file.polygons[f];
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      missing.erase(between(corners[k], corners[(k + 1) % corners.size()]));
+    }
+  }
+  SeamsWithoutEdge found;
+  for (std::size_t i = 0; i < seams.size(); i += 2) {
+    if (!missing.contains(between(seams[i], seams[i + 1]))) continue;
+    if (found.count++ == 0) std::tie(found.from, found.to) = std::tie(seams[i], seams[i + 1]);
+  }
+  return found;
 }
 
 }  // namespace beltrami::cli

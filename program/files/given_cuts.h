@@ -23,4 +23,12 @@ std::string label_text(const MeshFile& file, const std::string& name, std::uint6
 /// Throws Failure for an odd count of numbers and for those that are no vertex of the file.
 std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file);
 
+/// How many of these seams join vertices that no face has side by side, also where vertices at one
+/// place are one: nothing is cut there. With the first of them.
+struct SeamsWithoutEdge {
+  std::uint64_t count = 0;
+  std::uint32_t from = 0, to = 0;
+};
+SeamsWithoutEdge seams_without_edge(const std::vector<std::uint32_t>& seams, const MeshFile& file);
+
 }  // namespace beltrami::cli

@@ -80,7 +80,8 @@ std::vector<std::string> gltf_sources(const MeshFile& file);
 /// The file of the image of one of these textures, there or not; "" for one that the glTF holds.
 /// Throws Failure where it is out of the reach of the file, or no image is known.
 std::string gltf_image_path(const MeshFile& file, const TextureUse& use);
-/// The bytes of the image of one of these textures. Throws Failure where there is none within reach.
+/// The bytes of the image of one of these textures. Throws Failure where there is none within
+/// reach.
 std::string gltf_image(const MeshFile& file, const TextureUse& use);
 
 /// Throws Failure where `uv_set` is beyond 1 and leaves out a set that no primitive has; it names

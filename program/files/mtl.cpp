@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -17,7 +16,6 @@ namespace beltrami::cli {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::uint64_t kNoMaterial = std::numeric_limits<std::uint64_t>::max();
 
 /// Takes the first word off.
 std::string_view take_word(std::string_view& text) {

@@ -22,8 +22,8 @@ struct MappedChart {
   std::optional<Fault> error = {};
   /// Per vertex, whether it is pinned, and lies in its place exactly; empty: the chart has no pins.
   std::vector<bool> held = {};
-  double scale = 1;          ///< of a map with pins, see hold_pins; else 1
-  bool fits_single = true;   ///< on a page: injective when it is stored in single precision, too
+  double scale = 1;         ///< of a map with pins, see hold_pins; else 1
+  bool fits_single = true;  ///< on a page: injective when it is stored in single precision, too
   /// What is straight of it runs along the axes: 4, quarter turns alone keep it there; 2, half
   /// turns, since one coordinate of it was asked for; 0: it may be turned anyhow.
   int own_turns = 0;

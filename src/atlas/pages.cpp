@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "pack/pack.h"
@@ -26,21 +27,47 @@ double greatest_coordinate(const PackOptions& options) {
   return options.max_pages > 1 ? std::max(last.maxCoeff(), double{kPagesInARow}) : 1;
 }
 
+/// The longest edge of a face, and the area: in the unit of the chart.
+std::pair<double, double> extent_of(const PackChart& chart) {
+  double longest = 0, area = 0;
+  for (const auto& [i, j, k] : chart.faces) {
+    const Vec2 a = chart.points[j] - chart.points[i], b = chart.points[k] - chart.points[i];
+    longest = std::max({longest, a.norm(), b.norm(), (b - a).norm()});
+    area += std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return {longest, area};
+}
+
 /// Throws Error NO_ROOM where a chart is longer than the diagonal of a page: told without drawing
 /// what may be of any size.
 void require_shorter_than_page(std::span<const PackChart> charts, const PackOptions& options) {
   const double longest = std::numbers::sqrt2 * options.resolution;
+  const std::string of_all = " at these texels per unit: lower texels-per-unit, or raise ";
+  std::string larger, of_face;
+  double area = 0;
   for (std::size_t c = 0; c < charts.size(); ++c) {
+    const double density = options.texels_per_unit * charts[c].scale;
+    const auto [edge, own_area] = extent_of(charts[c]);
+    area += density * density * own_area;
     if (charts[c].kept) continue;
     Eigen::AlignedBox2d box;
     for (const Vec2& p : charts[c].points) box.extend(p);
-    const double extent =
-        box.isEmpty() ? 0 : options.texels_per_unit * charts[c].scale * box.sizes().maxCoeff();
-    if (extent <= longest) continue;
-    throw Error(Fault::kNoRoom, "chart " + std::to_string(c) +
-                                    " is larger than a page at these texels per unit: lower "
-                                    "texels-per-unit, or raise resolution");
+    if (box.isEmpty() || density * box.sizes().maxCoeff() <= longest) continue;
+    if (larger.empty()) larger = "chart " + std::to_string(c);
+    if (of_face.empty() && density * edge > longest)
+      of_face = "a face of chart " + std::to_string(c);
   }
+  if (larger.empty()) return;
+  // Charts are split for their pages, but not where these would be too few all the same.
+  const double side = options.resolution;
+  if (area > options.max_pages * side * side) {
+    throw Error(Fault::kNoRoom, "the charts have more area than " +
+                                    std::to_string(options.max_pages) +
+                                    (options.max_pages == 1 ? " page" : " pages") + of_all +
+                                    "the number of pages or resolution");
+  }
+  throw Error(Fault::kNoRoom, (of_face.empty() ? larger : of_face) + " is larger than a page" +
+                                  of_all + "resolution");
 }
 
 /// What the packer refuses of options in their ranges is a lack of room.

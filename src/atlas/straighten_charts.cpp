@@ -101,8 +101,8 @@ class Straightening {
       : input_(input), admitted_(admitted), options_(options), work_(work), mapped_(mapped) {
     for (Index i = 0; i < size_of(input.straight); ++i) {
       const StraightEdge& edge = input.straight[i];
-      std::vector<Index>& same = asked_[in_order(admitted.welded(edge.from),
-                                                 admitted.welded(edge.to))];
+      std::vector<Index>& same =
+          asked_[in_order(admitted.welded(edge.from), admitted.welded(edge.to))];
       if (!same.empty() && input.straight[same.front()].kind != edge.kind) {
         throw Error(Fault::kInvalidArgument,
                     "straight edges " + std::to_string(same.front()) + " and " + std::to_string(i) +

@@ -262,7 +262,7 @@ std::vector<Page> Problem::kept_pages(double texels_per_unit) const {
       throw Error(Fault::kInvalidArgument,
                   "chart " + std::to_string(c) + " keeps its place on page " +
                       std::to_string(kept.page) +
-                      ", which is not among those that there may be: raise max_pages");
+                      ", which is not among those that there may be: raise max-pages");
     }
     while (size_of(pages) <= kept.page) pages.emplace_back(cells_, cells_);
     const double density = texels_per_unit * charts_[c].scale / cell_;

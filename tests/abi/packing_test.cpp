@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "abi/host.h"
+#include "base/types.h"
 #include "base/vectors.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
@@ -210,6 +212,56 @@ TEST(AbiPacking, SplitsChartsAtAPrice) {
   set_option(context, BELTRAMI_OPTION_PACK, BELTRAMI_PACK_PAGES);
   ASSERT_EQ(beltrami_set_float(context.get(), BELTRAMI_OPTION_TEXELS_PER_UNIT, 8), BELTRAMI_OK);
   refused(BELTRAMI_OPTION_MAX_PAGES, 9, "texels-per-unit=8");
+}
+
+/// A bar of square section that is bent twice: a U.
+TriangleList bent_bar(Index length) {
+  TriangleList mesh;
+  std::map<std::array<Index, 3>, Index> numbers;
+  const auto vertex = [&](Index x, Index y, Index z) {
+    const auto [found, is_new] = numbers.try_emplace({x, y, z}, size_of(mesh.positions));
+    if (is_new) mesh.positions.emplace_back(x, y, z);
+    return found->second;
+  };
+  const auto quad = [&](std::array<Index, 4> v) {
+    mesh.faces.push_back({v[0], v[1], v[2]});
+    mesh.faces.push_back({v[0], v[2], v[3]});
+  };
+  const auto is_full = [&](Index x, Index y) {
+    const Index last = length - 1;
+    if (x < 0 || y < 0 || x > last || y > last) return false;
+    return x == 0 || y == 0 || x == last;
+  };
+  for (Index x = 0; x < length; ++x) {
+    for (Index y = 0; y < length; ++y) {
+      if (!is_full(x, y)) continue;
+      const auto side = [&](Index ax, Index ay, Index bx, Index by) {
+        quad({vertex(ax, ay, 0), vertex(bx, by, 0), vertex(bx, by, 1), vertex(ax, ay, 1)});
+      };
+      quad({vertex(x, y, 1), vertex(x + 1, y, 1), vertex(x + 1, y + 1, 1), vertex(x, y + 1, 1)});
+      quad({vertex(x, y, 0), vertex(x, y + 1, 0), vertex(x + 1, y + 1, 0), vertex(x + 1, y, 0)});
+      if (!is_full(x, y - 1)) side(x, y, x + 1, y);
+      if (!is_full(x + 1, y)) side(x + 1, y, x + 1, y + 1);
+      if (!is_full(x, y + 1)) side(x + 1, y + 1, x, y + 1);
+      if (!is_full(x - 1, y)) side(x, y + 1, x, y);
+    }
+  }
+  return mesh;
+}
+
+TEST(AbiPacking, HardSurfacesAreSplitForTheirPageToo) {
+  const TriangleList mesh = bent_bar(20);
+  const Context context = create();
+  const beltrami_surface surface = surface_view(mesh);
+  set_option(context, BELTRAMI_OPTION_PRESET, BELTRAMI_PRESET_HARD_SURFACE);
+  ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK)
+      << message(context);
+  auto atlas = sized<beltrami_atlas>();
+  ASSERT_EQ(beltrami_get_atlas(context.get(), &atlas), BELTRAMI_OK);
+  EXPECT_LT(atlas.symmetric_dirichlet, 2 + 1e-9);  // the parts are as flat as the whole
+  const beltrami_packing packing = packing_of(context);
+  EXPECT_GT(packing.splits, 0U);
+  EXPECT_GT(packing.utilisation, 2 * packing.unsplit_utilisation);
 }
 
 TEST(AbiPacking, PacksSeveralMeshes) {

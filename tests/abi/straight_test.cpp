@@ -351,6 +351,22 @@ TEST(StraightEdges, OfSeveralKindsGoTogether) {
   }
 }
 
+TEST(StraightEdges, KeepTheirAxisOnAPage) {
+  const Sheet bent = road(true);
+  for (const std::int32_t kind : {BELTRAMI_PIN_U, BELTRAMI_PIN_V}) {
+    beltrami_surface surface = bent.view();
+    Edges edges;
+    edges.add(row_of(bent, 0), kind);
+    edges.give(surface);
+    const Atlas atlas = unwrap(surface, {{BELTRAMI_OPTION_CUT, BELTRAMI_CUT_MINIMAL}});
+    ASSERT_EQ(atlas.status, BELTRAMI_OK) << atlas.message;
+    EXPECT_TRUE(atlas.injective);
+    const int axis = kind == BELTRAMI_PIN_U ? 0 : 1;
+    EXPECT_EQ(numbers_of(bent, atlas, row_of(bent, 0), axis).size(), 1U);
+    EXPECT_GT(numbers_of(bent, atlas, row_of(bent, 0), 1 - axis).size(), 1U);
+  }
+}
+
 void expect_refused(const Sheet& sheet, const Edges& edges, std::uint64_t vertex,
                     const std::string& why) {
   beltrami_surface surface = sheet.view();
@@ -363,13 +379,16 @@ void expect_refused(const Sheet& sheet, const Edges& edges, std::uint64_t vertex
 
 TEST(StraightEdges, AreRefusedWhereNoLineGoes) {
   const Sheet bent = road(true, 8);
-  Edges branch, loop, none, point;
+  Edges branch, loop, both, none, point;
   branch.add(row_of(bent, 0), BELTRAMI_PIN_V);
   branch.add({bent.vertex(3, 0), bent.vertex(3, 1)}, BELTRAMI_PIN_V);
   expect_refused(bent, branch, bent.vertex(3, 0), "branch at vertex 3");
   loop.add({bent.vertex(1, 1), bent.vertex(2, 1), bent.vertex(2, 2), bent.vertex(1, 1)},
            BELTRAMI_PIN_LINE);
   expect_refused(bent, loop, bent.vertex(1, 1), "form a loop");
+  both.add({0, 1}, BELTRAMI_PIN_U);
+  both.add({1, 0}, BELTRAMI_PIN_V);
+  expect_refused(bent, both, 1, "straight edges 0 and 1 are the same edge");
   none.add({0, 5}, BELTRAMI_PIN_U);
   expect_refused(bent, none, 0, "straight edge 0 joins vertices 0 and 5");
   point.add({0, 1}, BELTRAMI_PIN_POINT);

@@ -290,6 +290,39 @@ TEST(Bake, TheNumbersOfALampKeepNoTexture) {
   }
 }
 
+TEST(Bake, MissingImagesAreLeftOutAndNamed) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.obj",
+      "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "usemtl wood\nf 1/1 2/2 3/3 4/4\n");
+  directory.file("in.mtl", "newmtl wood\nmap_Kd paint.png\nmap_Bump bump.png\n");
+  const std::string out = directory.path("out.obj");
+  const Outcome none = run({"unwrap", in, out, "--bake", "--resolution", "64"});
+  EXPECT_EQ(none.exit_code, kExitUnusable);
+  EXPECT_NE(none.err.find("paint.png"), std::string::npos) << none.err;
+  directory.file("paint.png", png_of(16, smooth));
+  const Outcome one = run({"unwrap", in, out, "--bake", "--resolution", "64"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_NE(one.err.find("bump.png (map_Bump of material 'wood') is missing"), std::string::npos)
+      << one.err;
+  const std::string made = directory.read("out.mtl");
+  EXPECT_NE(made.find("map_Kd -clamp on out_wood_map_kd.png\n"), std::string::npos) << made;
+  EXPECT_NE(made.find("map_Bump bump.png\n"), std::string::npos) << made;
+
+  GltfBuilder builder = bent_strip(kTwoHalves);
+  add_texture(builder, png_of(16, smooth), "baseColorTexture");
+  add_texture(builder, png_of(16, smooth), "emissiveTexture");
+  builder.json["images"][1] = {{"uri", "gone.png"}};
+  const std::string model = directory.file("in.gltf", builder.text());
+  const Outcome gltf =
+      run({"unwrap", model, directory.path("o.gltf"), "--bake", "--resolution", "64"});
+  ASSERT_EQ(gltf.exit_code, 0) << gltf.err;
+  EXPECT_NE(gltf.err.find("gone.png"), std::string::npos) << gltf.err;
+  const Json json = Json::parse(directory.read("o.gltf"));
+  EXPECT_EQ(json["images"][1]["uri"], "gone.png");
+}
+
 TEST(Bake, FormatsThatCannotBeReadAreNamed) {
   GltfBuilder builder = bent_strip(kTwoHalves);
   add_texture(builder, "RIFF\1\1\1\1WEBPVP8 ", "baseColorTexture");

@@ -113,6 +113,12 @@ TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
   EXPECT_EQ(charts(in, {"--labels", "materials", "--cut", "given"}), 2);
   const std::string seams = directory.file("seams", "0 2\n2 3\n3 1\n1 0\n");
   EXPECT_EQ(charts(in, {"--seams", seams, "--cut", "given"}), 2);
+  const Outcome none = run({"unwrap", in, out, "--seams", directory.file("none", "0 2\n0 7\n")});
+  EXPECT_EQ(none.exit_code, 0);
+  EXPECT_NE(none.err.find("1 of 2 seams join vertices that no face has side by side, the first 0 "
+                          "and 7"),
+            std::string::npos)
+      << none.err;
   EXPECT_EQ(charts(in, {"--hard-angle", "45"}), 6);
   const std::string islands = directory.path("islands.obj");
   ASSERT_EQ(run({"unwrap", in, islands, "--hard-angle", "45"}).exit_code, 0);

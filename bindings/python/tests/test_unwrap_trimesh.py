@@ -211,6 +211,15 @@ def test_meshes_of_a_scene_share_a_page():
     assert beltrami.unwrap(box(), share_page=True).injective
 
 
+def test_meshes_share_a_page_at_the_sizes_that_the_scene_shows():
+    given = trimesh.Scene([box()])
+    given.add_geometry(box(), transform=np.diag([5.0, 5, 5, 1]))
+    mesh = beltrami.unwrap(given, share_page=True).mesh
+    a, b, c = np.moveaxis(mesh.visual.uv[mesh.faces], 1, 0)
+    areas = 0.5 * np.abs(np.linalg.det(np.stack([b - a, c - a], axis=1)))
+    assert areas / mesh.area_faces == pytest.approx((areas / mesh.area_faces)[0], rel=0.15)
+
+
 def test_pages_are_shared_by_as_many_as_there_have_to_be():
     result = beltrami.unwrap(
         scene(), share_page=True, resolution=128, texels_per_unit=50, hard_angle=10

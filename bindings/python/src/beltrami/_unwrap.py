@@ -200,9 +200,9 @@ def unwrap(
         With ``cut="auto"`` numbers or words: seams are drawn to where they differ, and cost
         `material_seams` of their length there.
     share_page : bool, default False
-        Of a scene: True packs all of its meshes onto the same pages, instead of a page for each,
-        with equally many texels for equal areas of the scene: of a mesh at several places, where
-        it is largest. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`.
+        Of a scene: True packs all of its meshes onto the same pages, instead of a page for each.
+        Equal areas of the scene get equally many texels: of a mesh at several places, where it is
+        largest. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`.
     progress : bool or callable, optional
         As for `parameterize`.
     cancel : CancelToken, optional
