@@ -19,6 +19,7 @@
 #include "commands/detail.h"
 #include "commands/pages.h"
 #include "commands/report.h"
+#include "commands/spelling.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
@@ -245,6 +246,14 @@ class Transfer {
       throw Failure("--rays are for 'occlusion' alone: leave them out");
     }
     if (detail) return run_detail(*detail);
+    if (!exists(arguments_.texture)) {
+      const std::string meant =
+          nearest_spelling(arguments_.texture, {"normals", "heights", "occlusion"});
+      if (!meant.empty()) {
+        throw Failure(arguments_.texture + ": there is no such file: '" + meant +
+                      "' bakes what OLD itself has");
+      }
+    }
     if (light_format_of(arguments_.output) == LightFormat::kNone) {
       require_png_name(arguments_.output);
     }

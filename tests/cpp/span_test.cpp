@@ -60,11 +60,13 @@ TEST(CppSpan, EveryLayoutOfPositionsIsTheSameSurface) {
 
 TEST(CppSpan, EveryWidthOfIndicesIsTheSameSurface) {
   const std::vector<Uv> expected = uvs_of(Surface(kPlaces, kFaces));
+  const std::vector<std::uint16_t> u16{0, 1, 2, 0, 2, 3};
   const std::vector<std::uint32_t> u32{0, 1, 2, 0, 2, 3};
   const std::vector<std::int32_t> i32{0, 1, 2, 0, 2, 3};
   const std::vector<std::uint64_t> u64{0, 1, 2, 0, 2, 3};
   const std::vector<std::int64_t> i64{0, 1, 2, 0, 2, 3};
   const std::vector<std::size_t> sizes{0, 1, 2, 0, 2, 3};
+  EXPECT_EQ(uvs_of(Surface(kPlaces, u16)), expected);
   EXPECT_EQ(uvs_of(Surface(kPlaces, u32)), expected);
   EXPECT_EQ(uvs_of(Surface(kPlaces, i32)), expected);
   EXPECT_EQ(uvs_of(Surface(kPlaces, u64)), expected);

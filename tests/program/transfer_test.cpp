@@ -311,6 +311,8 @@ TEST(Transfer, ReadsJpegAndSaysWhatItCannotRead) {
   EXPECT_EQ(image->width, 8);
   EXPECT_EQ(image->components, 1);
   EXPECT_EQ(image->values[27], 128);
+  EXPECT_NE(run({"transfer", page, page, "normal", out}).err.find("'normals' bakes what OLD"),
+            std::string::npos);
   const std::string glb = baking.directory.file("t.glb", "glTF");
   EXPECT_NE(run({"transfer", page, page, glb, out}).err.find("save it as"), std::string::npos);
   EXPECT_EQ(run({"transfer", page, page, jpeg, baking.directory.path("o.jpg")}).exit_code,

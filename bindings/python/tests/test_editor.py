@@ -32,6 +32,18 @@ def judged(editor: beltrami.Editor, vertices: np.ndarray, faces: np.ndarray) -> 
     return verdict
 
 
+def test_a_mesh_brings_its_faces() -> None:
+    trimesh = pytest.importorskip("trimesh")
+    vertices, faces = grid(3)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    with beltrami.Editor(mesh) as editor, beltrami.Editor(vertices, faces) as same:
+        editor.update()
+        same.update()
+        assert (editor.corner_uvs == same.corner_uvs).all()
+    with pytest.raises(TypeError, match="faces are missing"):
+        beltrami.Editor(vertices)
+
+
 def test_a_seam_is_opened_and_closed_again() -> None:
     vertices, faces = grid(12)
     with beltrami.Editor(vertices, faces) as editor:

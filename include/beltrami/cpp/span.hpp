@@ -131,6 +131,7 @@ template <class Scalar>
 constexpr std::int32_t scalar_type() {
   if constexpr (std::is_same_v<Scalar, float>) return BELTRAMI_F32;
   if constexpr (std::is_same_v<Scalar, double>) return BELTRAMI_F64;
+  if constexpr (std::is_same_v<Scalar, std::uint16_t>) return BELTRAMI_U16;
   if constexpr (std::is_integral_v<Scalar> && sizeof(Scalar) == 4) return BELTRAMI_U32;
   if constexpr (std::is_integral_v<Scalar> && sizeof(Scalar) == 8) return BELTRAMI_U64;
   return -1;
@@ -140,7 +141,7 @@ constexpr bool is_real(std::int32_t type) {
   return type == BELTRAMI_F32 || type == BELTRAMI_F64;
 }
 constexpr bool is_index(std::int32_t type) {
-  return type == BELTRAMI_U32 || type == BELTRAMI_U64;
+  return type == BELTRAMI_U16 || type == BELTRAMI_U32 || type == BELTRAMI_U64;
 }
 
 template <class T>

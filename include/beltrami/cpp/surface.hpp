@@ -19,7 +19,8 @@ BELTRAMI_CPP_BEGIN
 /// does not fit together (an array of another length) is told by the call that is given it.
 class Surface {
  public:
-  /// Triangles: positions in any unit of length, and the vertices of each, counter-clockwise.
+  /// Triangles: positions in any unit of length, and the vertices of each, counter-clockwise, by
+  /// indices of 32 or 64 bits, or std::uint16_t.
   Surface(const Reals<3>& positions, const Indices<3>& triangles) noexcept : Surface(positions) {
     surface_.face_count = triangles.size();
     surface_.indices = triangles.buffer();

@@ -6,12 +6,12 @@ import types
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _polygons, _straight
+from . import _arrays, _polygons, _straight, _trimesh
 from ._arrays import Array
 from ._errors import NotInjectiveWarning
 from ._library import UNWRAP
@@ -72,9 +72,9 @@ class Editor:
 
     Parameters
     ----------
-    vertices : (n, 3) array_like of floats
-        Positions; they are copied.
-    faces : (m, k) array_like of integers, or sequence of polygons
+    vertices : (n, 3) array_like of floats, or trimesh.Trimesh
+        Positions; they are copied. A mesh brings its faces, too.
+    faces : (m, k) array_like of integers, or sequence of polygons; left out with a mesh
         Vertex numbers from 0, as for `unwrap`.
     corner_uvs : (m, k, 2) array_like of floats, optional
         UVs to begin with, as for `check_atlas`: charts keep them until an edit concerns them, and
@@ -108,14 +108,18 @@ class Editor:
 
     def __init__(
         self,
-        vertices: npt.ArrayLike,
-        faces: Faces,
+        vertices: Any,
+        faces: Faces | None = None,
         *,
         corner_uvs: npt.ArrayLike | None = None,
         seams: npt.ArrayLike | None = None,
         progress: Progress = None,
         **options: Unpack[UnwrapOptions],
     ) -> None:
+        if faces is None:
+            if not _trimesh.is_mesh(vertices):
+                raise TypeError("faces are missing: only a mesh brings its own")
+            vertices, faces = vertices.vertices, vertices.faces
         polygons = _polygons.polygons(faces)
         uvs = None if corner_uvs is None else _polygons.corner_uvs(corner_uvs, polygons)
         cuts = None if seams is None else _integers("seams", seams, 2)

@@ -13,7 +13,7 @@ use crate::mesh::{Uv, UvsMut};
 use crate::packing::Packing;
 use crate::parameterization::{Stage, Status};
 use crate::verdict::count;
-use crate::view::Index;
+use crate::view::WideIndex;
 
 /// The UVs of a surface that was cut into charts: the results of an unwrapper's last run, read from
 /// it on demand.
@@ -132,13 +132,13 @@ impl<'a> Atlas<'a> {
     }
 
     /// The UV vertex of every corner, face after face: an index buffer, in `u32` or `u64`.
-    pub fn corner_uv_vertices<T: Index>(&self) -> Vec<T> {
+    pub fn corner_uv_vertices<T: WideIndex>(&self) -> Vec<T> {
         self.numbers(count(self.raw().corners), sys::beltrami_get_corner_uv_vertices)
     }
 
     /// The page of every corner's UV, face after face, in `u32` or `u64`; 0 where the atlas is not
     /// packed. As tiles of UDIM page k is 1001 + k: u is greater by k % 10 there, v by k / 10.
-    pub fn corner_pages<T: Index>(&self) -> Vec<T> {
+    pub fn corner_pages<T: WideIndex>(&self) -> Vec<T> {
         self.numbers(count(self.raw().corners), sys::beltrami_get_corner_pages)
     }
 
@@ -148,7 +148,7 @@ impl<'a> Atlas<'a> {
     }
 
     /// The vertex of the input that every UV vertex is a copy of, in `u32` or `u64`.
-    pub fn origins<T: Index>(&self) -> Vec<T> {
+    pub fn origins<T: WideIndex>(&self) -> Vec<T> {
         self.numbers(count(self.raw().uv_vertices), sys::beltrami_get_uv_vertex_origins)
     }
 
@@ -167,7 +167,7 @@ impl<'a> Atlas<'a> {
     /// are none. Of
     /// vertices that count as one it is the least. As [`seams`](crate::Surface::seams) of the
     /// surface, with [`Cut::Given`](crate::Cut::Given), they make the same charts.
-    pub fn seams<T: Index>(&self) -> Vec<[T; 2]> {
+    pub fn seams<T: WideIndex>(&self) -> Vec<[T; 2]> {
         let mut seams = vec![[T::default(); 2]; count(self.raw().seams)];
         let out = seams.as_mut_ptr().cast();
         // SAFETY: there is room for two numbers of this type per seam.
@@ -185,7 +185,7 @@ impl<'a> Atlas<'a> {
 
     /// The triangles that were computed on and that the certificates speak of: three corners each,
     /// in the orientation in which they are positive, in `u32` or `u64`.
-    pub fn triangles<T: Index>(&self) -> Vec<[T; 3]> {
+    pub fn triangles<T: WideIndex>(&self) -> Vec<[T; 3]> {
         let mut triangles = vec![[T::default(); 3]; count(self.raw().triangles)];
         let out = triangles.as_mut_ptr().cast();
         // SAFETY: there is room for three numbers of this type per triangle.
@@ -270,7 +270,7 @@ impl<'a> Atlas<'a> {
     }
 
     /// As many lone numbers as `get` writes.
-    fn numbers<T: Index>(&self, len: usize, get: Get) -> Vec<T> {
+    fn numbers<T: WideIndex>(&self, len: usize, get: Get) -> Vec<T> {
         let mut numbers = vec![T::default(); len];
         let out = numbers.as_mut_ptr().cast();
         // SAFETY: there is room for `len` numbers of this type.

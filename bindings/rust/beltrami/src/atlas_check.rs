@@ -7,7 +7,7 @@ use crate::control::CancelToken;
 use crate::error::{Element, Error};
 use crate::surface::Surface;
 use crate::verdict::element;
-use crate::view::Index;
+use crate::view::WideIndex;
 
 /// What an atlas may do, and how much of what it does wrong is listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -138,7 +138,7 @@ pub struct Triangulation<T> {
 /// [`InvalidArgument`](crate::ErrorKind::InvalidArgument) for a face of less than three corners,
 /// [`Empty`](crate::ErrorKind::Empty), [`IndexOutOfRange`](crate::ErrorKind::IndexOutOfRange),
 /// [`OutOfMemory`](crate::ErrorKind::OutOfMemory).
-pub fn triangulate<T: Index>(surface: &Surface<'_>) -> Result<Triangulation<T>, Error> {
+pub fn triangulate<T: WideIndex>(surface: &Surface<'_>) -> Result<Triangulation<T>, Error> {
     let token = CancelToken::new();
     let view = surface.raw(&token)?;
     let mut triangles = vec![[T::default(); 3]; surface.triangle_count()];

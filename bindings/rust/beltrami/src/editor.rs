@@ -18,7 +18,7 @@ use crate::options::UnwrapOptions;
 use crate::parameterization::Status;
 use crate::surface::{Edges, Integers, Surface};
 use crate::verdict::count;
-use crate::view::{Buffer, Index};
+use crate::view::{Buffer, WideIndex};
 
 /// A session of edits on one surface: seams and pins that move, and maps that follow.
 ///
@@ -457,7 +457,7 @@ impl Editor {
 
     /// Edges that had to be cut beside the seams, by their vertices, in `u32` or `u64`. They stay so
     /// until they are opened or closed.
-    pub fn opened<T: Index>(&self) -> Vec<[T; 2]> {
+    pub fn opened<T: WideIndex>(&self) -> Vec<[T; 2]> {
         let mut edges = vec![[T::default(); 2]; count(self.raw().opened)];
         let out = edges.as_mut_ptr().cast();
         // SAFETY: there is room for two numbers of this type per edge.

@@ -54,7 +54,7 @@ pub use parameterization::{Parameterization, Stage, Status, Summary};
 pub use surface::{Edges, Integers, PinKind, Quadruples, Reals, Surface};
 pub use unwrapper::Unwrapper;
 pub use verdict::{Certificate, Crossings, Distortion, Orientations};
-pub use view::{Index, Real, Scalar, View, ViewMut};
+pub use view::{Index, Real, Scalar, View, ViewMut, WideIndex};
 
 /// Guides whose snippets are documentation tests.
 #[cfg(doctest)]

@@ -16,8 +16,8 @@ pub struct Positions<'a>(pub(crate) Buffer<'a>);
 
 /// Three vertices per face, counter-clockwise, borrowed.
 ///
-/// Converts from `&[[u32; 3]]`, `&[[u64; 3]]`, references to arrays and `Vec`s of these, and from
-/// [`View`]s of either; with the feature `ndarray` from its views.
+/// Converts from `&[[u16; 3]]`, `&[[u32; 3]]`, `&[[u64; 3]]`, references to arrays and `Vec`s of
+/// these, and from [`View`]s of either; with the feature `ndarray` from its views.
 #[derive(Clone, Copy)]
 pub struct Faces<'a>(pub(crate) Buffer<'a>);
 

@@ -9,7 +9,7 @@ use crate::context::Context;
 use crate::error::{advice, static_text, Error, ErrorKind};
 use crate::mesh::{Uv, UvsMut};
 use crate::verdict::{count, element, Certificate, Distortion};
-use crate::view::Index;
+use crate::view::WideIndex;
 
 /// What a run with a result says of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -310,7 +310,7 @@ impl<'a> Parameterization<'a> {
     /// The triangles that the map, its certificates and its face energies speak of: the input's, or
     /// with the option `delaunay` those of the intrinsic Delaunay triangulation on the same
     /// vertices. Indices are `u32` or `u64`.
-    pub fn faces<T: Index>(&self) -> Vec<[T; 3]> {
+    pub fn faces<T: WideIndex>(&self) -> Vec<[T; 3]> {
         let mut faces = vec![[T::default(); 3]; count(self.result().faces)];
         let out = faces.as_mut_ptr().cast();
         // SAFETY: there is room for three indices of this type per face.

@@ -58,8 +58,8 @@ macro_rules! numbers {
 numbers! {
     /// Whole numbers, borrowed: vertices of corners, sizes or labels of faces.
     ///
-    /// Converts from `&[u32]`, `&[u64]`, references to arrays and `Vec`s of these, and from
-    /// [`View`]s of one number.
+    /// Converts from `&[u16]`, `&[u32]`, `&[u64]`, references to arrays and `Vec`s of these, and
+    /// from [`View`]s of one number.
     Integers, Index
 }
 numbers! {
@@ -110,15 +110,15 @@ macro_rules! tuples {
 tuples! {
     /// Pairs of vertices, borrowed: edges.
     ///
-    /// Converts from `&[[u32; 2]]`, `&[[u64; 2]]`, references to arrays and `Vec`s of these, and
-    /// from [`View`]s of either.
+    /// Converts from `&[[u16; 2]]`, `&[[u32; 2]]`, `&[[u64; 2]]`, references to arrays and
+    /// `Vec`s of these, and from [`View`]s of either.
     Edges, 2
 }
 tuples! {
     /// Four vertices each, borrowed: corners of rectangles.
     ///
-    /// Converts from `&[[u32; 4]]`, `&[[u64; 4]]`, references to arrays and `Vec`s of these, and
-    /// from [`View`]s of either.
+    /// Converts from `&[[u16; 4]]`, `&[[u32; 4]]`, `&[[u64; 4]]`, references to arrays and
+    /// `Vec`s of these, and from [`View`]s of either.
     Quadruples, 4
 }
 

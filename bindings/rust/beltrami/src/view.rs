@@ -19,14 +19,20 @@ mod sealed {
 }
 pub(crate) use sealed::Sealed;
 
-/// The numbers that the library reads and writes: `f32`, `f64`, `u32`, `u64`.
+/// The numbers that the library reads and writes: `f32`, `f64`, `u16`, `u32`, `u64`.
 pub trait Scalar: Sealed + Copy + Default + Send + Sync + 'static {}
 
 /// Coordinates: `f32` or `f64`.
 pub trait Real: Scalar {}
 
-/// Vertex indices: `u32` or `u64`.
+/// Vertex indices: `u16`, `u32` or `u64`.
 pub trait Index: Scalar {}
+
+/// Indices that hold whatever a result has: `u32` or `u64`.
+pub trait WideIndex: Index {}
+
+impl WideIndex for u32 {}
+impl WideIndex for u64 {}
 
 macro_rules! scalars {
     ($( $scalar:ty: $role:ident = $number:ident; )*) => { $(
@@ -40,6 +46,7 @@ macro_rules! scalars {
 scalars! {
     f32: Real = BELTRAMI_F32;
     f64: Real = BELTRAMI_F64;
+    u16: Index = BELTRAMI_U16;
     u32: Index = BELTRAMI_U32;
     u64: Index = BELTRAMI_U64;
 }

@@ -45,6 +45,15 @@ fn two_tetrahedra() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
 }
 
 #[test]
+fn indices_of_any_width_are_the_same_surface() {
+    let mut unwrapper = Unwrapper::new().unwrap();
+    let wide = unwrapper.unwrap(&cube()).unwrap().corner_uvs::<[f64; 2]>();
+    let (sizes, corners) = (SIZES.map(|size| size as u16), CORNERS.map(|corner| corner as u16));
+    let narrow = Surface::polygons(&CUBE, &sizes, &corners);
+    assert_eq!(unwrapper.unwrap(&narrow).unwrap().corner_uvs::<[f64; 2]>(), wide);
+}
+
+#[test]
 fn polygons_get_an_atlas_whose_parts_fit_together() {
     let mut unwrapper = Unwrapper::new().unwrap();
     let atlas = unwrapper.unwrap(&cube()).unwrap().ensure_injective().unwrap();
