@@ -198,13 +198,22 @@ class Search {
     choose_points();
   }
 
-  std::vector<Neck> run() {
+  std::vector<Neck> run() const {
     std::vector<Neck> necks;
     if (!(area_ > 0)) return necks;
-    for (const Chord& chord : best_chords()) {
+    std::vector<Chord> tried;
+    for (const Chord& chord : chords_by_gain()) {
+      const auto is_apart = [&](const Chord& other) { return are_apart(chord, other); };
+      if (!std::all_of(tried.begin(), tried.end(), is_apart)) continue;
+      tried.push_back(chord);
+      // Where faces are large no path may follow the chord, or only a long one.
       Neck neck = path_near(chord);
-      if (!neck.halfedges.empty()) necks.push_back(std::move(neck));
+      if (neck.halfedges.empty() || !(gain_of(neck) > 0)) continue;
+      necks.push_back(std::move(neck));
+      if (size_of(necks) == options_.most) break;
     }
+    std::stable_sort(necks.begin(), necks.end(),
+                     [&](const Neck& a, const Neck& b) { return gain_of(a) > gain_of(b); });
     return necks;
   }
 
@@ -255,26 +264,25 @@ class Search {
     return found;
   }
 
-  std::vector<Chord> best_chords() const {
-    std::vector<Chord> all = chords(), best;
+  std::vector<Chord> chords_by_gain() const {
+    std::vector<Chord> all = chords();
     sort_interruptibly(all.begin(), all.end(), [](const Chord& a, const Chord& b) {
       return std::tie(b.gain, a.from, a.to) < std::tie(a.gain, b.from, b.to);
     });
-    const auto apart = [&](Index i, Index j) {
-      const double distance = std::abs(along_[points_[i]] - along_[points_[j]]);
-      return std::min(distance, along_.back() - distance);
-    };
-    for (const Chord& chord : all) {
-      const bool is_new = std::all_of(best.begin(), best.end(), [&](const Chord& other) {
-        return std::min(apart(chord.from, other.from) + apart(chord.to, other.to),
-                        apart(chord.from, other.to) + apart(chord.to, other.from)) >
-               kApart * along_.back();
-      });
-      if (is_new) best.push_back(chord);
-      if (static_cast<int>(best.size()) == options_.most) break;
-    }
-    return best;
+    return all;
   }
+
+  /// Whether two chords are no one neck.
+  bool are_apart(const Chord& a, const Chord& b) const {
+    const auto distance = [&](Index i, Index j) {
+      const double between = std::abs(along_[points_[i]] - along_[points_[j]]);
+      return std::min(between, along_.back() - between);
+    };
+    return std::min(distance(a.from, b.from) + distance(a.to, b.to),
+                    distance(a.from, b.to) + distance(a.to, b.from)) > kApart * along_.back();
+  }
+
+  double gain_of(const Neck& neck) const { return options_.worth * neck.saved - neck.cost; }
 
   /// Marks vertices of the border around a point, but for the other end's half of the way there.
   void mark_window(Index point, Index other, std::int8_t mark, std::vector<std::int8_t>& marks,
