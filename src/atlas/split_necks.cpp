@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -392,26 +393,34 @@ class Splitter {
     }
   }
 
-  /// Splits what is too long for a page where that promises most, until nothing is: as long as one
-  /// is left it alone sets the density. Returns what that costs.
+  /// Splits what is too long for a page where most is saved for the cost, until nothing is: as long
+  /// as one is left it alone sets the density. Returns what that costs.
   double split_overlong() {
     double cost = 0;
     for (std::size_t i = 0; i < alive_.size() && size_of(splits_) < kMostSplits;) {
       const Index p = alive_[i];
-      std::vector<Piece> parts;
-      Index neck = 0;
+      std::vector<Index> order;
       if (may_have_more() && !work_.out_of_time() && is_overlong(pieces_[p])) {
-        for (; neck < size_of(pieces_[p].necks) && parts.empty(); ++neck) {
-          if (cost + pieces_[p].necks[neck].cost > room_) continue;
-          parts = parts_of(pieces_[p], pieces_[p].necks[neck]);
-        }
+        order.resize(pieces_[p].necks.size());
+        std::iota(order.begin(), order.end(), 0);
+      }
+      std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+        const Neck &one = pieces_[p].necks[a], &other = pieces_[p].necks[b];
+        return one.saved * other.cost > other.saved * one.cost;
+      });
+      std::vector<Piece> parts;
+      Index chosen = kNone;
+      for (const Index neck : order) {
+        if (!parts.empty() || cost + pieces_[p].necks[neck].cost > room_) continue;
+        parts = parts_of(pieces_[p], pieces_[p].necks[neck]);
+        chosen = neck;
       }
       if (parts.empty()) {
         ++i;
         continue;
       }
       for (Piece& part : parts) thin(part.outline, kThin / density_);
-      split(p, neck - 1, std::move(parts));
+      split(p, chosen, std::move(parts));
       cost += splits_.back().cost;
     }
     return cost;

@@ -119,6 +119,32 @@ TEST(SplitNecks, CutsWhereItIsNarrow) {
   EXPECT_GT(atlas.utilisation, 1.5 * whole.utilisation);
 }
 
+/// A strip of three fans: edges lie across it between these alone.
+TriangleList strip_of_fans() {
+  constexpr Index kWidth = 10, kLength = 3 * kWidth;
+  TriangleList mesh;
+  for (Index x = 0; x <= kLength; ++x) {
+    mesh.positions.emplace_back(x, 0, 0);
+    mesh.positions.emplace_back(x, 1, 0);
+  }
+  for (Index x = 0; x < kLength; ++x) {
+    const Index left = x / kWidth * kWidth, right = left + kWidth;
+    mesh.faces.push_back({2 * left, 2 * (x + 1) + 1, 2 * x + 1});
+    mesh.faces.push_back({2 * x, 2 * (x + 1), 2 * right + 1});
+  }
+  return mesh;
+}
+
+TEST(SplitNecks, CutsWhereEdgesAre) {
+  const TriangleList mesh = strip_of_fans();
+  const Atlas whole = unwrapped(mesh, priced(0)), atlas = unwrapped(mesh, priced(20));
+  expect_sound(mesh, atlas);
+  expect_worth(atlas, whole, 20);
+  expect_connected(atlas);
+  EXPECT_GE(atlas.pages->split->count, 2);
+  EXPECT_GT(atlas.utilisation, 4 * whole.utilisation);
+}
+
 TEST(SplitNecks, CutsWhatIsTooLongForThePage) {
   const TriangleList mesh = strip();
   const Atlas whole = unwrapped(mesh, priced(0)), atlas = unwrapped(mesh, priced(20));
