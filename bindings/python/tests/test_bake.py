@@ -190,7 +190,14 @@ def test_progress_ends_it() -> None:
         ({"resolution": 0}, ValueError, "resolution"),
         ({"gutter": -1}, ValueError, "gutter"),
         ({"old_pages": [0, 1]}, beltrami.InvalidArgumentError, "counted from 0"),
-        ({"pixels": "normals"}, beltrami.InvalidArgumentError, "3 or 4 channels"),
+        (
+            {"pixels": "normals", "vertices": PLACES},
+            beltrami.InvalidArgumentError,
+            "3 or 4 channels",
+        ),
+        ({"pixels": "normals"}, TypeError, "vertices are missing"),
+        ({"images": np.zeros((0, 4), np.uint8)}, ValueError, "no texels"),
+        ({"new_uvs": SQUARE + [1.5, 0]}, ValueError, "triangle 0 lie beyond its page"),
         ({"threads": 0}, ValueError, "threads"),
     ],
 )

@@ -151,7 +151,8 @@ def bake(
     Raises
     ------
     TypeError, ValueError
-        For arrays of other shapes or types, and for numbers out of range.
+        For arrays of other shapes or types, numbers out of range, and triangles that lie wholly
+        beyond their page.
     InvalidArgumentError
         Also where most texels have no source.
     NonFiniteError
@@ -194,6 +195,9 @@ def bake(
         buffers["old_pages"] = _pages("old_pages", old_pages, sources)
     if new_pages is not None:
         buffers["new_pages"] = _pages("new_pages", new_pages, faces)
+    _require_on_pages(buffers)
+    if vertices is None and (elsewhere or pixels in ("normals", "occlusion")):
+        raise TypeError("vertices are missing: normals, occlusion and source_vertices need them")
     of_corners = {"positions": (vertices, 3), "normals": (normals, 3), "tangents": (tangents, 4)}
     for name, (values, width) in of_corners.items():
         if values is not None:
@@ -250,6 +254,8 @@ def _images(images: Any) -> tuple[list[Array], bool]:
             raise ValueError(
                 f"an image has the shape {array.shape}: give (h, w) or (h, w, c), 1 to 4 channels"
             )
+        if array.size == 0:
+            raise ValueError(f"an image has the shape {array.shape}: it has no texels")
         if array.dtype != arrays[0].dtype or array.shape[2:] != arrays[0].shape[2:]:
             raise ValueError("images must have one type and as many channels")
     whole = [
@@ -270,6 +276,19 @@ def _corners(name: str, values: npt.ArrayLike, width: int, faces: int | None = N
     single = array.dtype.kind == "f" and array.dtype.itemsize <= 4
     dtype = np.float32 if single else np.float64
     return np.ascontiguousarray(array, dtype).reshape(-1, width)
+
+
+def _require_on_pages(buffers: dict[str, Array]) -> None:
+    """Raise ValueError for a triangle that is to be baked and lies wholly beyond its page."""
+    uvs = buffers["new_uvs"].reshape(-1, 3, 2)
+    beyond = ((uvs.min(axis=1) > 1) | (uvs.max(axis=1) < 0)).any(axis=1)
+    if "new_pages" in buffers:
+        beyond &= buffers["new_pages"].ravel() >= 0
+    if beyond.any():
+        raise ValueError(
+            f"the new UVs of triangle {int(beyond.argmax())} lie beyond its page, the unit square: "
+            "give those on the page, and the page in new_pages"
+        )
 
 
 def _pages(name: str, values: npt.ArrayLike, faces: int) -> Array:
