@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "commands/bake_call.h"
@@ -132,7 +133,8 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
 void TextureBake::list_textures(std::vector<TextureUse> uses) {
   for (TextureUse& use : uses) {
     const std::string path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
-    if (!path.empty() && !fs::exists(path)) {
+    std::error_code ignored;
+    if (!path.empty() && !fs::exists(path, ignored)) {
       missing_.push_back(path + " (" + use.name +
                          ") is missing: its name stays, and nothing is baked for it; put the "
                          "image there and bake again");
