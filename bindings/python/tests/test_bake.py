@@ -197,7 +197,7 @@ def test_progress_ends_it() -> None:
         ),
         ({"pixels": "normals"}, TypeError, "vertices are missing"),
         ({"images": np.zeros((0, 4), np.uint8)}, ValueError, "no texels"),
-        ({"new_uvs": SQUARE + [1.5, 0]}, ValueError, "triangle 0 lie beyond its page"),
+        ({"new_uvs": SQUARE + np.array([1.5, 0])}, ValueError, "triangle 0 lie beyond its page"),
         ({"threads": 0}, ValueError, "threads"),
     ],
 )
