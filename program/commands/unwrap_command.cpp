@@ -192,12 +192,12 @@ class Unwrapping {
   }
 
   void note_seams_without_edge() {
-    const SeamsWithoutEdge none = seams_without_edge(seams_, file_);
-    if (none.count == 0) return;
-    report_.notes.push_back(arguments_.seams + ": " + std::to_string(none.count) + " of " +
+    const SeamsWithoutEdge loose = seams_without_edge(seams_, file_);
+    if (loose.count == 0) return;
+    report_.notes.push_back(arguments_.seams + ": " + std::to_string(loose.count) + " of " +
                             std::to_string(seams_.size() / 2) +
                             " seams join vertices that no face has side by side, the first " +
-                            std::to_string(none.from) + " and " + std::to_string(none.to) +
+                            std::to_string(loose.from) + " and " + std::to_string(loose.to) +
                             ": nothing is cut there (vertices count from 0)");
   }
 
@@ -258,8 +258,7 @@ class Unwrapping {
     if (atlas.pages > 0) report_pages(context, report_);
     const bool stacks = options_.integer(BELTRAMI_OPTION_STACK) != BELTRAMI_STACK_NONE;
     if (stacks && atlas.stacked_parts == 0) {
-      report_.notes.emplace_back(
-          "no part has the shape of another, as --stack asks: nothing is stacked");
+      report_.notes.emplace_back("--stack found nothing of one shape: nothing is stacked");
     }
     report_.triangles = atlas.triangles;
     report_.area = atlas.area;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "atlas/pack_maps.h"
+#include "atlas/pages.h"
 #include "base/vectors.h"
 #include "pack/outline.h"
 
@@ -29,21 +30,6 @@ Vec2 sizes_of(const PackChart& part, bool is_turned) {
   return box.sizes();
 }
 
-/// Length of the longest edge, and the area.
-struct Extent {
-  double edge = 0, area = 0;
-};
-
-Extent extent_of(const PackChart& part) {
-  Extent extent;
-  for (const auto& [i, j, k] : part.faces) {
-    const Vec2 a = part.points[j] - part.points[i], b = part.points[k] - part.points[i];
-    extent.edge = std::max({extent.edge, a.norm(), b.norm(), (b - a).norm()});
-    extent.area += std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
-  }
-  return extent;
-}
-
 }  // namespace
 
 std::vector<Index> larger_than_page(const std::vector<AtlasChart>& charts,
@@ -57,7 +43,7 @@ std::vector<Index> larger_than_page(const std::vector<AtlasChart>& charts,
   for (Index c = 0; c < size_of(charts); ++c) {
     if (maps[c].error) continue;
     const PackChart part = real_part(charts[c], maps[c].uvs);
-    const Extent extent = extent_of(part);
+    const ChartExtent extent = extent_of(part);
     area += extent.area;
     if (extent.edge > std::numbers::sqrt2 * page) return {};
     const bool is_turned = (options.turns > 4 || options.upright) && maps[c].own_turns == 0;

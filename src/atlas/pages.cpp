@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 
 #include "base/error.h"
 #include "pack/pack.h"
@@ -27,34 +26,23 @@ double greatest_coordinate(const PackOptions& options) {
   return options.max_pages > 1 ? std::max(last.maxCoeff(), double{kPagesInARow}) : 1;
 }
 
-/// The longest edge of a face, and the area: in the unit of the chart.
-std::pair<double, double> extent_of(const PackChart& chart) {
-  double longest = 0, area = 0;
-  for (const auto& [i, j, k] : chart.faces) {
-    const Vec2 a = chart.points[j] - chart.points[i], b = chart.points[k] - chart.points[i];
-    longest = std::max({longest, a.norm(), b.norm(), (b - a).norm()});
-    area += std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
-  }
-  return {longest, area};
-}
-
 /// Throws Error NO_ROOM where a chart is longer than the diagonal of a page: told without drawing
 /// what may be of any size.
 void require_shorter_than_page(std::span<const PackChart> charts, const PackOptions& options) {
   const double longest = std::numbers::sqrt2 * options.resolution;
-  const std::string of_all = " at these texels per unit: lower texels-per-unit, or raise ";
+  const std::string remedy = " at these texels per unit: lower texels-per-unit, or raise ";
   std::string larger, of_face;
   double area = 0;
   for (std::size_t c = 0; c < charts.size(); ++c) {
     const double density = options.texels_per_unit * charts[c].scale;
-    const auto [edge, own_area] = extent_of(charts[c]);
-    area += density * density * own_area;
+    const ChartExtent extent = extent_of(charts[c]);
+    area += density * density * extent.area;
     if (charts[c].kept) continue;
     Eigen::AlignedBox2d box;
     for (const Vec2& p : charts[c].points) box.extend(p);
     if (box.isEmpty() || density * box.sizes().maxCoeff() <= longest) continue;
     if (larger.empty()) larger = "chart " + std::to_string(c);
-    if (of_face.empty() && density * edge > longest)
+    if (of_face.empty() && density * extent.edge > longest)
       of_face = "a face of chart " + std::to_string(c);
   }
   if (larger.empty()) return;
@@ -63,11 +51,11 @@ void require_shorter_than_page(std::span<const PackChart> charts, const PackOpti
   if (area > options.max_pages * side * side) {
     throw Error(Fault::kNoRoom, "the charts have more area than " +
                                     std::to_string(options.max_pages) +
-                                    (options.max_pages == 1 ? " page" : " pages") + of_all +
+                                    (options.max_pages == 1 ? " page" : " pages") + remedy +
                                     "the number of pages or resolution");
   }
   throw Error(Fault::kNoRoom, (of_face.empty() ? larger : of_face) + " is larger than a page" +
-                                  of_all + "resolution");
+                                  remedy + "resolution");
 }
 
 /// What the packer refuses of options in their ranges is a lack of room.
@@ -82,6 +70,16 @@ Packing packed(std::span<const PackChart> charts, const PackOptions& options, co
 }
 
 }  // namespace
+
+ChartExtent extent_of(const PackChart& chart) {
+  ChartExtent extent;
+  for (const auto& [i, j, k] : chart.faces) {
+    const Vec2 a = chart.points[j] - chart.points[i], b = chart.points[k] - chart.points[i];
+    extent.edge = std::max({extent.edge, a.norm(), b.norm(), (b - a).norm()});
+    extent.area += std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return extent;
+}
 
 double step_of(Index page) {
   const double reach = tile_of(page).maxCoeff() + 1;

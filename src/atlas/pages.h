@@ -59,6 +59,12 @@ Packing pack_and_deliver(std::span<const PackChart> charts, const PackOptions& o
 Vec2 place_on_page(const Packing& packing, const PackChart& chart, const Placement& placement,
                    int resolution, const Vec2& point);
 
+/// Of a chart, in its unit: its longest edge, and its area.
+struct ChartExtent {
+  double edge = 0, area = 0;
+};
+ChartExtent extent_of(const PackChart& chart);
+
 /// Sets the shares of the pages that the faces cover, each counted once.
 void measure_pages(const std::vector<Triangle>& faces, const std::vector<Vec2>& uvs,
                    const std::vector<Index>& chart_of_face, Pages& pages);

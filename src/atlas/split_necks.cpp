@@ -393,27 +393,31 @@ class Splitter {
     }
   }
 
+  /// The numbers of necks by what they save for their cost, the most first.
+  static std::vector<Index> cheapest_first(const std::vector<Neck>& necks) {
+    std::vector<Index> order(necks.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return necks[a].saved * necks[b].cost > necks[b].saved * necks[a].cost;
+    });
+    return order;
+  }
+
   /// Splits what is too long for a page where most is saved for the cost, until nothing is: as long
   /// as one is left it alone sets the density. Returns what that costs.
   double split_overlong() {
     double cost = 0;
     for (std::size_t i = 0; i < alive_.size() && size_of(splits_) < kMostSplits;) {
       const Index p = alive_[i];
-      std::vector<Index> order;
-      if (may_have_more() && !work_.out_of_time() && is_overlong(pieces_[p])) {
-        order.resize(pieces_[p].necks.size());
-        std::iota(order.begin(), order.end(), 0);
-      }
-      std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        const Neck &one = pieces_[p].necks[a], &other = pieces_[p].necks[b];
-        return one.saved * other.cost > other.saved * one.cost;
-      });
       std::vector<Piece> parts;
       Index chosen = kNone;
-      for (const Index neck : order) {
-        if (!parts.empty() || cost + pieces_[p].necks[neck].cost > room_) continue;
-        parts = parts_of(pieces_[p], pieces_[p].necks[neck]);
-        chosen = neck;
+      if (may_have_more() && !work_.out_of_time() && is_overlong(pieces_[p])) {
+        for (const Index neck : cheapest_first(pieces_[p].necks)) {
+          if (cost + pieces_[p].necks[neck].cost > room_) continue;
+          parts = parts_of(pieces_[p], pieces_[p].necks[neck]);
+          chosen = neck;
+          if (!parts.empty()) break;
+        }
       }
       if (parts.empty()) {
         ++i;

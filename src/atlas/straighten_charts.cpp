@@ -255,14 +255,12 @@ class Straightening {
     std::vector<Vec2> start = mapped_.maps[c].uvs;
     scale_by_power(exponent, start);
     StraightMap map = straighten(mesh, start, paths, options_.chart, work_);
-    if (take(c, exponent, std::move(map))) {
-      const auto is_along_axis = [](const StraightPath& path) {
-        return path.kind == PinKind::kU || path.kind == PinKind::kV;
-      };
-      // A quarter turn would make one U of one V.
-      if (std::any_of(paths.begin(), paths.end(), is_along_axis)) mapped_.maps[c].own_turns = 2;
-      return;
-    }
+    const auto is_along_axis = [](const StraightPath& path) {
+      return path.kind == PinKind::kU || path.kind == PinKind::kV;
+    };
+    // A quarter turn would make one V of one U.
+    const bool is_any = std::any_of(paths.begin(), paths.end(), is_along_axis);
+    if (take(c, exponent, std::move(map), is_any ? 2 : 4)) return;
     const Index input = input_vertex(mapped_.charts[c], admitted_, paths.front().vertices.front());
     throw Error(Fault::kPins,
                 "the straight edges at vertex " + std::to_string(input) +
@@ -278,20 +276,20 @@ class Straightening {
   }
 
   /// Whether the map is injective.
-  bool take(Index c, int exponent, StraightMap map) {
+  bool take(Index c, int exponent, StraightMap map, int own_turns = 4) {
     if (map.uvs.empty()) return false;
     scale_by_power(-exponent, map.uvs);
-    if (!take(c, std::move(map.uvs))) return false;
+    if (!take(c, std::move(map.uvs), own_turns)) return false;
     if (!map.converged) mapped_.maps[c].outcome = Outcome::kNotConverged;
     return true;
   }
 
-  bool take(Index c, std::vector<Vec2> uvs) {
+  bool take(Index c, std::vector<Vec2> uvs, int own_turns = 4) {
     const DiskMesh& mesh = mapped_.charts[c].chart.mesh;
     if (!certify(mesh.faces, mesh.boundary, uvs, work_).injective()) return false;
     mapped_.maps[c].uvs = std::move(uvs);
     mapped_.maps[c].outcome = Outcome::kOk;
-    mapped_.maps[c].own_turns = 4;
+    mapped_.maps[c].own_turns = own_turns;
     return true;
   }
 

@@ -28,10 +28,11 @@ struct NeckOptions {
 
 /// The places where most is saved for the cost, the best first, each away from those before it:
 /// chords between points of the border that lie inside the map, by hulls with sides in a few
-/// directions; then the cheapest path near each. `uvs`: one per vertex. `cost`: per half-edge, the
-/// two of an edge alike, at least 0; infinite where no cut may be. Real faces come first; what
-/// fills holes beside them counts as free to cut, and `cost` is to say so. Time: linear but for the
-/// paths, each of which looks at what is near its chord. Precondition: all faces positive.
+/// directions; then the cheapest path near each, if one pays. `uvs`: one per vertex. `cost`: per
+/// half-edge, the two of an edge alike, at least 0; infinite where no cut may be. Real faces come
+/// first; what fills holes beside them counts as free to cut, and `cost` is to say so. Time: linear
+/// but for the paths, each of which looks at what is near its chord. Precondition: all faces
+/// positive.
 std::vector<Neck> find_necks(const DiskMesh& disk, const std::vector<Vec2>& uvs,
                              const std::vector<double>& cost, Index real_faces,
                              const NeckOptions& options);

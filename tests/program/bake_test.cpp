@@ -28,6 +28,10 @@
 namespace beltrami::cli {
 namespace {
 
+constexpr const char* kWoodenSquare =
+    "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl wood\nf 1/1 2/2 3/3 4/4\n";
+
 TEST(Bake, ASmoothTextureShowsTheSameAtTheNewUvs) {
   GltfBuilder builder = bent_strip(kTwoHalves);
   add_texture(builder, png_of(256, smooth), "baseColorTexture");
@@ -292,10 +296,7 @@ TEST(Bake, TheNumbersOfALampKeepNoTexture) {
 
 TEST(Bake, MissingImagesAreLeftOutAndNamed) {
   const TemporaryDirectory directory;
-  const std::string in = directory.file(
-      "in.obj",
-      "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-      "usemtl wood\nf 1/1 2/2 3/3 4/4\n");
+  const std::string in = directory.file("in.obj", kWoodenSquare);
   directory.file("in.mtl", "newmtl wood\nmap_Kd paint.png\nmap_Bump bump.png\n");
   const std::string out = directory.path("out.obj");
   const Outcome none = run({"unwrap", in, out, "--bake", "--resolution", "64"});
@@ -435,12 +436,9 @@ TEST(Bake, MapsOfMtlAreChannelsOfGltf) {
 
 TEST(Bake, AnObjGetsALibraryAndImagesOfItsOwn) {
   const TemporaryDirectory directory;
-  const std::string text =
-      "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-      "usemtl wood\nf 1/1 2/2 3/3 4/4\n";
   const std::string library =
       "newmtl wood\nKd 1 1 1\nmap_Kd -s 2 2 1 paint.png\nmap_Bump -bm 0.5 bump.png\n";
-  const std::string in = directory.file("in.obj", text), out = directory.path("out.obj");
+  const std::string in = directory.file("in.obj", kWoodenSquare), out = directory.path("out.obj");
   directory.file("in.mtl", library);
   directory.file("paint.png", png_of(64, smooth));
   directory.file("bump.png", png_of(64, [](double, double) { return Texel{128, 128, 255}; }));

@@ -748,13 +748,13 @@ BELTRAMI_API beltrami_status beltrami_triangulate(const beltrami_surface* surfac
  * kind U, V and LINE slide; with none or one of kind POINT, and lines that leave the scale open, a
  * chart keeps its own.
  *
- * Charts with straight borders are turned by quarters alone, and what is straight keeps one number
- * to the bit (of LINE: within rounding). Their vertices slide until the energy is least. A
- * rectangle without given corners that is rows and columns of quads becomes a grid. An edge may cut
- * off a part of a chart whose border is all on one line: that part is left out, for its
- * faces would have no area. Where no injective map is found the call fails with PINS and
- * the face of the rectangle, or a vertex of the straight edges. Edges that are none, branch or form
- * a loop, and charts with pins, are INVALID_ARGUMENT. */
+ * Charts with straight borders are turned by quarters alone, those with edges of kind U or V by
+ * halves. What is straight keeps one number to the bit (of LINE: within rounding). Its vertices
+ * slide until the energy is least. A rectangle without given corners that is rows and
+ * columns of quads becomes a grid. An edge may cut off a part of a chart whose border is all on one
+ * line: that part is left out, for its faces would have no area. Where no injective map is found
+ * the call fails with PINS and the face of the rectangle, or a vertex of the straight edges. Edges
+ * that are none, of two kinds, branch or form a loop, and charts with pins: INVALID_ARGUMENT. */
 BELTRAMI_API beltrami_status beltrami_unwrap(beltrami_context* context,
                                              const beltrami_surface* surface,
                                              beltrami_progress progress, void* user);
