@@ -32,6 +32,9 @@ UNWANTED_IMPORTS = {
     "depends on the locale": r"setlocale|uselocale|localeconv|newlocale|strto[dfl]|ato[fil]|scanf",
     "ends the process or hooks into its end": r"exit|_exit|quick_exit|atexit|abort|__assert_fail",
     "has state for the whole process": r"s?rand(om)?(_r)?|chdir|umask|fork|dlopen|pthread_atfork",
+    # And hands what a host's allocator gave to code that does not know it.
+    "takes memory past the host's allocator":
+        r"_Zn[wa]\w*|_Zd[la]\w*|calloc|realloc|posix_memalign|_ZNSt7__cxx1112basic_string\w*",
     "opens files": r"f?open(64)?|creat|tmpfile|mkstemp",
     # base/portable_math.h has those that it may use.
     "takes functions whose last bit depends on the processor":
@@ -40,11 +43,11 @@ UNWANTED_IMPORTS = {
 }
 
 # Statics of the headers that we include: constants once they are set; and
-# the one variable that src/base/interrupt.cpp defends.
+# the variables that src/base/interrupt.cpp and host_memory.cpp defend.
 KNOWN_STATICS = [
     r"std::__ioinit",  # of <iostream>, which CGAL includes
     r"boost::none",
-    r"beltrami::\(anonymous namespace\)::current",  # of a thread: the run that it is in
+    r"beltrami::\(anonymous namespace\)::current",  # of a thread: its run, its memory
     r"boost::math::detail::.*(::initializer|::val)",  # limits of number types
     r"std::(detail|numeric_limits<boost).*(::init|::val)",
     r"Eigen::internal::manage_caching_sizes\(.*\)::m_cacheSizes",  # fixed: EIGEN_NO_CPUID

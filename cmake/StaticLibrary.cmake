@@ -3,16 +3,24 @@
 # (-ffast-math) would lend us its versions, or get ours. So where GNU ld is at hand all objects are
 # linked into one, in which only the names of abi/symbols.txt are global.
 
-# beltrami_add_static_library(TARGET OBJECT_LIBRARY...)
-function(beltrami_add_static_library target)
+# beltrami_add_static_library(TARGET MEMORY OBJECT_LIBRARY...): MEMORY is for a library whose operators
+# new and delete no other code sees.
+function(beltrami_add_static_library target memory)
+  set(one FALSE)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_OBJCOPY
+     AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+    set(one TRUE)
+  elseif(NOT (BELTRAMI_ZIG AND CMAKE_SYSTEM_NAME STREQUAL "Linux")) # tools/dist/static_library.py
+    set(memory beltrami_system_memory)
+  endif()
+  list(PREPEND ARGN ${memory})
   foreach(library IN LISTS ARGN)
     # CMake counts a precompiled header among them.
     list(APPEND objects $<FILTER:$<TARGET_OBJECTS:${library}>,EXCLUDE,gch$|pch$>)
   endforeach()
   set(one_object ${CMAKE_CURRENT_BINARY_DIR}/${target}${CMAKE_CXX_OUTPUT_EXTENSION})
   set(symbols ${PROJECT_SOURCE_DIR}/abi/symbols.txt)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_OBJCOPY
-     AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  if(one)
     # Groups are dissolved, or the final link would still merge them by their names.
     add_custom_command(OUTPUT ${one_object}
       COMMAND ${CMAKE_CXX_COMPILER} -r -nostdlib -Wl,--force-group-allocation -o ${one_object}

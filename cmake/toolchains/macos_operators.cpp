@@ -3,26 +3,16 @@
 // are defined by their names in the object file, for the header of the C++ library declares them as
 // visible.
 #include <cstddef>
-#include <cstdlib>
 #include <new>
+
+#include "base/host_memory.h"
 
 #define BELTRAMI_INSIDE(name) __asm__(name) __attribute__((visibility("hidden")))
 
-namespace {
-
-void* taken(std::size_t bytes, std::size_t alignment) {
-  if (bytes == 0) bytes = 1;
-  void* memory = nullptr;
-  if (alignment <= alignof(std::max_align_t)) {
-    memory = std::malloc(bytes);
-  } else if (posix_memalign(&memory, alignment, bytes) != 0) {
-    memory = nullptr;
-  }
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
+using beltrami::aligned_for;
+using beltrami::give_memory;
+using beltrami::take_memory;
+using beltrami::take_memory_or_throw;
 
 extern "C" {
 
@@ -46,42 +36,42 @@ void give_back_several_sized_aligned(void* memory, std::size_t, std::size_t)
     BELTRAMI_INSIDE("__ZdaPvmSt11align_val_t");
 
 void* one(std::size_t bytes) {
-  return taken(bytes, 1);
+  return take_memory_or_throw(bytes);
 }
 void* several(std::size_t bytes) {
-  return taken(bytes, 1);
+  return take_memory_or_throw(bytes);
 }
 void* one_aligned(std::size_t bytes, std::size_t alignment) {
-  return taken(bytes, alignment);
+  return take_memory_or_throw(bytes, aligned_for(std::align_val_t{alignment}));
 }
 void* several_aligned(std::size_t bytes, std::size_t alignment) {
-  return taken(bytes, alignment);
+  return take_memory_or_throw(bytes, aligned_for(std::align_val_t{alignment}));
 }
 void* one_or_none(std::size_t bytes, const std::nothrow_t&) {
-  return std::malloc(bytes == 0 ? 1 : bytes);
+  return take_memory(bytes);
 }
 void give_back(void* memory) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_several(void* memory) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_sized(void* memory, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_several_sized(void* memory, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_aligned(void* memory, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_several_aligned(void* memory, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_sized_aligned(void* memory, std::size_t, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 void give_back_several_sized_aligned(void* memory, std::size_t, std::size_t) {
-  std::free(memory);
+  give_memory(memory);
 }
 }

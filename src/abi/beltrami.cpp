@@ -16,6 +16,7 @@
 #include "abi/reports.h"
 #include "abi/status.h"
 #include "base/error.h"
+#include "base/host_memory.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
@@ -57,6 +58,26 @@ bool has_gpl() {
 bool has_lgpl() {
   return std::string_view(kExactNumberName) == "cgal" ||
          std::string_view(spd_solver_name()).starts_with("cholmod");
+}
+
+/// A copy in memory of the allocator's own; null of null. Throws Error INVALID_ARGUMENT or
+/// OUT_OF_MEMORY.
+const HostMemory* keep_allocator(const beltrami_allocator* allocator) {
+  if (allocator == nullptr) return nullptr;
+  const beltrami_allocator given = read_sized(allocator, "allocator");
+  if (given.allocate == nullptr || given.release == nullptr) {
+    throw Error(Fault::kInvalidArgument, "an allocator needs both of its functions");
+  }
+  void* const place = given.allocate(given.user, sizeof(HostMemory), alignof(HostMemory));
+  if (place == nullptr) throw std::bad_alloc();
+  return new (place) HostMemory{given.user, given.allocate, given.release};
+}
+
+void release_allocator(const HostMemory* kept) {
+  if (kept == nullptr) return;
+  const HostMemory memory = *kept;
+  memory.release(memory.user, const_cast<HostMemory*>(kept), sizeof(HostMemory),
+                 alignof(HostMemory));
 }
 
 beltrami_option_info describe(const OptionEntry& option) {
@@ -152,6 +173,7 @@ int32_t beltrami_has(const char* feature) {
   const std::string_view name(feature);
   if (name == "gpl") return beltrami::has_gpl() ? 1 : 0;
   if (name == "lgpl") return beltrami::has_lgpl() ? 1 : 0;
+  if (name == "allocator") return beltrami::follows_host_memory() ? 1 : 0;
   const auto is = [&](std::string_view prefix, const char* value) {
     return name.starts_with(prefix) && name.substr(prefix.size()) == value;
   };
@@ -170,16 +192,35 @@ const char* beltrami_status_advice(beltrami_status status) {
 }
 
 beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out) {
+  return beltrami_create_with_(abi, nullptr, out);
+}
+
+beltrami_status beltrami_create_with_(uint32_t abi, const beltrami_allocator* allocator,
+                                      beltrami_context** out) {
   if (out == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
   *out = nullptr;
   if (abi != BELTRAMI_ABI) return BELTRAMI_E_ABI_MISMATCH;
-  *out = new (std::nothrow) beltrami_context;
-  return *out != nullptr ? BELTRAMI_OK : BELTRAMI_E_OUT_OF_MEMORY;
+  if (allocator != nullptr && !beltrami::follows_host_memory()) return BELTRAMI_E_UNSUPPORTED;
+  beltrami::Failure unused;
+  return guarded(unused, [&] {
+    const beltrami::HostMemory* const memory = beltrami::keep_allocator(allocator);
+    const beltrami::HostMemoryScope of_the_context(memory);
+    *out = new (std::nothrow) beltrami_context;
+    if (*out == nullptr) {
+      beltrami::release_allocator(memory);
+      return BELTRAMI_E_OUT_OF_MEMORY;
+    }
+    (*out)->memory = memory;
+    return BELTRAMI_OK;
+  });
 }
 
 void beltrami_destroy(beltrami_context* context) {
   // During a run this is the caller's defect; a leak is the milder outcome.
-  if (context != nullptr && !context->running) delete context;
+  if (context == nullptr || context->running) return;
+  const beltrami::HostMemory* const memory = context->memory;
+  delete context;
+  beltrami::release_allocator(memory);
 }
 
 const char* beltrami_error_message(const beltrami_context* context) {

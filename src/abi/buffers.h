@@ -23,6 +23,7 @@ inline constexpr std::size_t kFirstSize = 0;
 #define BELTRAMI_FIRST_SIZE(type, last) \
   template <>                           \
   inline constexpr std::size_t kFirstSize<type> = (offsetof(type, last) + sizeof(type::last))
+BELTRAMI_FIRST_SIZE(beltrami_allocator, release);
 BELTRAMI_FIRST_SIZE(beltrami_option_info, summary);
 BELTRAMI_FIRST_SIZE(beltrami_mesh, indices);
 BELTRAMI_FIRST_SIZE(beltrami_certificate, reserved);

@@ -17,6 +17,7 @@
 #include "bake/bake.h"
 #include "base/error.h"
 #include "base/floating_point.h"
+#include "base/host_memory.h"
 #include "base/interrupt.h"
 #include "base/pool.h"
 #include "base/resources.h"
@@ -42,6 +43,7 @@ class HostProgress {
     if (fraction > reached_) reached_ = std::min(fraction, 1.0);
     const StandardFloatingPoint mode_of_the_run;
     const InterruptScope not_in_the_run(nullptr);  // for checks that the host makes meanwhile
+    const HostMemoryScope not_of_the_run(nullptr);
     if (callback_(user_, reached_, stage) != 0) cancelled_ = true;
     return cancelled_;
   }

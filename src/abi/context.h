@@ -15,6 +15,7 @@
 #include "abi/packed.h"
 #include "abi/unwrapped.h"
 #include "base/error.h"
+#include "base/host_memory.h"
 #include "base/types.h"
 #include "base/work.h"
 #include "chart/flattening.h"
@@ -40,6 +41,7 @@ LoadedMesh load_mesh(const beltrami_mesh* mesh, const Work& work,
 }  // namespace beltrami
 
 struct beltrami_context {
+  const beltrami::HostMemory* memory = nullptr;  ///< in a block of its own; null: the C library's
   beltrami::Options options;
   std::optional<beltrami::LoadedMesh> mesh;
   std::optional<beltrami::Flattening> flattening;  ///< of `mesh`
@@ -100,10 +102,12 @@ struct beltrami_context {
 
 namespace beltrami {
 
-/// The wrapper of every entry point with a context: refuses NULL, and calls during a run.
+/// The wrapper of every entry point with a context: refuses NULL, and calls during a run. Memory is
+/// that of the context.
 template <class Body>
 beltrami_status enter(beltrami_context* context, Body&& body) noexcept {
   if (context == nullptr) return BELTRAMI_E_INVALID_ARGUMENT;
+  const HostMemoryScope of_the_context(context->memory);
   return guarded(context->failure, [&]() -> beltrami_status {
     if (context->running) {
       throw Error(Fault::kInvalidState,

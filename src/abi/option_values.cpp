@@ -5,6 +5,7 @@
 #include <charconv>
 #include <string>
 
+#include "abi/option_entry.h"
 #include "abi/option_table.h"
 #include "base/error.h"
 

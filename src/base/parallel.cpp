@@ -14,6 +14,7 @@
 #endif
 
 #include "base/floating_point.h"
+#include "base/host_memory.h"
 #include "base/interrupt.h"
 #include "base/loop_trace.h"
 #include "base/pool.h"
@@ -58,10 +59,12 @@ class Shares {
 };
 
 #ifdef __linux__
-/// Gives the system a hint on the pages that lie within the memory, on several threads.
+/// Gives the system a hint on the pages that lie within the memory, on several threads. Not on
+/// those of a host, who may have given hints of its own.
 void advise(const Work& work, void* memory, std::size_t bytes, int advice) {
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  if (host_memory() != nullptr) return;
   if (bytes < 2 * kChunk || std::align(page, page, memory, bytes) == nullptr) return;
   parallel_for(work, static_cast<std::int64_t>(bytes / page * page), kChunk,
                [&](std::int64_t begin, std::int64_t end) {
@@ -97,6 +100,7 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
   std::exception_ptr failure;
   std::mutex failure_guard;
   const InterruptSource request = interrupt_for_workers();
+  const HostMemory* const memory = host_memory();
   const auto take_chunks = [&](int thread) {
     const StandardFloatingPoint standard_mode;
     try {
@@ -116,6 +120,7 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
       return;
     }
     const InterruptScope interruptible(request);
+    const HostMemoryScope same_memory(memory);
     take_chunks(thread);
   });
   if (failure) std::rethrow_exception(failure);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/types.h"
 #include "pack/outline.h"
 #include "pack/problem.h"
 #include "pack/search.h"

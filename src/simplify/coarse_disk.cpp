@@ -13,7 +13,7 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 namespace {

@@ -2,6 +2,7 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 
 namespace beltrami {

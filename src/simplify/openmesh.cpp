@@ -18,9 +18,9 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
+#include "simplify/coarse.h"
 #include "simplify/quadric.h"
 #include "simplify/shape.h"
-#include "simplify/simplify.h"
 #include "simplify/surface.h"
 
 namespace beltrami {

@@ -16,6 +16,7 @@
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
 #include "simplify/blocks.h"
+#include "simplify/history.h"
 #include "simplify/quadric.h"
 #include "simplify/shape.h"
 #include "simplify/simplify.h"

@@ -21,9 +21,12 @@ struct Destroy {
 };
 using Context = std::unique_ptr<beltrami_context, Destroy>;
 
+/// Of contexts that tests create; null: the C library's.
+inline const beltrami_allocator* memory = nullptr;
+
 inline Context create() {
   beltrami_context* context = nullptr;
-  EXPECT_EQ(beltrami_create(&context), BELTRAMI_OK);
+  EXPECT_EQ(beltrami_create_with(memory, &context), BELTRAMI_OK);
   return Context(context);
 }
 
@@ -50,6 +53,16 @@ Struct sized() {
   Struct value{};
   value.struct_size = sizeof value;
   return value;
+}
+
+/// Of triangles, which must outlive it.
+inline beltrami_surface surface_view(const meshes::TriangleList& mesh) {
+  auto surface = sized<beltrami_surface>();
+  surface.vertex_count = mesh.positions.size();
+  surface.face_count = mesh.faces.size();
+  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
+  return surface;
 }
 
 /// Of polygons of any sizes, which must outlive it.

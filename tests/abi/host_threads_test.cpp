@@ -78,11 +78,7 @@ std::vector<double> unwrapped(const TriangleList& mesh, std::uint64_t threads, J
   if (jobs != nullptr) {
     EXPECT_EQ(beltrami_set_parallel_for(context.get(), &Jobs::run, jobs), BELTRAMI_OK);
   }
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
+  const beltrami_surface surface = surface_view(mesh);
   EXPECT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK)
       << message(context);
   std::vector<double> corner_uvs(6 * mesh.faces.size());

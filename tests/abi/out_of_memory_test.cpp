@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <new>
 #include <vector>
 
 #include "abi/host.h"
@@ -75,32 +74,19 @@ void free(void* memory) noexcept {
 }
 }
 #else
+// Where malloc is the sanitizers' business, contexts take memory from here.
 namespace {
-void* allocate(std::size_t size) {
-  return refuses() ? nullptr : counted(std::malloc(size > 0 ? size : 1));
+void* allocate(void*, std::uint64_t bytes, std::uint64_t alignment) {
+  if (refuses()) return nullptr;
+  return counted(std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment));
 }
-void give_back(void* memory) {
-  if (memory != nullptr) --living;
-  std::free(memory);
+void release(void*, void* block, std::uint64_t, std::uint64_t) {
+  --living;
+  std::free(block);
 }
+const beltrami_allocator counting = {sizeof counting, 0, nullptr, allocate, release};
+[[maybe_unused]] const auto* const used = beltrami::host::memory = &counting;
 }  // namespace
-
-void* operator new(std::size_t size) {
-  if (void* memory = allocate(size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
-void operator delete(void* memory) noexcept {
-  give_back(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  give_back(memory);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  give_back(memory);
-}
 #endif
 
 namespace beltrami {
@@ -165,15 +151,6 @@ void expect_status_wherever_memory_ends(const Call& call, long times, const Resu
   EXPECT_TRUE(same_bits(results(), expected));
 }
 
-beltrami_surface surface_view(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 /// Two triangles apart, each a chart.
 struct TwoCharts {
   std::vector<std::array<double, 2>> uvs = {{0, 0}, {1, 0}, {0, 1}, {3, 0}, {4, 0}, {3, 1}};
@@ -200,7 +177,7 @@ Context for_small_pages(std::uint64_t threads = 1) {
 TEST(OutOfMemory, CreateAnswers) {
   beltrami_context* context = nullptr;
   EXPECT_GE(failures_of([&] {
-              const beltrami_status status = beltrami_create(&context);
+              const beltrami_status status = beltrami_create_with(memory, &context);
               EXPECT_EQ(context != nullptr, status == BELTRAMI_OK);
               return status;
             }),

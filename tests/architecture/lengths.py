@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 FILE_LINES = 600
 # One header is the whole of the interface, most of it comments.
-LONGER = {"include/beltrami/beltrami.h": 1400}
+LONGER = {"include/beltrami/beltrami.h": 1450}
 FUNCTION_LINES = 70
 TREES = ["src", "program", "include", "tests", "benchmarks", "bindings", "evaluation"]
 FUNCTION_TREES = ["src", "program", "include"]

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "atlas/types.h"
 #include "base/error.h"
 #include "base/work.h"
 #include "chart/flattening.h"

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 #include <beltrami/beltrami.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <string>
@@ -162,6 +164,27 @@ TEST(CppContext, AMeshThatIsRefusedLeavesTheResults) {
   EXPECT_EQ(flat.uvs().size(), 4u);
   EXPECT_GT(context.estimate_memory(view(quad)), 0u);
   EXPECT_EQ(flat.try_uvs().status(), Status::kInvalidState);
+}
+
+TEST(CppContext, TakesItsMemoryFromAHost) {
+  static std::atomic<int> living = 0;
+  const beltrami_allocator memory = {
+      sizeof memory, 0, nullptr,
+      [](void*, std::uint64_t bytes, std::uint64_t alignment) {
+        ++living;
+        return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+      },
+      [](void*, void* block, std::uint64_t, std::uint64_t) {
+        --living;
+        std::free(block);
+      }};
+  {
+    Result<Context> context = Context::create(&memory);
+    ASSERT_TRUE(context);
+    EXPECT_TRUE(context->try_unwrap(view(triangulated_cube())));
+    EXPECT_GT(living.load(), 0);
+  }
+  EXPECT_EQ(living.load(), 0);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "cut/open_minimal.h"
 #include "cut/turning.h"
 #include "mesh/surface.h"
+#include "simplify/coarse.h"
 #include "simplify/history.h"
 #include "simplify/simplify.h"
 #include "support/cuts.h"

@@ -23,6 +23,7 @@
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
 #include "prolong/prolongation.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"

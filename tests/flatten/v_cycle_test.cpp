@@ -10,6 +10,7 @@
 #include "flatten/laplacian.h"
 #include "flatten/metric.h"
 #include "prolong/interpolation.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"

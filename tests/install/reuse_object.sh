@@ -15,7 +15,7 @@ done
 all=$BELTRAMI_BUILT/src/beltrami_static.o
 folder=${object%%.dir/*}.dir
 case $folder in
-  */beltrami_entry_points.dir | */beltrami_outer.dir | */beltrami_inner.dir) ;;
+  */beltrami_entry_points.dir | */beltrami_outer.dir | */beltrami_inner.dir | */beltrami_*_memory.dir) ;;
   *) all='' ;;
 esac
 if [ ! -f "$all" ]; then

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/vectors.h"
+
 namespace beltrami {
 namespace {
 

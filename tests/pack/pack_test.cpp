@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/types.h"
+#include "base/vectors.h"
 #include "base/work.h"
 #include "pack/clearance.h"
 #include "pack/outline.h"

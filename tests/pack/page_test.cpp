@@ -10,7 +10,7 @@
 #include "base/vectors.h"
 #include "pack/mask.h"
 #include "pack/outline.h"
-#include "pack/pack.h"
+#include "pack/types.h"
 
 namespace beltrami {
 namespace {

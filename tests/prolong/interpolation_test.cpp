@@ -11,6 +11,7 @@
 #include "base/vectors.h"
 #include "mesh/rest_shape.h"
 #include "prolong/derivative.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"

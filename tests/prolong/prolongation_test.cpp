@@ -13,6 +13,7 @@
 #include "prolong/frame.h"
 #include "prolong/prolongation.h"
 #include "prolong/surface_walk.h"
+#include "simplify/coarse.h"
 #include "simplify/simplify.h"
 #include "support/disks.h"
 #include "support/meshes.h"

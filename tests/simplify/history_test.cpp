@@ -1,5 +1,6 @@
 // Surfaces of any topology made coarse, and cuts of the coarse ones carried to the fine.
 #include "simplify/history.h"
+#include "simplify/coarse.h"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@
 #include "mesh/disk_mesh.h"
 #include "prolong/prolongation.h"
 #include "simplify/back_ends.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 #include "support/disks.h"
 #include "support/meshes.h"
 

@@ -8,7 +8,7 @@
 #include "base/work.h"
 #include "mesh/disk_mesh.h"
 #include "simplify/back_ends.h"
-#include "simplify/simplify.h"
+#include "simplify/coarse.h"
 
 namespace beltrami {
 

@@ -453,12 +453,41 @@ static void edit(beltrami_context* context) {
   REQUIRE(beltrami_session_end(context) == BELTRAMI_OK);
 }
 
+static void* take(void* user, uint64_t bytes, uint64_t alignment) {
+  ++*(int*)user;
+  return alignment <= 16 ? malloc((size_t)bytes) : NULL;
+}
+static void give(void* user, void* block, uint64_t bytes, uint64_t alignment) {
+  REQUIRE(bytes > 0 && alignment <= 16);
+  --*(int*)user;
+  free(block);
+}
+
+static void lend_memory(void) {
+  int living = 0;
+  beltrami_context* context = NULL;
+  beltrami_allocator allocator;
+  memset(&allocator, 0, sizeof allocator);
+  allocator.struct_size = sizeof allocator;
+  allocator.user = &living;
+  allocator.allocate = take;
+  allocator.release = give;
+  if (!beltrami_has("allocator")) {
+    REQUIRE(beltrami_create_with(&allocator, &context) == BELTRAMI_E_UNSUPPORTED);
+    return;
+  }
+  REQUIRE(beltrami_create_with(&allocator, &context) == BELTRAMI_OK && living > 0);
+  beltrami_destroy(context);
+  REQUIRE(living == 0);
+}
+
 int main(void) {
   beltrami_context* context = NULL;
   ask_the_library();
   make_sheet();
   REQUIRE(beltrami_create_(BELTRAMI_ABI + 1, &context) == BELTRAMI_E_ABI_MISMATCH);
   REQUIRE(beltrami_create(&context) == BELTRAMI_OK && context != NULL);
+  lend_memory();
   ask_the_options(context);
   fail_with_an_element(context);
   flatten(context);

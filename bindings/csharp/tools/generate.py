@@ -37,6 +37,7 @@ STRUCTS = {
     "beltrami_uv_mesh": "NativeUvMesh",
     "beltrami_image": "NativeImage",
     "beltrami_bake_job": "NativeBakeJob",
+    "beltrami_allocator": "NativeAllocator",
     "beltrami_baked": "NativeBaked",
     "beltrami_session": "NativeSession",
     "beltrami_session_chart": "NativeSessionChart",
@@ -44,7 +45,13 @@ STRUCTS = {
 # Enums by the word in their names; others lose "BELTRAMI_" and that word, too.
 ENUMS = {"STATUS": "Status", "ELEMENT": "ElementKind", "SCALAR": "Scalar", "CALL": "Call"}
 ENUMS |= {"TYPE": "OptionType", "OPTION": "Option"}
-DELEGATES = ("beltrami_progress", "beltrami_job", "beltrami_parallel_for")
+DELEGATES = (
+    "beltrami_progress",
+    "beltrami_job",
+    "beltrami_parallel_for",
+    "beltrami_allocate",
+    "beltrami_release",
+)
 SCALARS = {
     "uint8_t": "byte",
     "int32_t": "int",
@@ -120,7 +127,8 @@ def member_lines(declaration: str) -> list[str]:
     for match in re.finditer(member, body, re.DOTALL):
         c_type, name, items, comment = match[1].strip(), match[2], match[3], match[4] or ""
         comment = re.sub(r"\n\s*\*", " ", comment)
-        kind = "IntPtr" if "*" in c_type else type_of(c_type)
+        function = c_type in DELEGATES  # a struct that is handed over as it lies has no delegates
+        kind = "IntPtr" if "*" in c_type or function else type_of(c_type)
         lines += sentence_lines(comment, "        ")
         place = f"fixed {kind} {pascal(name)}[{items}]" if items else f"{kind} {pascal(name)}"
         lines.append(f"        public {place};")

@@ -41,13 +41,14 @@ class Canceller {
 /// throws nothing but what a callable of the caller throws.
 class Context {
  public:
-  /// Failure ABI_MISMATCH, OUT_OF_MEMORY.
-  static Result<Context> create() {
+  /// With `memory` the context takes its own from there: see beltrami_create_with. Failure
+  /// ABI_MISMATCH, INVALID_ARGUMENT, OUT_OF_MEMORY, UNSUPPORTED.
+  static Result<Context> create(const beltrami_allocator* memory = nullptr) {
     Context context{Unset()};
     if (!detail::has_room_for([&] { context.handle_ = std::make_shared<detail::Handle>(); })) {
       return Failure(Status::kOutOfMemory);
     }
-    const beltrami_status status = beltrami_create(&context.handle_->context);
+    const beltrami_status status = beltrami_create_with(memory, &context.handle_->context);
     if (status < 0) return Failure(status);
     return context;
   }

@@ -100,6 +100,11 @@ CASES = {
         "source": lambda text: "#include <cmath>\n" + text.replace(
             "/* after beltrami_set_float */", "if (std::sin(value) > 2) return result;"),
         "says": "imports sin"},
+    "allocates-by-the-operators-of-all": {
+        "gates": ["imports"],
+        "source": lambda text: "#include <new>\n" + text.replace(
+            "/* after beltrami_version */", "::operator delete(::operator new(1));"),
+        "says": "takes memory past the host's allocator: imports _Znwm"},
     "global-state": {
         "gates": ["state"],
         "source": lambda text: "static int calls;\n" + text.replace(

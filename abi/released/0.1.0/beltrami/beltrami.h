@@ -119,7 +119,8 @@ BELTRAMI_API const char* beltrami_build_info(void);
 
 /* 1 if this build has `feature`, else 0: "solver:native", "solver:eigen", "solver:cholmod",
  * "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "exact:own",
- * "exact:cgal", "gpl", "lgpl". NULL and unknown names give 0. Cannot fail. */
+ * "exact:cgal", "gpl", "lgpl", "allocator" (beltrami_create_with works). NULL and unknown names
+ * give 0. Cannot fail. */
 BELTRAMI_API int32_t beltrami_has(const char* feature);
 
 /* Name of a status such as "BELTRAMI_E_CLOSED"; "unknown" for other numbers. Static,
@@ -139,6 +140,33 @@ typedef struct beltrami_context beltrami_context;
  * Errors: ABI_MISMATCH, INVALID_ARGUMENT (out is NULL), OUT_OF_MEMORY. */
 BELTRAMI_API beltrami_status beltrami_create_(uint32_t abi, beltrami_context** out);
 #define beltrami_create(out) beltrami_create_(BELTRAMI_ABI, (out))
+
+/* A block of at least `bytes` whose address is a multiple of `alignment`, a power of two of at most
+ * 4096; or NULL where none is left. */
+typedef void* (*beltrami_allocate)(void* user, uint64_t bytes, uint64_t alignment);
+
+/* Takes back a block, with the numbers that it was asked for with. */
+typedef void (*beltrami_release)(void* user, void* block, uint64_t bytes, uint64_t alignment);
+
+/* Memory of the host's. Both functions may be called from every thread of a call on the context,
+ * several at a time; they neither throw nor call the library. */
+typedef struct beltrami_allocator {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+  void* user;
+  beltrami_allocate allocate;
+  beltrami_release release;
+} beltrami_allocator;
+
+/* As beltrami_create, and all memory of the context, of its calls and of their threads comes from
+ * `allocator`, but for exceptions on their way and for CHOLMOD. beltrami_destroy has given it all
+ * back. Results have the same bits. Its `user` must live as long as the context; the struct is
+ * copied. NULL: the C library's memory. Functions without a context take that as well. Errors: as
+ * beltrami_create, INVALID_ARGUMENT (a NULL function), UNSUPPORTED (see beltrami_has). */
+BELTRAMI_API beltrami_status beltrami_create_with_(uint32_t abi,
+                                                   const beltrami_allocator* allocator,
+                                                   beltrami_context** out);
+#define beltrami_create_with(allocator, out) beltrami_create_with_(BELTRAMI_ABI, (allocator), (out))
 
 /* Frees a context; NULL is fine. Cannot fail; during a run, a defect of the caller, does nothing.
  */
@@ -426,8 +454,8 @@ typedef void (*beltrami_job)(void* data, int32_t index);
 
 /* A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
  * all calls have returned. They may come from any threads, also that of the loop itself, several at
- * a time or one after the other. A thread wants a stack of 512 KiB. Neither the
- * loop nor the threads may leave a job by an exception. */
+ * a time or one after the other. A thread wants a stack of 512 KiB. Neither the loop nor the
+ * threads may leave a job by an exception. */
 typedef void (*beltrami_parallel_for)(void* user, int32_t count, beltrami_job job, void* data);
 
 /* Lends the threads of the host to later calls on this context: loops go to `parallel_for`, and the

@@ -45,6 +45,28 @@ namespace Beltrami
         Corner = 3,
     }
 
+    /// <summary>A block of at least `bytes` whose address is a multiple of `alignment`, a power of
+    /// two of at most 4096; or NULL where none is left.</summary>
+    [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+    public delegate IntPtr Allocate(IntPtr user, ulong bytes, ulong alignment);
+
+    /// <summary>Takes back a block, with the numbers that it was asked for with.</summary>
+    [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+    public delegate void Release(IntPtr user, IntPtr block, ulong bytes, ulong alignment);
+
+    /// <summary>Memory of the host's. Both functions may be called from every thread of a call on
+    /// the context, several at a time; they neither throw nor call the library.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct NativeAllocator
+    {
+        public uint StructSize;
+        /// <summary>0.</summary>
+        public uint Reserved;
+        public IntPtr User;
+        public IntPtr Allocate;
+        public IntPtr Release;
+    }
+
     public enum Option
     {
         Method = 0,
@@ -964,6 +986,12 @@ namespace Beltrami
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status beltrami_create_(uint abi, IntPtr* result);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status beltrami_create_with_(
+            uint abi,
+            NativeAllocator* allocator,
+            IntPtr* result);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern void beltrami_destroy(IntPtr context);

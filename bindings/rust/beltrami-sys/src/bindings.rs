@@ -78,7 +78,8 @@ extern "C" {
 extern "C" {
     /** 1 if this build has `feature`, else 0: "solver:native", "solver:eigen", "solver:cholmod",
  "scaffold:own", "scaffold:cgal", "simplifier:native", "simplifier:openmesh", "exact:own",
- "exact:cgal", "gpl", "lgpl". NULL and unknown names give 0. Cannot fail.*/
+ "exact:cgal", "gpl", "lgpl", "allocator" (beltrami_create_with works). NULL and unknown names
+ give 0. Cannot fail.*/
     pub fn beltrami_has(feature: *const ::core::ffi::c_char) -> i32;
 }
 extern "C" {
@@ -102,6 +103,82 @@ extern "C" {
  Errors: ABI_MISMATCH, INVALID_ARGUMENT (out is NULL), OUT_OF_MEMORY.*/
     pub fn beltrami_create_(
         abi: u32,
+        out: *mut *mut beltrami_context,
+    ) -> beltrami_status;
+}
+/** A block of at least `bytes` whose address is a multiple of `alignment`, a power of two of at most
+ 4096; or NULL where none is left.*/
+pub type beltrami_allocate = ::core::option::Option<
+    unsafe extern "C" fn(
+        user: *mut ::core::ffi::c_void,
+        bytes: u64,
+        alignment: u64,
+    ) -> *mut ::core::ffi::c_void,
+>;
+/// Takes back a block, with the numbers that it was asked for with.
+pub type beltrami_release = ::core::option::Option<
+    unsafe extern "C" fn(
+        user: *mut ::core::ffi::c_void,
+        block: *mut ::core::ffi::c_void,
+        bytes: u64,
+        alignment: u64,
+    ),
+>;
+/** Memory of the host's. Both functions may be called from every thread of a call on the context,
+ several at a time; they neither throw nor call the library.*/
+#[repr(C)]
+#[derive(Debug, Copy, Clone)]
+pub struct beltrami_allocator {
+    pub struct_size: u32,
+    /// 0
+    pub reserved: u32,
+    pub user: *mut ::core::ffi::c_void,
+    pub allocate: beltrami_allocate,
+    pub release: beltrami_release,
+}
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+#[cfg(target_pointer_width = "64")]
+const _: () = {
+    [
+        "Size of beltrami_allocator",
+    ][::core::mem::size_of::<beltrami_allocator>() - 32usize];
+    [
+        "Alignment of beltrami_allocator",
+    ][::core::mem::align_of::<beltrami_allocator>() - 8usize];
+    [
+        "Offset of field: beltrami_allocator::struct_size",
+    ][::core::mem::offset_of!(beltrami_allocator, struct_size) - 0usize];
+    [
+        "Offset of field: beltrami_allocator::reserved",
+    ][::core::mem::offset_of!(beltrami_allocator, reserved) - 4usize];
+    [
+        "Offset of field: beltrami_allocator::user",
+    ][::core::mem::offset_of!(beltrami_allocator, user) - 8usize];
+    [
+        "Offset of field: beltrami_allocator::allocate",
+    ][::core::mem::offset_of!(beltrami_allocator, allocate) - 16usize];
+    [
+        "Offset of field: beltrami_allocator::release",
+    ][::core::mem::offset_of!(beltrami_allocator, release) - 24usize];
+};
+impl Default for beltrami_allocator {
+    fn default() -> Self {
+        let mut s = ::core::mem::MaybeUninit::<Self>::uninit();
+        unsafe {
+            ::core::ptr::write_bytes(s.as_mut_ptr(), 0, 1);
+            s.assume_init()
+        }
+    }
+}
+extern "C" {
+    /** As beltrami_create, and all memory of the context, of its calls and of their threads comes from
+ `allocator`, but for exceptions on their way and for CHOLMOD. beltrami_destroy has given it all
+ back. Results have the same bits. Its `user` must live as long as the context; the struct is
+ copied. NULL: the C library's memory. Functions without a context take that as well. Errors: as
+ beltrami_create, INVALID_ARGUMENT (a NULL function), UNSUPPORTED (see beltrami_has).*/
+    pub fn beltrami_create_with_(
+        abi: u32,
+        allocator: *const beltrami_allocator,
         out: *mut *mut beltrami_context,
     ) -> beltrami_status;
 }
@@ -489,8 +566,8 @@ pub type beltrami_job = ::core::option::Option<
 >;
 /** A host's loop: calls `job(data, index)` once for each index from 0 to count - 1, and returns when
  all calls have returned. They may come from any threads, also that of the loop itself, several at
- a time or one after the other. A thread wants a stack of 512 KiB. Neither the
- loop nor the threads may leave a job by an exception.*/
+ a time or one after the other. A thread wants a stack of 512 KiB. Neither the loop nor the
+ threads may leave a job by an exception.*/
 pub type beltrami_parallel_for = ::core::option::Option<
     unsafe extern "C" fn(
         user: *mut ::core::ffi::c_void,
