@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <tuple>
 
 #include "base/interrupt.h"
@@ -15,21 +17,39 @@
 namespace beltrami {
 namespace {
 
-std::vector<WeighedEnergy> face_energies(const AtlasChart& part, const std::vector<Vec2>& uvs,
-                                         double density) {
+constexpr Index kGrain = 8192;  // faces
+
+/// Some faces of a chart.
+struct Share {
+  std::size_t chart;
+  Index first, end;
+};
+
+std::vector<Share> shares_of(const std::vector<AtlasChart>& parts) {
+  std::vector<Share> shares;
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    for (Index f = 0; f < parts[c].real_faces; f += kGrain) {
+      shares.push_back({c, f, std::min(f + kGrain, parts[c].real_faces)});
+    }
+  }
+  return shares;
+}
+
+void measure_faces(const AtlasChart& part, const std::vector<Vec2>& uvs, double density,
+                   const Share& share, std::vector<WeighedEnergy>& energies) {
   const DiskMesh& mesh = part.chart.mesh;
-  std::vector<WeighedEnergy> energies;
-  energies.reserve(part.real_faces);
-  PollSometimes poll;
-  for (Index f = 0; f < part.real_faces; ++f) {
-    poll();
+  for (Index f = share.first; f < share.end; ++f) {
     const auto [a, b, c] = mesh.faces[f];
     const FaceDistortion face =
         measure_face({mesh.positions[a], mesh.positions[b], mesh.positions[c]},
                      {uvs[a] / density, uvs[b] / density, uvs[c] / density});
-    energies.push_back({face.symmetric_dirichlet, face.area});
+    energies[f] = {face.symmetric_dirichlet, face.area};
   }
-  return energies;
+}
+
+/// Whether it is a number; others are left out.
+bool counts(const WeighedEnergy& face) {
+  return std::isfinite(face.energy);
 }
 
 }  // namespace
@@ -38,28 +58,29 @@ AtlasEnergy measure_charts(const std::vector<AtlasChart>& parts,
                            const std::vector<MappedChart>& maps, double scale,
                            std::vector<ChartInfo>& charts, const Work& work) {
   std::vector<std::vector<WeighedEnergy>> energies(parts.size());
+  for (std::size_t c = 0; c < parts.size(); ++c) energies[c].resize(parts[c].real_faces);
+  const std::vector<Share> shares = shares_of(parts);
+  parallel_for(work, size_of(shares), 1, [&](std::int64_t i, std::int64_t) {
+    const std::size_t c = shares[i].chart;
+    measure_faces(parts[c], maps[c].uvs, charts[c].density * scale, shares[i], energies[c]);
+  });
+  std::vector<Index> left_out(parts.size());
   parallel_for(work, size_of(parts), 1, [&](std::int64_t c, std::int64_t) {
-    energies[c] = face_energies(parts[c], maps[c].uvs, charts[c].density * scale);
+    std::vector<WeighedEnergy>& own = energies[c];
+    charts[c].area = 0;
+    for (const WeighedEnergy& face : own) charts[c].area += face.area;
+    left_out[c] = static_cast<Index>(std::erase_if(own, std::not_fn(counts)));
+    const EnergySummary summary = summarise(own);
+    charts[c].symmetric_dirichlet = summary.mean;
+    charts[c].max = summary.max;
   });
   AtlasEnergy atlas;
   std::vector<WeighedEnergy> all;
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    std::vector<WeighedEnergy> own;
-    charts[c].area = 0;
-    for (const WeighedEnergy& face : energies[c]) {
-      charts[c].area += face.area;
-      if (std::isfinite(face.energy)) {
-        own.push_back(face);
-      } else {
-        ++atlas.left_out;
-      }
-    }
-    all.insert(all.end(), own.begin(), own.end());
-    const EnergySummary summary = summarise(std::move(own));
-    charts[c].symmetric_dirichlet = summary.mean;
-    charts[c].max = summary.max;
+    all.insert(all.end(), energies[c].begin(), energies[c].end());
+    atlas.left_out += left_out[c];
   }
-  const EnergySummary summary = summarise(std::move(all));
+  const EnergySummary summary = summarise(all);
   atlas.symmetric_dirichlet = summary.mean;
   atlas.max = summary.max;
   atlas.p99 = summary.p99;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -112,9 +113,25 @@ void measure(Index real_faces, LocalMaps& maps) {
       measured.push_back({face.symmetric_dirichlet, face.area});
     }
   }
-  const EnergySummary summary = summarise(std::move(measured));
+  const EnergySummary summary = summarise(measured);
   maps.energy = std::isnan(summary.mean) ? 2 : summary.mean;
   maps.p99 = std::isnan(summary.p99) ? 2 : summary.p99;
+}
+
+/// Calls `map(c, work)` for each of these charts: for one that has most of the faces first, on all
+/// threads, then for the others side by side.
+template <class Map>
+void for_each_chart(const std::vector<std::size_t>& which, const std::vector<Chart>& charts,
+                    const Work& work, const Map& map) {
+  Index faces = 0;
+  for (const std::size_t c : which) faces += charts[c].mesh.face_count();
+  const auto large = std::find_if(which.begin(), which.end(), [&](std::size_t c) {
+    return 2 * charts[c].mesh.face_count() > faces;
+  });
+  if (large != which.end()) map(*large, work);
+  parallel_for(work, size_of(which), 1, [&](std::int64_t i, std::int64_t) {
+    if (which.begin() + i != large) map(which[i], work.aside());
+  });
 }
 
 }  // namespace
@@ -127,14 +144,16 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
   Corners corners;
   if (before != nullptr) corners = corners_of(*before);
   maps.uvs.resize(maps.cut.charts.size());
-  parallel_for(work, size_of(maps.uvs), 1, [&](std::int64_t c, std::int64_t) {
+  std::vector<std::size_t> all(maps.uvs.size());
+  std::iota(all.begin(), all.end(), 0);
+  for_each_chart(all, maps.cut.charts, work, [&](std::size_t c, const Work& part) {
     const Chart& chart = maps.cut.charts[c];
     std::vector<Vec2> start;
     if (before != nullptr) start = map_before(chart, corners);
     const bool was_there = !start.empty() && was_chart(chart, *before);
     const MapSetting setting{Injectivity::kLocal, tolerance};
-    maps.uvs[c] = was_there ? std::move(start)
-                            : map_chart(chart, std::move(start), setting, known, work.aside());
+    maps.uvs[c] =
+        was_there ? std::move(start) : map_chart(chart, std::move(start), setting, known, part);
   });
   measure(real_faces, maps);
   return maps;
@@ -149,8 +168,7 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
   if (crossing.empty()) return maps;
   Corners corners;
   if (before != nullptr) corners = corners_of(*before);
-  parallel_for(work, size_of(crossing), 1, [&](std::int64_t i, std::int64_t) {
-    const std::size_t c = crossing[i];
+  for_each_chart(crossing, maps.cut.charts, work, [&](std::size_t c, const Work& part) {
     const Chart& chart = maps.cut.charts[c];
     std::vector<Vec2> start;
     if (before != nullptr) start = map_before(chart, corners);
@@ -158,12 +176,12 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
       maps.uvs[c] = std::move(start);  // it crossed itself then, too, and was mended or left so
       return;
     }
-    if (open_touching_sides(chart.mesh, work.aside(), maps.uvs[c])) return;
+    if (open_touching_sides(chart.mesh, part, maps.uvs[c])) return;
     const bool serves = !start.empty() && (is_simple(chart.mesh.boundary, start) ||
-                                           open_touching_sides(chart.mesh, work.aside(), start));
+                                           open_touching_sides(chart.mesh, part, start));
     if (!serves) start.clear();
     const MapSetting setting{Injectivity::kGlobal, tolerance};
-    std::vector<Vec2> uvs = map_chart(chart, std::move(start), setting, known, work.aside());
+    std::vector<Vec2> uvs = map_chart(chart, std::move(start), setting, known, part);
     if (is_simple(chart.mesh.boundary, uvs)) maps.uvs[c] = std::move(uvs);
   });
   measure(real_faces, maps);

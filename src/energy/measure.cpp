@@ -98,13 +98,40 @@ FaceDistortion measure(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& 
   return result;
 }
 
+bool is_worse(const WeighedEnergy& a, const WeighedEnergy& b) {
+  return std::tie(a.energy, a.area) > std::tie(b.energy, b.area);
+}
+
+/// The worst faces, the worst first: at least those with more than so much area, or all.
+std::vector<WeighedEnergy> worst_of(std::vector<WeighedEnergy> faces, double area) {
+  constexpr std::size_t kAtFirst = 64, kTimes = 4;  // any will do
+  PollSometimes poll;
+  const auto before = [&](const WeighedEnergy& a, const WeighedEnergy& b) {
+    poll();
+    return is_worse(a, b);
+  };
+  std::size_t sorted = 0;
+  double reached = 0;
+  for (std::size_t most = faces.size() / kAtFirst + kAtFirst;
+       sorted < faces.size() && reached <= area; most *= kTimes) {
+    const auto begin = faces.begin() + static_cast<std::ptrdiff_t>(sorted);
+    const auto end = faces.begin() + static_cast<std::ptrdiff_t>(std::min(most, faces.size()));
+    std::nth_element(begin, end, faces.end(), before);
+    std::sort(begin, end, before);
+    for (auto face = begin; face != end; ++face) reached += face->area;
+    sorted = static_cast<std::size_t>(end - faces.begin());
+  }
+  faces.resize(sorted);
+  return faces;
+}
+
 }  // namespace
 
 FaceDistortion measure_face(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& w) {
   return measure(p, w, 0);
 }
 
-EnergySummary summarise(std::vector<WeighedEnergy> faces) {
+EnergySummary summarise(const std::vector<WeighedEnergy>& faces) {
   EnergySummary summary{kNaN, kNaN, kNaN, 0, kNaN, kNaN};
   double area = 0, sum = 0;
   for (const WeighedEnergy& face : faces) {
@@ -112,31 +139,37 @@ EnergySummary summarise(std::vector<WeighedEnergy> faces) {
     sum += face.area * face.energy;
   }
   if (!(area > 0)) return summary;
-  sort_interruptibly(faces.begin(), faces.end(),
-                     [](const WeighedEnergy& a, const WeighedEnergy& b) {
-                       return std::tie(a.energy, a.area) > std::tie(b.energy, b.area);
-                     });
+  const std::vector<WeighedEnergy> worst = worst_of(faces, 2 * kTopShare * area);
   summary.mean = summary.mean_of_all = sum / area;
-  summary.max_of_all = faces.front().energy;
+  summary.max_of_all = worst.front().energy;
   std::size_t first = 0;  // that has a say
   double beyond = 0;
-  while (first + 1 < faces.size() && beyond + faces[first].area < kSliverShare * area) {
-    beyond += faces[first++].area;
+  while (first + 1 < worst.size() && beyond + worst[first].area < kSliverShare * area) {
+    beyond += worst[first++].area;
   }
   summary.slivers = static_cast<Index>(first);
   if (first > 0) {
+    // In the order of the faces: that of the list behind the worst is the library's of C++.
+    const WeighedEnergy& last = worst[first - 1];
+    std::size_t alike = 0;  // slivers that are as bad as the last one
+    while (alike < first && !is_worse(worst[first - 1 - alike], last)) ++alike;
     area = sum = 0;
-    for (std::size_t f = first; f < faces.size(); ++f) {
-      area += faces[f].area;
-      sum += faces[f].area * faces[f].energy;
+    for (const WeighedEnergy& face : faces) {
+      if (is_worse(face, last)) continue;
+      if (alike > 0 && !is_worse(last, face)) {
+        --alike;
+        continue;
+      }
+      area += face.area;
+      sum += face.area * face.energy;
     }
     summary.mean = sum / area;
   }
-  summary.max = faces[first].energy;
+  summary.max = worst[first].energy;
   beyond = 0;
-  for (std::size_t f = first; f < faces.size() && std::isnan(summary.p99); ++f) {
-    beyond += faces[f].area;
-    if (beyond > kTopShare * area) summary.p99 = faces[f].energy;
+  for (std::size_t f = first; f < worst.size() && std::isnan(summary.p99); ++f) {
+    beyond += worst[f].area;
+    if (beyond > kTopShare * area) summary.p99 = worst[f].energy;
   }
   return summary;
 }

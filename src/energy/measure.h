@@ -38,8 +38,8 @@ struct EnergySummary {
   double mean_of_all, max_of_all;  ///< with them
 };
 
-/// Sums finite energies up. Takes the list to sort it.
-EnergySummary summarise(std::vector<WeighedEnergy> faces);
+/// Sums finite energies up.
+EnergySummary summarise(const std::vector<WeighedEnergy>& faces);
 
 /// Means over the faces weighted by 3D area. A face is left out if it has no 3D area, or if its
 /// energy is not finite (flipped or degenerate in the plane).

@@ -43,7 +43,7 @@ bool is_final(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
     measure_distortion(mesh.positions, mesh.faces, uvs, of_face.data(), work);
     std::vector<WeighedEnergy> faces;
     for (std::size_t f = 0; f < of_face.size(); ++f) faces.push_back({of_face[f], rest[f].area()});
-    return summarise(std::move(faces));
+    return summarise(faces);
   };
   if (!(energies(start).mean < 2 + kIsometric)) return false;
   std::vector<Vec2> apart = start;

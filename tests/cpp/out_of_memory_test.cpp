@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <vector>
@@ -12,23 +13,37 @@
 #include "cpp/meshes.h"
 
 namespace {
-/// Allocations that succeed from now on; negative: all do.
+
+/// Allocations that succeed from now on, of the headers and of the library; negative: all do.
 std::atomic<long> left{-1};
+
+bool refuses() {
+  if (left.load() < 0 || left.fetch_sub(1) > 0) return false;
+  left = 0;
+  return true;
+}
+
+void* allocate(void*, std::uint64_t bytes, std::uint64_t alignment) {
+  if (refuses()) return nullptr;
+  return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+void release(void*, void* block, std::uint64_t, std::uint64_t) {
+  std::free(block);
+}
+const beltrami_allocator memory = {sizeof memory, 0, nullptr, allocate, release};
+
 }  // namespace
 
 void* operator new(std::size_t size) {
-  if (left.load() >= 0 && left.fetch_sub(1) <= 0) {
-    left = 0;
-    throw std::bad_alloc();
-  }
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  if (refuses()) throw std::bad_alloc();
+  if (void* block = std::malloc(size == 0 ? 1 : size)) return block;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
-  std::free(memory);
+void operator delete(void* block) noexcept {
+  std::free(block);
 }
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+void operator delete(void* block, std::size_t) noexcept {
+  std::free(block);
 }
 
 namespace beltrami::host {
@@ -53,9 +68,9 @@ long until_there_is_room(Call call) {
 TEST(CppMemory, WhereItRunsOutThereIsAFailureAndNothingIsThrown) {
   const Triangles quad = bent_quad();
   const Surface surface(quad.positions, quad.faces);
-  EXPECT_GT(until_there_is_room([] { return Context::create(); }), 0);
+  EXPECT_GT(until_there_is_room([] { return Context::create(&memory); }), 0);
 
-  Context context;
+  Context context = Context::create(&memory).value();
   context.set(option::kMethod, Method::kTutte).set(option::kCut, Cut::kMinimal);
   EXPECT_GT(until_there_is_room([&] { return context.try_flatten(surface); }), 0);
   EXPECT_GT(until_there_is_room([&] { return context.try_unwrap(surface); }), 0);
