@@ -49,6 +49,36 @@ PackChart real_part(const AtlasChart& part, const std::vector<Vec2>& uvs) {
   return chart;
 }
 
+Outline outline_of(const AtlasChart& part, const std::vector<Vec2>& uvs) {
+  const DiskMesh& mesh = part.chart.mesh;
+  double area = 0;
+  std::vector<bool> is_folded(part.real_faces);
+  std::vector<Index> number(uvs.size(), kNone);  // as in its real part
+  std::vector<Vec2> points;
+  for (Index f = 0; f < part.real_faces; ++f) {
+    const auto& [i, j, k] = mesh.faces[f];
+    const Vec2 p = uvs[j] - uvs[i], q = uvs[k] - uvs[i];
+    const double twice = p.x() * q.y() - p.y() * q.x();
+    area += 0.5 * std::abs(twice);
+    is_folded[f] = twice < 0;
+    for (const Index v : mesh.faces[f]) {
+      if (number[v] != kNone) continue;
+      number[v] = size_of(points);
+      points.push_back(uvs[v]);
+    }
+  }
+  std::vector<std::array<Index, 2>> edges;
+  for (Index h = 0; h < 3 * part.real_faces; ++h) {
+    const Index twin = mesh.twin[h];
+    const bool is_inside = twin != kNone && twin < 3 * part.real_faces;
+    if (is_inside && is_folded[h / 3] == is_folded[twin / 3]) continue;
+    std::array<Index, 2> edge = {number[mesh.origin(h)], number[mesh.target(h)]};
+    if (is_folded[h / 3]) std::swap(edge[0], edge[1]);
+    edges.push_back(edge);
+  }
+  return outline_of(points, edges, area);
+}
+
 Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& options, bool float32,
                 std::vector<MappedChart>& maps, const Work& work) {
   std::vector<PackChart> parts;

@@ -8,12 +8,16 @@
 #include "atlas/pages.h"
 #include "base/vectors.h"
 #include "base/work.h"
+#include "pack/outline.h"
 #include "pack/types.h"
 
 namespace beltrami {
 
 /// The real faces of a map, on the vertices that they use.
 PackChart real_part(const AtlasChart& chart, const std::vector<Vec2>& uvs);
+
+/// Its outline, sooner: edges between two faces of one orientation are no part of it.
+Outline outline_of(const AtlasChart& chart, const std::vector<Vec2>& uvs);
 
 /// Moves every map by a rigid motion of its own and scales all of them alike, onto pages (tile_of)
 /// in the numbers delivered; with `snap` as snap_to_texels has it from there. What rounding would

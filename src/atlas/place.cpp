@@ -42,7 +42,7 @@ Vec2 upright(const AtlasChart& chart, const MappedChart& map) {
     const Vec2 sizes = box_of(map.uvs).sizes();
     return sizes.x() < sizes.y() ? Vec2(0, 1) : Vec2(1, 0);
   }
-  return turn_to_least_box(outline_of(real_part(chart, map.uvs)).hull);
+  return turn_to_least_box(outline_of(chart, map.uvs).hull);
 }
 
 std::vector<Vec2> turned(const Vec2& turn, std::vector<Vec2> uvs) {

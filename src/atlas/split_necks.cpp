@@ -133,7 +133,7 @@ class Splitter {
                 ? rules.seam_budget * root_ - seam_length(whole.charts, admitted.input_vertex)
                 : kFar;
     parallel_for(work_, size_of(pieces_), 1, [&](std::int64_t p, std::int64_t) {
-      pieces_[p].outline = outline_of(real_part(*pieces_[p].chart, pieces_[p].map->uvs));
+      pieces_[p].outline = outline_of(*pieces_[p].chart, pieces_[p].map->uvs);
     });
     for (const Piece& piece : pieces_) covered += piece.map->error ? 0 : piece.outline.area;
     covered_ = covered;
@@ -316,7 +316,7 @@ class Splitter {
       part.map = &part.part->map;
       part.scale = piece.scale;
       if (!is_connected(*part.chart)) return {};
-      part.outline = outline_of(real_part(*part.chart, part.map->uvs));
+      part.outline = outline_of(*part.chart, part.map->uvs);
       if (part.outline.area < kLeastShare * piece.outline.area) return {};
     }
     return parts;

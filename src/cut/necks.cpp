@@ -39,7 +39,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Which cells the faces of a map cover.
+/// Which cells an injective map covers.
 class Raster {
  public:
   enum Cover : std::uint8_t { kOutside, kVirtual, kReal };
@@ -50,12 +50,14 @@ class Raster {
     origin_ = box.min();
     cell_ = box.sizes().maxCoeff() / kCells;
     cells_.assign(static_cast<std::size_t>(kCells) * kCells, kOutside);
+    std::vector<Vec2> border;
+    for (const Index v : disk.boundary) border.push_back(in_cells(uvs[v]));
+    fill(border, kReal);
     PollSometimes poll;
-    for (Index f = disk.face_count(); f-- > 0;) {
+    for (Index f = real_faces; f < disk.face_count(); ++f) {
       poll();
       const auto& [a, b, c] = disk.faces[f];
-      fill({in_cells(uvs[a]), in_cells(uvs[b]), in_cells(uvs[c])},
-           f < real_faces ? kReal : kVirtual);
+      fill({in_cells(uvs[a]), in_cells(uvs[b]), in_cells(uvs[c])}, kVirtual);
     }
   }
 
@@ -83,26 +85,25 @@ class Raster {
  private:
   Vec2 in_cells(const Vec2& p) const { return (p - origin_) / cell_; }
 
-  void fill(const std::array<Vec2, 3>& corners, Cover cover) {
-    double low = kFar, high = -kFar;
-    for (const Vec2& p : corners) {
-      low = std::min(low, p.y());
-      high = std::max(high, p.y());
-    }
-    const int first = std::max(0, static_cast<int>(std::ceil(low - 0.5)));
-    const int last = std::min(kCells - 1, static_cast<int>(std::floor(high - 0.5)));
-    for (int y = first; y <= last; ++y) {
-      double left = kFar, right = -kFar;
-      for (int k = 0; k < 3; ++k) {
-        const Vec2 &p = corners[k], &q = corners[(k + 1) % 3];
+  /// Those whose centers lie inside a polygon.
+  void fill(const std::vector<Vec2>& corners, Cover cover) {
+    std::vector<std::pair<int, double>> crossings;  // rows, and where their middles are crossed
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 &p = corners[i], &q = corners[i + 1 < corners.size() ? i + 1 : 0];
+      const auto [low, high] = std::minmax(p.y(), q.y());
+      const int first = std::max(0, static_cast<int>(std::ceil(low - 0.5)));
+      for (int y = first; y < kCells && y + 0.5 < high; ++y) {
         const double t = (y + 0.5 - p.y()) / (q.y() - p.y());
-        if (!(t >= 0 && t <= 1)) continue;
-        left = std::min(left, p.x() + t * (q.x() - p.x()));
-        right = std::max(right, p.x() + t * (q.x() - p.x()));
+        crossings.emplace_back(y, p.x() + t * (q.x() - p.x()));
       }
-      const int begin = std::max(0, static_cast<int>(std::ceil(left - 0.5)));
-      const int end = std::min<int>(kCells - 1, static_cast<int>(std::floor(right - 0.5)));
-      for (int x = begin; x <= end; ++x) cells_[static_cast<std::size_t>(y) * kCells + x] = cover;
+    }
+    std::sort(crossings.begin(), crossings.end());
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+      const int begin = std::max(0, static_cast<int>(std::ceil(crossings[i].second - 0.5)));
+      const int end =
+          std::min(kCells - 1, static_cast<int>(std::floor(crossings[i + 1].second - 0.5)));
+      const auto row = cells_.begin() + static_cast<std::ptrdiff_t>(crossings[i].first) * kCells;
+      if (begin <= end) std::fill(row + begin, row + end + 1, cover);
     }
   }
 

@@ -80,26 +80,33 @@ std::vector<Vec2> hull_of(std::vector<Vec2> points) {
 }  // namespace
 
 Outline outline_of(const PackChart& chart) {
-  Outline outline;
+  double area = 0;
   std::vector<Directed> all;
   all.reserve(3 * chart.faces.size());
   for (const Triangle& f : chart.faces) {
     const Vec2& a = chart.points[f[0]];
     const double twice = cross(chart.points[f[1]] - a, chart.points[f[2]] - a);
-    outline.area += 0.5 * std::abs(twice);
+    area += 0.5 * std::abs(twice);
     for (int k = 0; k < 3; ++k) {
       const Directed edge{f[k], f[next_corner(k)]};
       if (edge[0] != edge[1]) all.push_back(twice < 0 ? Directed{edge[1], edge[0]} : edge);
     }
   }
-  outline.edges = uncancelled(all, size_of(chart.points));
-  std::vector<Index> place(chart.points.size(), kNone);
+  return outline_of(chart.points, all, area);
+}
+
+Outline outline_of(const std::vector<Vec2>& points, const std::vector<Directed>& edges,
+                   double area) {
+  Outline outline;
+  outline.area = area;
+  outline.edges = uncancelled(edges, size_of(points));
+  std::vector<Index> place(points.size(), kNone);
   for (Directed& edge : outline.edges) {
-    outline.length += (chart.points[edge[1]] - chart.points[edge[0]]).norm();
+    outline.length += (points[edge[1]] - points[edge[0]]).norm();
     for (Index& end : edge) {
       if (place[end] == kNone) {
         place[end] = size_of(outline.points);
-        outline.points.push_back(chart.points[end]);
+        outline.points.push_back(points[end]);
       }
       end = place[end];
     }

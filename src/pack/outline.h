@@ -23,6 +23,11 @@ struct Outline {
 /// Takes linear time but for vertices of many edges. Precondition: finite points, indices in range.
 Outline outline_of(const PackChart& chart);
 
+/// The same of what the faces' edges are, directed, what is covered on their left; opposite ones
+/// cancel, and may be missing. `area`: of the faces.
+Outline outline_of(const std::vector<Vec2>& points, const std::vector<std::array<Index, 2>>& edges,
+                   double area);
+
 /// The border of a chart where it lies.
 struct PlacedOutline {
   Index page = 0;
