@@ -101,6 +101,17 @@ ElasticModel::ElasticModel(const Surface& surface, Index real_faces, const Work&
   assemble();
 }
 
+ElasticModel::ElasticModel(const ElasticModel& other, const Work& work)
+    : surface_(other.surface_),
+      work_(work),
+      defect_(other.defect_),
+      laplacian_(other.laplacian_),
+      area_(other.area_),
+      price_(other.price_),
+      bilaplacian_(other.bilaplacian_),
+      lower_(other.lower_),
+      pinned_(other.pinned_) {}
+
 /// In proportion to the price of strain the stress yields less, for the same curvature.
 void ElasticModel::assemble() {
   bilaplacian_ = bilaplacian(laplacian_, area_.cwiseProduct(price_).cwiseInverse());

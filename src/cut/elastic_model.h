@@ -54,6 +54,8 @@ class ElasticModel {
   /// `real_faces`: those after them are virtual and weigh hardly anything in the energy. Throws
   /// std::bad_alloc.
   ElasticModel(const Surface& surface, Index real_faces, const Work& work);
+  /// One that knows the same, for another thread. What follows from the pins it computes anew.
+  ElasticModel(const ElasticModel& other, const Work& work);
 
   /// Takes the vertices that seams are at, `pinned`: per vertex, those of borders need not be. Each
   /// component with a face must have one. What follows is computed when it is asked for; that of

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 #include "base/bracket.h"
+#include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/types.h"
 #include "cut/cut_into_charts.h"
@@ -161,6 +164,19 @@ SeamRefinement::SeamRefinement(const SeamSurface& coarse, KnownMaps& known, Anch
             target.seam_budget * kSpent, start.least_cost, work.part(0, 0),
             std::move(seams.anchors), mirror) {}
 
+SeamRefinement::SeamRefinement(const SeamRefinement& other, const Work& work)
+    : coarse_(other.coarse_),
+      known_(other.known_),
+      mirror_(other.mirror_),
+      start_(other.start_),
+      target_(other.target_),
+      effort_(other.effort_),
+      work_(work),
+      steps_(other.steps_),
+      path_cost_(other.path_cost_),
+      tree_(other.tree_, path_cost_, work),
+      contact_(other.contact_) {}
+
 /// How many steps there will be is not known: the progress nears the end of its share.
 void SeamRefinement::report_step() {
   ++steps_;
@@ -300,14 +316,14 @@ bool SeamRefinement::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
     }
     const double free = missed_by(maps);
     if (free > 1 && !is_last) {  // contact can only add to it
-      const double guessed = free * contact_;
+      const double guessed = free * contact_.factor;
       attempt = {{tree_.seams(), tree_.anchors()}, tree_.cost(), maps.energy, guessed, {}, true};
       return true;
     }
-    apart = with_contact(maps, coarse_.real_faces, tolerance(),
-                         apart_.uvs.empty() ? nullptr : &apart_, known_, here());
-    apart_ = apart;
-    contact_ = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
+    const LocalMaps* const before = contact_.maps.uvs.empty() ? nullptr : &contact_.maps;
+    apart = with_contact(maps, coarse_.real_faces, tolerance(), before, known_, here());
+    contact_.maps = apart;
+    contact_.factor = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
     if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
   }
   attempt = {{tree_.seams(), tree_.anchors()},
@@ -477,31 +493,80 @@ void SeamRefinement::improve(int rounds, Attempt& best) {
   vary(rounds, best);
 }
 
-/// Charts that were parted are joined elsewhere on trial, where that makes it better: the joints
-/// that promise most come first, so trials that gain nothing tell of those that follow.
-void SeamRefinement::join_charts(Attempt& best) {
+/// What parts two charts of the seams that there are, and may be worth doing without, the most
+/// promising first.
+std::vector<SeamTree::Joint> SeamRefinement::joints_of(const Attempt& best, double energy) {
+  const CutSurface cut = cut_into_charts(coarse_.surface, tree_.seams(), here());
+  std::vector<SeamTree::Joint> joints = tree_.joints(cut.chart_of_face, energy);
+  // What they take away is not worth a map, and there may be thousands.
+  std::erase_if(
+      joints, [&](const SeamTree::Joint& joint) { return joint.cost < best.cost * kWorthMapping; });
+  return joints;
+}
+
+/// The best seams without a joint, with what has to be added to them.
+SeamRefinement::Trial SeamRefinement::try_joint(const SeamTree::Joint& joint, const Attempt& best,
+                                                const Contact& contact, double energy) {
+  contact_ = contact;
+  tree_.take(best.seams.seams, best.seams.anchors);
+  tree_.join(joint);
+  tree_.extend(energy, true);
+  shorten_seams(energy, true);
+  if (tree_.cost() > best.cost * (1 - kWorthMapping)) return {};
   LocalMaps maps;
+  Attempt attempt;
+  if (!judge(false, maps, attempt)) attempt = Attempt();
+  return {std::move(attempt), contact_};
+}
+
+/// Each by itself, so that those that run side by side come to the same.
+std::vector<SeamRefinement::Trial> SeamRefinement::try_joints(
+    std::span<const SeamTree::Joint> joints, const Attempt& best, const Contact& contact,
+    double energy) {
+  std::vector<Trial> trials(joints.size());
+  if (joints.size() == 1) {
+    trials[0] = try_joint(joints[0], best, contact, energy);
+    return trials;
+  }
+  const std::thread::id caller = std::this_thread::get_id();
+  parallel_for(work_, std::ssize(joints), 1, [&](std::int64_t i, std::int64_t) {
+    const bool is_caller = std::this_thread::get_id() == caller;
+    SeamRefinement own(*this, is_caller ? work_ : work_.aside());
+    trials[i] = own.try_joint(joints[i], best, contact, energy);
+  });
+  return trials;
+}
+
+/// Charts that were parted are joined elsewhere on trial, where that makes it better: trials that
+/// gain nothing tell of those that follow.
+void SeamRefinement::join_charts(Attempt& best) {
+  Contact contact = contact_;
   std::vector<Index> tried;
   for (int idle = 0; idle < effort_.idle_joins && best.excess <= 1 && !work_.out_of_time();) {
     tree_.take(best.seams.seams, best.seams.anchors);
-    const CutSurface cut = cut_into_charts(coarse_.surface, tree_.seams(), here());
     const double energy = aim(best.excess);
+    std::vector<SeamTree::Joint> joints = joints_of(best, energy);
+    std::erase_if(joints, [&](const SeamTree::Joint& joint) {
+      return std::find(tried.begin(), tried.end(), joint.middle()) != tried.end();
+    });
     bool gained = false;
-    for (const SeamTree::Joint& joint : tree_.joints(cut.chart_of_face, energy)) {
-      // What it takes away is not worth a map, and there may be thousands of such joints.
-      if (joint.cost < best.cost * kWorthMapping) continue;
-      if (std::find(tried.begin(), tried.end(), joint.middle()) != tried.end()) continue;
-      tried.push_back(joint.middle());
-      tree_.take(best.seams.seams, best.seams.anchors);
-      tree_.join(joint);
-      tree_.extend(energy, true);
-      shorten_seams(energy, true);
-      if (tree_.cost() > best.cost * (1 - kWorthMapping)) continue;
-      Attempt attempt;
-      gained = judge(false, maps, attempt) && attempt.is_better_than(best);
-      if (gained) best = std::move(attempt);
-      idle = gained ? 0 : idle + 1;
-      if (gained || idle == effort_.idle_joins) break;
+    for (std::size_t next = 0;
+         next < joints.size() && !gained && idle < effort_.idle_joins && !work_.out_of_time();) {
+      const int most = std::min(work_.threads(), effort_.idle_joins - idle);
+      const std::size_t count = std::min<std::size_t>(most, joints.size() - next);
+      for (Trial& trial :
+           try_joints(std::span(joints).subspan(next, count), best, contact, energy)) {
+        tried.push_back(joints[next++].middle());
+        if (!trial.attempt) continue;
+        gained = trial.attempt->is_better_than(best);
+        if (gained) {
+          best = *std::move(trial.attempt);
+          contact = std::move(trial.contact);
+          idle = 0;
+          break;
+        }
+        ++idle;
+      }
     }
     if (!gained) return;
   }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/vectors.h"
@@ -68,6 +70,20 @@ class SeamRefinement {
   void improve(int rounds, Attempt& best);
 
  private:
+  /// What was judged last with contact.
+  struct Contact {
+    LocalMaps maps;
+    double factor = 1;  ///< by what its excess was more than without
+  };
+
+  /// What became of seams on trial.
+  struct Trial {
+    std::optional<Attempt> attempt;  ///< none where they are not worth a map
+    Contact contact;
+  };
+
+  /// The same, for a trial on another thread.
+  SeamRefinement(const SeamRefinement& other, const Work& work);
   void report_step();
   Work here() const;
   bool extend_astray(double model_energy, int number, bool reopens);
@@ -83,6 +99,11 @@ class SeamRefinement {
   void settle(Attempt now, LocalMaps& maps, Attempt& best);
   void calibrate(const LocalMaps& maps);
   Attempt approach(double model_energy, bool is_sketched, bool is_calibrated, int calibrations);
+  std::vector<SeamTree::Joint> joints_of(const Attempt& best, double energy);
+  Trial try_joint(const SeamTree::Joint& joint, const Attempt& best, const Contact& contact,
+                  double energy);
+  std::vector<Trial> try_joints(std::span<const SeamTree::Joint> joints, const Attempt& best,
+                                const Contact& contact, double energy);
   void join_charts(Attempt& best);
   void vary(int rounds, Attempt& best);
 
@@ -96,8 +117,7 @@ class SeamRefinement {
   int steps_ = 0;                  ///< that were reported
   std::vector<double> path_cost_;  ///< per half-edge, infinite along those that are not to be cut
   SeamTree tree_;
-  LocalMaps apart_;     ///< judged last, with contact
-  double contact_ = 1;  ///< by what its excess was more than without
+  Contact contact_;
 };
 
 }  // namespace beltrami

@@ -62,6 +62,21 @@ SeamTree::SeamTree(const Surface& surface, Index real_faces, const std::vector<d
   take(std::move(seams), std::move(anchors));
 }
 
+SeamTree::SeamTree(const SeamTree& other, const std::vector<double>& cost, const Work& work)
+    : surface_(other.surface_),
+      cost_(cost),
+      work_(work),
+      mirror_(other.mirror_),
+      seams_(other.seams_),
+      degree_(other.degree_),
+      anchored_(other.anchored_),
+      model_(other.model_, work),
+      scale_(other.scale_),
+      budget_(other.budget_),
+      least_cost_(other.least_cost_),
+      cost_of_seams_(other.cost_of_seams_),
+      length_of_seams_(other.length_of_seams_) {}
+
 void SeamTree::take(EdgeMarks seams, std::vector<bool> anchors) {
   anchored_ = std::move(anchors);
   take(std::move(seams));

@@ -33,6 +33,8 @@ class SeamTree {
   SeamTree(const Surface& surface, Index real_faces, const std::vector<double>& cost,
            EdgeMarks seams, double budget, double least_cost, const Work& work,
            std::vector<bool> anchors = {}, const Mirror* mirror = nullptr);
+  /// The same seams and model, for another thread; `cost`: a copy of its own.
+  SeamTree(const SeamTree& other, const std::vector<double>& cost, const Work& work);
 
   /// Adds paths to where the model is distorted most until its energy is at most `target`, the best
   /// by what is gained for the cost. `exactly`: the last one, which reaches it, is the cheapest
