@@ -1,13 +1,10 @@
 """Run the fuzzers in turns, and report what they have done and found.
 
     soak.py BUILD OUT [--minutes N] [--data FOLDER] [--target NAME ...]
-    soak.py BUILD OUT --coverage
 
 BUILD has the fuzzers of fuzz/CMakeLists.txt. OUT keeps a growing corpus of each, what they found,
 and report.md. Each begins with the files of fuzz/corpus, and with small meshes of --data, of which
 nothing is written. The exit code is 1 where something was found.
-
---coverage runs what was kept so far once, and says which share of the rooms ROOMS that reached.
 """
 
 from __future__ import annotations
@@ -49,11 +46,6 @@ MOST_INPUT = {
     "surfaces": 1024,
     "unwrap_file": 1024,
 }
-
-
-# What fuzzers reach of these is said: folders of sources that read what others have written.
-ROOMS = ("program/files", "src/abi")
-FUNCTION = re.compile(r"^(?:UN)?COVERED_FUNC: hits: \d+ edges: (\d+)/(\d+) (.+) (\S+):\d+$", re.M)
 
 
 @dataclass
@@ -136,41 +128,6 @@ def read_log(text: str, turn: Turn) -> None:
     turn.findings += re.findall(r"^(?:SUMMARY|ERROR): (.*)", text, re.M)
 
 
-def edges_reached(program: Path, out: Path) -> dict[tuple[str, str], tuple[int, int]]:
-    """Return of each function, by its name and file, the edges that inputs reach, and all."""
-    name = program.name.removeprefix("fuzz_")
-    folders = [out / "corpus" / name, ROOT / "fuzz" / "corpus" / name]
-    command = [str(program), "-runs=0", "-print_coverage=1"]
-    command += [str(folder) for folder in folders if folder.is_dir()]
-    done = subprocess.run(command, capture_output=True, check=False, cwd=out)
-    found = {}
-    for reached, edges, function, file in FUNCTION.findall(done.stderr.decode(errors="replace")):
-        found[function, os.path.normpath(file)] = (int(reached), int(edges))
-    return found
-
-
-def coverage(programs: list[Path], out: Path) -> str:
-    """Return what the fuzzers reach of each room, of a function the most of one, as Markdown."""
-    best: dict[tuple[str, str], tuple[int, int]] = {}
-    for program in programs:
-        print(f"dev: soak: what {program.name} reaches", flush=True)
-        for function, edges in edges_reached(program, out).items():
-            best[function] = max(edges, best.get(function, (0, 0)))
-    lines = ["| room | functions | reached | edges | reached |", "|---|--:|--:|--:|--:|"]
-    unreached = []
-    for room in ROOMS:
-        inside = {key: edges for key, edges in best.items() if f"/{room}/" in key[1]}
-        functions = sum(reached > 0 for reached, _ in inside.values())
-        reached, edges = (sum(column) for column in zip((0, 0), *inside.values(), strict=True))
-        share = 100 * reached / max(edges, 1)
-        row = [room, str(len(inside)), str(functions), str(edges), f"{reached} ({share:.0f}%)"]
-        lines.append("| " + " | ".join(row) + " |")
-        unreached += [(all_, key[0]) for key, (some, all_) in inside.items() if some == 0]
-    lines += ["", "The largest functions that none reaches:", ""]
-    lines += [f"- {name} ({edges} edges)" for edges, name in sorted(unreached, reverse=True)[:20]]
-    return "\n".join(lines) + "\n"
-
-
 def run_shapes(program: Path, seconds: int, out: Path, seed: int) -> Turn:
     """Have the generator make shapes of the tests until its time is over."""
     turn = Turn("shapes")
@@ -241,7 +198,6 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=30, help="of all runs together [30]")
     parser.add_argument("--data", type=Path, help="a folder whose small meshes are read as well")
     parser.add_argument("--target", action="append", help="only this run, or these")
-    parser.add_argument("--coverage", action="store_true", help="say what the inputs reach")
     parser.add_argument("--shapes", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--program", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -258,11 +214,6 @@ def main() -> int:
     seconds = max(1, int(60 * arguments.minutes / len(wanted)))
     out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
-    if arguments.coverage:
-        text = coverage([program.resolve() for program in programs], out)
-        (out / "coverage.md").write_text(text)
-        print(text, end="")
-        return 0
     data = arguments.data.resolve() if arguments.data else None
     turns = []
     for name in wanted:
