@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -100,10 +102,45 @@ struct Input {
   }
 };
 
+/// Memory of the host's, which ends now and then.
+class Memory {
+ public:
+  Memory() = default;
+  ~Memory() { promise(living_ == 0, "a context gives back what it took"); }
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+
+  beltrami_allocator allocator() {
+    auto made = sized<beltrami_allocator>();
+    made.user = this;
+    made.allocate = [](void* user, std::uint64_t bytes, std::uint64_t alignment) {
+      return static_cast<Memory*>(user)->take(bytes, alignment);
+    };
+    made.release = [](void* user, void* block, std::uint64_t, std::uint64_t) {
+      --static_cast<Memory*>(user)->living_;
+      std::free(block);
+    };
+    return made;
+  }
+
+  /// From now on so many blocks are given, and after one that is not all are again; negative: all.
+  void give(long blocks) { left_ = blocks; }
+
+ private:
+  void* take(std::uint64_t bytes, std::uint64_t alignment) {
+    if (left_.fetch_sub(1) == 0) return nullptr;
+    ++living_;
+    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  }
+
+  std::atomic<long> left_ = -1, living_ = 0;
+};
+
 class Host {
  public:
   explicit Host(Provider& data) : data_(data), input_(data) {
-    promise(beltrami_create(&context_) == BELTRAMI_OK, "a context is made");
+    const beltrami_allocator allocator = memory_.allocator();
+    promise(beltrami_create_with(&allocator, &context_) == BELTRAMI_OK, "a context is made");
     // Small pages and no search, so that there are many runs; calls may set them otherwise.
     beltrami_set_int(context_, BELTRAMI_OPTION_RESOLUTION, 16);
     beltrami_set_int(context_, BELTRAMI_OPTION_THREADS, 1);
@@ -118,7 +155,7 @@ class Host {
 
   void call() {
     beltrami_context* const context = data_.ConsumeIntegralInRange(0, 60) ? context_ : nullptr;
-    switch (data_.ConsumeIntegralInRange(0, 9)) {
+    switch (data_.ConsumeIntegralInRange(0, 11)) {
       case 0:
       case 1:
         set_option(context);
@@ -155,13 +192,30 @@ class Host {
       case 8:
         check();
         break;
+      case 9:
+        memory_.give(data_.ConsumeIntegralInRange(-1, 2000));
+        break;
+      case 10:
+        judged(context, beltrami_set_parallel_for(
+                            context, data_.ConsumeBool() ? run_backwards : nullptr, nullptr));
+        break;
       default:
         beltrami_cancel(context);
     }
   }
 
  private:
-  void judged(beltrami_context* context, beltrami_status status) { judge_status(context, status); }
+  static void run_backwards(void*, std::int32_t count, beltrami_job job, void* data) {
+    for (std::int32_t i = count; i-- > 0;) job(data, i);
+  }
+
+  void judged(beltrami_context* context, beltrami_status status) {
+    judge_status(context, status);
+    const std::int32_t kind = beltrami_error_element_kind(context);
+    promise(
+        (kind == BELTRAMI_ELEMENT_NONE) == (beltrami_error_element(context) == BELTRAMI_NO_ELEMENT),
+        "an element has a kind");
+  }
 
   void set_option(beltrami_context* context) {
     const std::int32_t key = data_.ConsumeIntegralInRange(-1, option_count());
@@ -212,6 +266,8 @@ class Host {
     const std::int32_t index = data_.ConsumeIntegralInRange(-1, 30);
     judged(context, beltrami_get_stage(context, index, &stage));
     judged(context, beltrami_get_atlas_stage(context, index, &stage));
+    promise(beltrami_stage_count(context) >= 0, "stages are counted");
+    promise(beltrami_atlas_stage_count(context) >= 0, "stages of an atlas are counted");
     std::uint64_t bytes = 0;
     judged(context, beltrami_estimate_memory(context, &bytes));
     beltrami_get_atlas(context, nullptr);
@@ -264,6 +320,8 @@ class Host {
          [&](void* out, std::int32_t type, std::uint64_t stride) {
            return beltrami_get_uvs(context, out, type, stride);
          });
+    std::vector<double> energies(result.faces);
+    judged(context, beltrami_get_face_energies(context, energies.data(), 0));
     read(context, result.faces, 3, false, [&](void* out, std::int32_t type, std::uint64_t stride) {
       return beltrami_get_faces(context, out, type, stride);
     });
@@ -308,6 +366,7 @@ class Host {
 
   Provider& data_;
   Input input_;
+  Memory memory_;
   beltrami_context* context_ = nullptr;
   int polls_ = 0;
 };

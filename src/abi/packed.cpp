@@ -63,7 +63,7 @@ class Reader {
       all.uvs.emplace_back(uvs[2 * v], uvs[2 * v + 1]);
     }
     for (const auto& [a, b, c] : faces) {
-      for (const Index v : {a, b, c}) require_finite(all.uvs[first + v].allFinite(), "UV", v, m);
+      for (const Index v : {a, b, c}) require_usable(all.uvs[first + v], "UV", v, m);
       all.faces.push_back({first + a, first + b, first + c});
     }
     // UV vertices that no face names may be no numbers.
@@ -90,7 +90,7 @@ class Reader {
       positions[v] = {numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]};
     }
     for (const Triangle& face : faces) {
-      for (const Index v : face) require_finite(positions[v].allFinite(), "position", v, m);
+      for (const Index v : face) require_usable(positions[v], "position", v, m);
       const auto [a, b, c] = face;
       all.areas.push_back(triangle_area(positions[a], positions[b], positions[c]));
     }
@@ -137,14 +137,20 @@ class Reader {
     return result;
   }
 
-  void require_finite(bool is_finite, const char* what, Index vertex, std::size_t m) const {
-    if (is_finite) return;
+  template <class Vector>
+  void require_usable(const Vector& place, const char* what, Index vertex, std::size_t m) const {
+    if (place.allFinite() && place.cwiseAbs().maxCoeff() <= kFarthest) return;
+    const char* const why = place.allFinite()
+                                ? " is beyond 1e100, where areas are no numbers: scale it"
+                                : " is infinite or not a number";
     throw Error(Fault::kNonFinite,
                 std::string("the ") + what + " of vertex " + std::to_string(vertex) +
-                    of_mesh(m, headers_.size()) + " is infinite or not a number",
+                    of_mesh(m, headers_.size()) + why,
                 Element::vertex(static_cast<std::uint64_t>(vertex)));
   }
 
+  /// Coordinates whose products of three, times any number of texels, are finite.
+  static constexpr double kFarthest = 1e100;
   static constexpr Index kMostPages = 999;  // of the option max-pages, counted from 0
 
   const std::vector<beltrami_uv_mesh>& headers_;

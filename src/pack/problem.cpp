@@ -129,11 +129,11 @@ Problem::Sums Problem::sums() const {
   return sums;
 }
 
-/// Solves area d^2 + length r d = room for d, with r half the margin and half a cell.
+/// Solves area d^2 + length r d = room for d, with r half the margin and half a cell. The usual
+/// formula has a difference, of which long charts without much area would leave nothing.
 double Problem::density_in(const Sums& all, double room) const {
   const double half = all.length * half_margin() / 2;
-  if (!(all.area > 0)) return room / (2 * half);
-  return (std::sqrt(half * half + all.area * room) - half) / all.area;
+  return room / (half + std::sqrt(half * half + all.area * room));
 }
 
 double Problem::half_margin() const {

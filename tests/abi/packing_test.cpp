@@ -24,15 +24,6 @@ namespace {
 using meshes::TriangleList;
 using Uvs = std::vector<std::array<double, 2>>;
 
-beltrami_surface surface_view(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 /// A cube whose faces are charts.
 Context with_six_charts() {
   Context context = create();
@@ -360,6 +351,28 @@ TEST(AbiPacking, RefusesWhatItCannotRead) {
   EXPECT_EQ(pack(context, {empty}), BELTRAMI_E_EMPTY);
   set_option(context, BELTRAMI_OPTION_RESOLUTION, 8);
   EXPECT_EQ(pack(context, {Confetti(100).view()}), BELTRAMI_E_NO_ROOM) << message(context);
+}
+
+// The density of a chart a million million times as long as wide came out as 0, and what was packed
+// at it was read.
+TEST(AbiPacking, TakesChartsThatAreAllLength) {
+  for (const double length : {1e8, 1e16, 1e99}) {
+    Confetti mesh(2);
+    mesh.uvs[1][0] = length;
+    const Context context = create();
+    set_option(context, BELTRAMI_OPTION_RESOLUTION, 64);
+    EXPECT_GE(pack(context, {mesh.view()}), BELTRAMI_OK) << length << message(context);
+    EXPECT_GT(packing_of(context).texels_per_unit, 0) << length;
+  }
+}
+
+TEST(AbiPacking, RefusesWhatHasNoArea) {
+  const Context context = create();
+  Confetti mesh(2), in_space(2, 1e150);
+  mesh.uvs[4] = {0, -1e194};
+  EXPECT_EQ(pack(context, {mesh.view()}), BELTRAMI_E_NON_FINITE);
+  EXPECT_EQ(beltrami_error_element(context.get()), 4u);
+  EXPECT_EQ(pack(context, {in_space.view(true)}), BELTRAMI_E_NON_FINITE);
 }
 
 TEST(AbiPacking, DrawsMasks) {

@@ -26,15 +26,6 @@ using Numbers = std::vector<std::uint32_t>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-beltrami_surface surface_of(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 beltrami_buffer numbers_of(const Numbers& numbers) {
   return {numbers.data(), 0, BELTRAMI_U32, 0};
 }
@@ -46,7 +37,7 @@ beltrami_status update(const Context& context, std::int32_t steps = 0) {
 /// A context with a session whose charts are mapped.
 Context begun(const TriangleList& mesh) {
   Context context = create();
-  const beltrami_surface surface = surface_of(mesh);
+  const beltrami_surface surface = surface_view(mesh);
   EXPECT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK)
       << message(context);
   EXPECT_EQ(update(context), BELTRAMI_OK) << message(context);
@@ -169,20 +160,20 @@ TEST(Sessions, OneFollowsTheOtherAndAFailureKeepsTheFirst) {
   const TriangleList bumps = meshes::bumps(4, 4), cube = meshes::cube();
   const Context context = begun(bumps);
   const auto uvs = session_uvs(context);
-  beltrami_surface surface = surface_of(bumps);
+  beltrami_surface surface = surface_view(bumps);
   surface.vertex_count = 3;
   EXPECT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr),
             BELTRAMI_E_INDEX_OUT_OF_RANGE);
   EXPECT_EQ(beltrami_session_begin(context.get(), nullptr, nullptr, nullptr),
             BELTRAMI_E_INVALID_ARGUMENT);
   std::vector<std::uint32_t> labels(bumps.faces.size(), 0);
-  surface = surface_of(bumps);
+  surface = surface_view(bumps);
   surface.face_labels = numbers_of(labels);
   EXPECT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr),
             BELTRAMI_E_INVALID_ARGUMENT);
   EXPECT_NE(message(context).find("face_labels"), std::string::npos);
   EXPECT_TRUE(same_bits(session_uvs(context), uvs));
-  const beltrami_surface other = surface_of(cube);
+  const beltrami_surface other = surface_view(cube);
   ASSERT_EQ(beltrami_session_begin(context.get(), &other, nullptr, nullptr), BELTRAMI_OK);
   EXPECT_EQ(info(context).corners, 3 * cube.faces.size());
   EXPECT_EQ(update(context), BELTRAMI_OK);
@@ -192,7 +183,7 @@ TEST(Sessions, OtherCallsOfTheContextLeaveItAlone) {
   const TriangleList mesh = meshes::bumps(5, 5);
   const Context context = begun(mesh);
   const auto uvs = session_uvs(context);
-  const beltrami_surface surface = surface_of(mesh);
+  const beltrami_surface surface = surface_view(mesh);
   EXPECT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
   EXPECT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
   EXPECT_EQ(run(context), BELTRAMI_OK);
@@ -490,7 +481,7 @@ TEST(Sessions, HaveTheSameBitsAtOneThreadAndAtThree) {
   for (const std::uint64_t threads : {1, 3}) {
     const Context context = create();
     set_option(context, BELTRAMI_OPTION_THREADS, threads);
-    const beltrami_surface surface = surface_of(mesh);
+    const beltrami_surface surface = surface_view(mesh);
     ASSERT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
     ASSERT_EQ(update(context), BELTRAMI_OK);
     ASSERT_EQ(set_seams(context, {0, 1, 1, 2, 2, 3}, true), BELTRAMI_OK) << message(context);

@@ -19,15 +19,6 @@ namespace {
 
 using meshes::TriangleList;
 
-beltrami_surface surface_of(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 beltrami_status unwrap(const Context& context, const std::vector<beltrami_surface>& surfaces) {
   std::vector<const beltrami_surface*> pointers;
   for (const beltrami_surface& surface : surfaces) pointers.push_back(&surface);
@@ -59,7 +50,7 @@ std::vector<Integer> integers(const Context& context, std::size_t count, std::in
 TEST(SeveralSurfaces, OneAloneIsWhatUnwrapMakesOfIt) {
   const TriangleList torus = meshes::torus(10);
   const Context one = create(), several = create();
-  const beltrami_surface surface = surface_of(torus);
+  const beltrami_surface surface = surface_view(torus);
   ASSERT_EQ(beltrami_unwrap(one.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
   ASSERT_EQ(unwrap(several, {surface}), BELTRAMI_OK);
   EXPECT_TRUE(same_bits(corner_uvs(one), corner_uvs(several)));
@@ -68,7 +59,8 @@ TEST(SeveralSurfaces, OneAloneIsWhatUnwrapMakesOfIt) {
 TEST(SeveralSurfaces, ShareAPageAndAVerdictAtOneScale) {
   const TriangleList cube = meshes::cube(), torus = meshes::torus(10);
   const Context context = create();
-  ASSERT_EQ(unwrap(context, {surface_of(cube), surface_of(torus), surface_of(cube)}), BELTRAMI_OK)
+  ASSERT_EQ(unwrap(context, {surface_view(cube), surface_view(torus), surface_view(cube)}),
+            BELTRAMI_OK)
       << message(context);
   const beltrami_atlas atlas = atlas_of(context);
   EXPECT_EQ(atlas.vertices, 2 * cube.positions.size() + torus.positions.size());
@@ -98,7 +90,7 @@ TEST(SeveralSurfaces, ShareAPageAndAVerdictAtOneScale) {
 TEST(SeveralSurfaces, AreNotWelded) {
   const TriangleList cube = meshes::cube();
   const Context context = create();
-  ASSERT_EQ(unwrap(context, {surface_of(cube), surface_of(cube)}), BELTRAMI_OK);
+  ASSERT_EQ(unwrap(context, {surface_view(cube), surface_view(cube)}), BELTRAMI_OK);
   const beltrami_atlas atlas = atlas_of(context);
   EXPECT_EQ(atlas.components, 2u);
   EXPECT_EQ(atlas.welded_vertices, 0u);
@@ -114,7 +106,7 @@ TEST(SeveralSurfaces, TheirOwnVerticesAreWelded) {
     soup.faces.push_back({first, first + 1, first + 2});
   }
   const Context context = create();
-  ASSERT_EQ(unwrap(context, {surface_of(soup), surface_of(soup)}), BELTRAMI_OK);
+  ASSERT_EQ(unwrap(context, {surface_view(soup), surface_view(soup)}), BELTRAMI_OK);
   const beltrami_atlas atlas = atlas_of(context);
   EXPECT_EQ(atlas.components, 2u);
   EXPECT_EQ(atlas.welded_vertices, 2 * (36u - 8u));
@@ -123,7 +115,7 @@ TEST(SeveralSurfaces, TheirOwnVerticesAreWelded) {
 TEST(SeveralSurfaces, UvVerticesOfOneFollowThoseOfTheOther) {
   const TriangleList cube = meshes::cube(), torus = meshes::torus(10);
   const Context context = create();
-  ASSERT_EQ(unwrap(context, {surface_of(cube), surface_of(torus)}), BELTRAMI_OK);
+  ASSERT_EQ(unwrap(context, {surface_view(cube), surface_view(torus)}), BELTRAMI_OK);
   const auto origins = integers<std::uint32_t>(context, atlas_of(context).uv_vertices, BELTRAMI_U32,
                                                &beltrami_get_uv_vertex_origins);
   const auto of_second = [&](std::uint32_t origin) { return origin >= cube.positions.size(); };
@@ -134,7 +126,7 @@ TEST(SeveralSurfaces, UvVerticesOfOneFollowThoseOfTheOther) {
 TEST(SeveralSurfaces, MayBeOfTrianglesAndOfPolygons) {
   const TriangleList cube = meshes::cube();
   const std::vector<std::uint32_t> square = {0, 2, 3, 1}, sizes = {4};
-  auto polygon = surface_of(cube);
+  auto polygon = surface_view(cube);
   polygon.face_count = 1;
   polygon.corner_count = 4;
   polygon.indices.data = square.data();
@@ -142,8 +134,8 @@ TEST(SeveralSurfaces, MayBeOfTrianglesAndOfPolygons) {
   for (const bool polygon_first : {false, true}) {
     const Context context = create();
     const std::vector<beltrami_surface> surfaces = polygon_first
-                                                       ? std::vector{polygon, surface_of(cube)}
-                                                       : std::vector{surface_of(cube), polygon};
+                                                       ? std::vector{polygon, surface_view(cube)}
+                                                       : std::vector{surface_view(cube), polygon};
     ASSERT_EQ(unwrap(context, surfaces), BELTRAMI_OK) << message(context);
     const beltrami_atlas atlas = atlas_of(context);
     EXPECT_EQ(atlas.faces, cube.faces.size() + 1);
@@ -162,7 +154,7 @@ TEST(SeveralSurfaces, WhatComesWithOneIsNotForTheOthers) {
   const std::vector<double> paint(cube.positions.size(), 3.0);
   std::vector<std::uint32_t> labels(cube.faces.size());
   for (std::uint32_t f = 0; f < labels.size(); ++f) labels[f] = f;
-  auto marked = surface_of(cube);
+  auto marked = surface_view(cube);
   marked.densities = {densities.data(), 0, BELTRAMI_F64, 0};
   marked.face_labels = {labels.data(), 0, BELTRAMI_U32, 0};
   marked.materials = marked.face_labels;
@@ -170,8 +162,8 @@ TEST(SeveralSurfaces, WhatComesWithOneIsNotForTheOthers) {
   const Context context = create();
   for (const bool marked_first : {false, true}) {
     const std::vector<beltrami_surface> surfaces = marked_first
-                                                       ? std::vector{marked, surface_of(cube)}
-                                                       : std::vector{surface_of(cube), marked};
+                                                       ? std::vector{marked, surface_view(cube)}
+                                                       : std::vector{surface_view(cube), marked};
     ASSERT_EQ(unwrap(context, surfaces), BELTRAMI_OK) << message(context);
     const std::uint64_t charts = atlas_of(context).charts;
     std::size_t alone = 0;
@@ -194,12 +186,12 @@ TEST(SeveralSurfaces, PinsAreCornersOfTheirOwnSurface) {
   const TriangleList quad = meshes::quad(), cube = meshes::cube();
   const std::array<std::uint32_t, 2> pins = {0, 1};
   const std::array<double, 4> places = {10, 10, 12, 10};
-  auto pinned = surface_of(quad);
+  auto pinned = surface_view(quad);
   pinned.pins = {pins.data(), 0, BELTRAMI_U32, 0};
   pinned.pin_uvs = {places.data(), 0, BELTRAMI_F64, 0};
   pinned.pin_count = 2;
   const Context context = create();
-  ASSERT_EQ(unwrap(context, {surface_of(cube), pinned}), BELTRAMI_OK) << message(context);
+  ASSERT_EQ(unwrap(context, {surface_view(cube), pinned}), BELTRAMI_OK) << message(context);
   const std::vector<double> uvs = corner_uvs(context);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(uvs[6 * cube.faces.size() + i], places[i]);
 }
@@ -209,7 +201,8 @@ TEST(SeveralSurfaces, ErrorsNameTheSurfaceAndCountThroughAll) {
   TriangleList broken = cube;
   broken.faces[3][1] = 77;
   const Context context = create();
-  EXPECT_EQ(unwrap(context, {surface_of(cube), surface_of(broken)}), BELTRAMI_E_INDEX_OUT_OF_RANGE);
+  EXPECT_EQ(unwrap(context, {surface_view(cube), surface_view(broken)}),
+            BELTRAMI_E_INDEX_OUT_OF_RANGE);
   EXPECT_EQ(beltrami_error_element(context.get()), cube.faces.size() + 3);
   EXPECT_NE(message(context).find("surface 1: face 3 names vertex 77"), std::string::npos)
       << message(context);
@@ -226,7 +219,7 @@ TEST(SixteenBits, IndicesGiveTheSameBitsAsThoseOfThirtyTwo) {
   for (const auto& face : torus.faces) {
     for (const Index v : face) narrow.push_back(static_cast<std::uint16_t>(v));
   }
-  beltrami_surface surface = surface_of(torus);
+  beltrami_surface surface = surface_view(torus);
   const Context wide_context = create(), context = create();
   ASSERT_EQ(unwrap(wide_context, {surface}), BELTRAMI_OK);
   surface.indices = {narrow.data(), 0, BELTRAMI_U16, 0};
@@ -279,7 +272,7 @@ TEST(SixteenBits, AllBitsSetIsNone) {
   mesh.faces.push_back({0, 1, same});
   const Context context = create();
   set_option(context, BELTRAMI_OPTION_WELD, BELTRAMI_WELD_OFF);
-  ASSERT_EQ(unwrap(context, {surface_of(mesh)}), BELTRAMI_OK) << message(context);
+  ASSERT_EQ(unwrap(context, {surface_view(mesh)}), BELTRAMI_OK) << message(context);
   const auto charts =
       integers<std::uint16_t>(context, mesh.faces.size(), BELTRAMI_U16, &beltrami_get_face_charts);
   EXPECT_EQ(charts.back(), 0xffff);

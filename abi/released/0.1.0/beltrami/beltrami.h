@@ -999,8 +999,8 @@ typedef struct beltrami_uv_mesh {
  * are folded, flipped or lie on themselves are packed as they are. Triangles without area between
  * their UVs are no charts: they become points of another one. Returns OK, or with a result
  * NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
- * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted
- * in the mesh that the sentence names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED,
+ * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (or beyond 1e100; each with its
+ * element, counted in the mesh that the sentence names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED,
  * OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. */
 BELTRAMI_API beltrami_status beltrami_pack(beltrami_context* context,
                                            const beltrami_uv_mesh* const* meshes,
