@@ -65,8 +65,8 @@ bool has_lgpl() {
 const HostMemory* keep_allocator(const beltrami_allocator* allocator) {
   if (allocator == nullptr) return nullptr;
   const beltrami_allocator given = read_sized(allocator, "allocator");
-  if (given.allocate == nullptr || given.release == nullptr) {
-    throw Error(Fault::kInvalidArgument, "an allocator needs both of its functions");
+  if (given.allocate == nullptr || given.release == nullptr || given.reserved != 0) {
+    throw Error(Fault::kInvalidArgument, "an allocator needs both functions, and 0 as reserved");
   }
   void* const place = given.allocate(given.user, sizeof(HostMemory), alignof(HostMemory));
   if (place == nullptr) throw std::bad_alloc();

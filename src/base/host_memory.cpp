@@ -23,7 +23,8 @@ const HostMemory* host_memory() noexcept {
 void* take_memory_or_throw(std::size_t bytes, std::size_t alignment) {
   for (;;) {
     if (void* const block = take_memory(bytes, alignment)) return block;
-    const std::new_handler handler = std::get_new_handler();
+    // The handler is of another heap than a host's allocator.
+    const std::new_handler handler = current == nullptr ? std::get_new_handler() : nullptr;
     if (handler == nullptr) throw std::bad_alloc();
     handler();
   }

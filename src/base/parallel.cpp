@@ -115,12 +115,12 @@ void parallel_for(const Work& work, std::int64_t count, std::int64_t grain,
     }
   };
   work.pool().run(workers - 1, [&](int thread) {
+    const HostMemoryScope same_memory(memory);
     if (thread == 0) {
       take_chunks(thread);
       return;
     }
     const InterruptScope interruptible(request);
-    const HostMemoryScope same_memory(memory);
     take_chunks(thread);
   });
   if (failure) std::rethrow_exception(failure);

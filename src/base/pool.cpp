@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <system_error>
 
+#include "base/host_memory.h"
+
 namespace beltrami {
 namespace {
 
@@ -75,6 +77,7 @@ void Pool::serve(int thread) {
 
 void Pool::run_on_host(int count, const std::function<void(int)>& task) const {
   const std::thread::id caller = std::this_thread::get_id();
+  const HostMemoryScope not_of_the_run(nullptr);  // what the host calls on the way
   host_(count, [&](int index) {
     task(std::this_thread::get_id() == caller ? 0 : std::max(index, 0) + 1);
   });

@@ -568,8 +568,9 @@ void SeamRefinement::join_charts(Attempt& best) {
         ++idle;
       }
     }
-    if (!gained) return;
+    if (!gained) break;
   }
+  contact_ = std::move(contact);  // not that of the last trial, which may have been on a copy
 }
 
 }  // namespace beltrami

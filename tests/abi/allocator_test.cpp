@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <new>
 #include <set>
 #include <thread>
 #include <utility>
@@ -179,6 +180,57 @@ TEST(AbiAllocator, AnswersWhereTheHostHasNoMemory) {
   EXPECT_EQ(context, nullptr);
 }
 
+/// A handler of the program's may end it: it knows of another heap.
+TEST(AbiAllocator, DoesNotAskTheHandlerOfTheProgram) {
+  static long left = 0;
+  auto allocator = sized<beltrami_allocator>();
+  allocator.allocate = [](void*, std::uint64_t bytes, std::uint64_t alignment) -> void* {
+    if (left-- <= 0) return nullptr;
+    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  };
+  allocator.release = [](void*, void* block, std::uint64_t, std::uint64_t) { std::free(block); };
+  static int asked = 0;
+  const std::new_handler before = std::set_new_handler([] {
+    ++asked;
+    throw std::bad_alloc();
+  });
+  left = 1000;
+  beltrami_context* context = nullptr;
+  ASSERT_EQ(beltrami_create_with(&allocator, &context), BELTRAMI_OK);
+  const TriangleList mesh = meshes::torus(8);
+  const beltrami_surface surface = surface_view(mesh);
+  left = 20;
+  EXPECT_EQ(beltrami_unwrap(context, &surface, nullptr, nullptr), BELTRAMI_E_OUT_OF_MEMORY);
+  beltrami_destroy(context);
+  std::set_new_handler(before);
+  EXPECT_EQ(asked, 0);
+}
+
+TEST(AbiAllocator, IsNotOfChecksThatTheHostMakesInItsLoops) {
+  const TriangleList mesh = meshes::bumps(40, 40);
+  Ledger ledger;
+  {
+    const Context context = create_with(ledger);
+    set_option(context, BELTRAMI_OPTION_THREADS, 2);
+    static const Ledger* of_the_run = nullptr;
+    of_the_run = &ledger;
+    const auto run_and_check = [](void* user, std::int32_t count, beltrami_job job, void* data) {
+      const auto& flat = *static_cast<const TriangleList*>(user);
+      const beltrami_surface surface = surface_view(flat);
+      std::vector<std::uint64_t> triangles(3 * flat.faces.size());
+      const std::uint64_t taken = of_the_run->taken();
+      beltrami_triangulate(&surface, triangles.data(), BELTRAMI_U64, 0, nullptr);
+      EXPECT_EQ(of_the_run->taken(), taken);
+      for (std::int32_t i = 0; i < count; ++i) job(data, i);
+    };
+    TriangleList user = mesh;
+    ASSERT_EQ(beltrami_set_parallel_for(context.get(), run_and_check, &user), BELTRAMI_OK);
+    ASSERT_EQ(set_mesh(context, mesh), BELTRAMI_OK);
+    EXPECT_EQ(run(context), BELTRAMI_OK) << message(context);
+  }
+  EXPECT_EQ(ledger.living(), 0u);
+}
+
 TEST(AbiAllocator, RefusesOneThatLacksAFunctionOrASize) {
   Ledger ledger;
   beltrami_context* context = nullptr;
@@ -187,6 +239,9 @@ TEST(AbiAllocator, RefusesOneThatLacksAFunctionOrASize) {
   EXPECT_EQ(beltrami_create_with(&allocator, &context), BELTRAMI_E_INVALID_ARGUMENT);
   allocator = ledger.allocator();
   allocator.struct_size = 8;
+  EXPECT_EQ(beltrami_create_with(&allocator, &context), BELTRAMI_E_INVALID_ARGUMENT);
+  allocator = ledger.allocator();
+  allocator.reserved = 1;
   EXPECT_EQ(beltrami_create_with(&allocator, &context), BELTRAMI_E_INVALID_ARGUMENT);
   EXPECT_EQ(context, nullptr);
   ASSERT_EQ(beltrami_create_with(nullptr, &context), BELTRAMI_OK);
