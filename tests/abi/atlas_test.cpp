@@ -40,15 +40,6 @@ struct QuadCube {
   }
 };
 
-beltrami_surface surface_view(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 beltrami_status unwrap(const Context& context, const beltrami_surface& surface) {
   return beltrami_unwrap(context.get(), &surface, nullptr, nullptr);
 }

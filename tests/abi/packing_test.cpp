@@ -24,15 +24,6 @@ namespace {
 using meshes::TriangleList;
 using Uvs = std::vector<std::array<double, 2>>;
 
-beltrami_surface surface_view(const TriangleList& mesh) {
-  auto surface = sized<beltrami_surface>();
-  surface.vertex_count = mesh.positions.size();
-  surface.face_count = mesh.faces.size();
-  surface.positions = {mesh.positions.data(), 0, BELTRAMI_F64, 0};
-  surface.indices = {mesh.faces.data(), 0, BELTRAMI_U32, 0};
-  return surface;
-}
-
 /// A cube whose faces are charts.
 Context with_six_charts() {
   Context context = create();
